@@ -72,7 +72,7 @@ format: $(VENV)/.installed-dev
 # Rewrite the files that are made from others and kept in the repository.
 generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.grammar.tables
-	$(BIN)/python -m tltlc.backends.artefact.generate
+	$(BIN)/python -m tltlc.artefact.generate
 	$(BIN)/tltlc render examples/cover_and_hide.tltl -o docs/images/cover_and_hide.svg
 	rm -rf docs/images/new && $(BIN)/tltlc new docs/images/new
 	$(BIN)/tltlc render docs/images/new/first_level.tltl --notation english -o docs/images/leave_with_key.svg

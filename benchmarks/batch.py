@@ -43,7 +43,7 @@ def compared(name: str) -> Record:
     """Steps per second of CPU time of both monitors and their ratio; with a GPU, milliseconds a call there too."""
     import torch
 
-    from tltl_runtime.batch import BatchMonitor
+    from tltl_runtime.spec.batch import BatchMonitor
     from tltlc import compile_file
     from tltlc.monitor import Monitor
 
@@ -98,7 +98,7 @@ def _inputs(samples: list[dict[str, float]], names: tuple[str, ...], count: int,
 
 def _check(fspa: Fspa, samples: list[dict[str, float]]) -> None:
     """Both monitors over the whole trace, each environment from a sample of its own on."""
-    from tltl_runtime.batch import BatchMonitor
+    from tltl_runtime.spec.batch import BatchMonitor
     from tltlc.monitor import Monitor
 
     batch, monitors = BatchMonitor(fspa, CHECKED), [Monitor(fspa) for _ in range(CHECKED)]
@@ -129,7 +129,7 @@ def _on_gpu(fspa: Fspa, samples: list[dict[str, float]]) -> Record:
     """Milliseconds of wall time of a call for a million environments, its end waited for; nothing without a GPU."""
     import torch
 
-    from tltl_runtime.batch import BatchMonitor
+    from tltl_runtime.spec.batch import BatchMonitor
 
     if not torch.cuda.is_available():
         return {}

@@ -27,9 +27,9 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltl_runtime.evaluation.figures import Figures
-    from tltl_runtime.regression.baseline import Reference
-    from tltl_runtime.regression.suite import Case, Suite
-    from tltl_runtime.stealth.episodes.episode import Episode
+    from tltl_runtime.regression.suite.suite import Case, Suite
+    from tltl_runtime.regression.verdict.baseline import Reference
+    from tltl_runtime.stealth.recordings.episode import Episode
 
 SECTION = "regression"
 SOURCES: Final = ("tltlc", "runtime")
@@ -67,7 +67,7 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan = FUL
     if missing:
         say(f"{SECTION} left out: {', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
-    from tltl_runtime.regression.suite import read_suite
+    from tltl_runtime.regression.suite.suite import read_suite
 
     # What was played by other code is not taken again.
     folder /= source_digest(*SOURCES)
@@ -113,12 +113,12 @@ def truth(case: Case, before: Record, plan: Plan) -> Record:
 
 def expert(level: str, variant: str, plan: Plan) -> Record:
     """How the careful expert's episodes go, of the seeds from 0 on; what nobody reaches, and whether that is needed."""
+    from tltl_runtime.stealth.capabilities.feasible import check_reach
+    from tltl_runtime.stealth.capabilities.reach import reachable
+    from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
-    from tltl_runtime.stealth.supply.feasible import check_reach
-    from tltl_runtime.stealth.supply.reach import reachable
-    from tltl_runtime.stealth.supply.spec_places import SpecPlaces
 
     env = RecordEpisode(make_env(level, variant))
     try:
@@ -150,7 +150,7 @@ def way_digest(episode: Episode) -> str:
 
 def judged(suite: Suite, case: Case) -> Record:
     """The verdict of ``tltlc regress`` on a case, and what it rests upon."""
-    from tltl_runtime.regression.run import regress
+    from tltl_runtime.regression.verdict.run import regress
 
     began = time.process_time()
     reference = _reference(suite, case)
@@ -178,9 +178,9 @@ def _rates(figures: Figures) -> dict[str, float]:
 
 def _reference(suite: Suite, case: Case) -> Reference:
     """What the level's policy did before the edit, played once."""
-    from tltl_runtime.regression.baseline import read_baseline, write_baseline
-    from tltl_runtime.regression.baseline_run import record_baseline
-    from tltlc.record import replace
+    from tltl_runtime.regression.verdict.baseline import read_baseline, write_baseline
+    from tltl_runtime.regression.verdict.baseline_run import record_baseline
+    from tltlc.core.record import replace
 
     path = suite.path.with_name(f"{case.level}.baseline.json")
     kept = read_baseline(path) if path.exists() else ()
@@ -205,8 +205,8 @@ def _written(edits: Sequence[Edit], plan: Plan, folder: Path) -> Path:
 
 def _assets(names: set[str]) -> dict[str, Asset]:
     from tltl_runtime.stealth.levels.made_for import LEVELS
-    from tltlc.files import read_source
-    from tltlc.toml_text import parse
+    from tltlc.io.files import read_source
+    from tltlc.io.toml_text import parse
 
     paths = {name: LEVELS / "assets" / f"{name}.toml" for name in sorted(names)}
     return {name: parse(read_source(path, path.name), "TLT0801", "") for name, path in paths.items()}

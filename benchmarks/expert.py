@@ -19,8 +19,8 @@ from benchmarks.store import Record, Store, source_digest
 from benchmarks.variants import measure_each, variants_of_all
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.episodes.outcome import Outcome
     from tltl_runtime.stealth.level import Level
+    from tltl_runtime.stealth.recordings.outcome import Outcome
 
 SECTION = "expert"
 CARES = ("careful", "careless")
@@ -39,9 +39,9 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
 def played(level: str, variant: str, care: str, episodes: int) -> Record:
     """Episodes of the seeds from 0 on: outcomes by the barrier that opened by chance, ``""`` where there is none."""
     from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.episodes.outcome import outcome
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
+    from tltl_runtime.stealth.recordings.outcome import outcome
 
     env = RecordEpisode(make_env(level, variant))
     expert = Expert(env, careful=care == "careful")

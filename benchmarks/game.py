@@ -120,7 +120,7 @@ def _us(work: Callable[[], None]) -> float:
 
 def _map_us(env: GameEnv) -> tuple[float, float]:
     """Microseconds of a look at the semantic map where the game stands, and with the layers made of it."""
-    from tltl_runtime.stealth.senses.semantic_map import SemanticMap
+    from tltl_runtime.stealth.observation.semantic_map import SemanticMap
 
     semantic_map, game = SemanticMap(env.level), env.game
     given = (game.world.player.position, False, game.world.mover_boxes(), game.enemies.positions)

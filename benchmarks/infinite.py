@@ -12,10 +12,10 @@ from typing import Any, Final
 from benchmarks.markdown import met_or_missed, table
 from benchmarks.store import Record, Store, measure_missing, source_digest
 from tests.reference_formulas import read_formula
-from tltlc.automaton.blowup import recursion_room
-from tltlc.rabin.analysis import analysis_of_rabin
-from tltlc.rabin.construct import rabin
-from tltlc.rabin.work import DEFAULT_WORK, Work
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.infinite.analysis import analysis_of_rabin
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.work import DEFAULT_WORK, Work
 
 SECTION = "infinite"
 TABLE: Final = Path(__file__).with_name("infinite.tsv")

@@ -11,14 +11,14 @@ from benchmarks.markdown import met_or_missed, table
 from benchmarks.mine_peers import Learned, enumerated, has_scarlet, scarlet
 from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
 from benchmarks.store import Record, Store, measure_missing, source_digest
+from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import are_equivalent
-from tltlc.mine.confirm import confirmed
-from tltlc.mine.evidence import Evidence
-from tltlc.mine.search import Options, Search
-from tltlc.mine.vocabulary import of_columns
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.mine.confirm import confirmed
+from tltlc.tools.mine.evidence import Evidence
+from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.vocabulary import of_columns
 
 SECTION = "mine"
 TRACES, COUNTEREXAMPLES = 40, 80
@@ -39,7 +39,7 @@ PEERS: Final = {"enumeration": "plain enumeration", "scarlet": "Scarlet 0.0.4"}
 
 def measure(store: Store, timeout_s: float, say: Callable[[str], None]) -> None:
     """Plant and recover each spec whose record is not of this code."""
-    code = {"source": source_digest("tltlc/mine", "benchmarks/mine_peers.py", "benchmarks/mine_traces.py")}
+    code = {"source": source_digest("tltlc/tools/mine", "benchmarks/mine_peers.py", "benchmarks/mine_traces.py")}
     if not has_scarlet():
         say("mine: Scarlet is left out, since it is not installed (benchmarks/requirements.txt)")
     peer_s = min(timeout_s, _MOST_PEER_S)

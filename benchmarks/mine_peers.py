@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from benchmarks.measure import run
-from tltlc.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, Recorded
 
 Values = tuple[int, ...]
 """Of a formula its truth at every sample of every trace: a number per trace, the first sample its lowest bit."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from random import Random
 from typing import Final
 
+from tltlc.automaton.compare import Letter
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import Letter
-from tltlc.mine.evidence import Evidence, Recorded
+from tltlc.core.source import SourceFile
 from tltlc.monitor.guards import holds
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.mine.evidence import Evidence, Recorded
 
 ATOMS: Final = tuple(f"p{number}" for number in range(8))
 _OFTEN: Final = 0.15

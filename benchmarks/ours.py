@@ -14,11 +14,11 @@ from typing import Any
 
 from benchmarks.measure import cpu_s, cpu_times_ms, forked, median, peak_memory_mb
 from tests.reference_formulas import read_formula
-from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build, minimal_machine, spec_from_formula
 from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build, minimal_machine, spec_from_formula
+from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.machine import OutOfStates
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.formula import Formula
 

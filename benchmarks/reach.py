@@ -2,7 +2,7 @@
 
 A pose is a cell of the level with a stance, whether the player stands on something, and how fast it rises or falls;
 each is explored from one state, the first that was met in it.  So what is found can be reached, and what
-is not found may still be; what is out of reach for certain is told by :mod:`tltl_runtime.stealth.supply.reach`.
+is not found may still be; what is out of reach for certain is told by :mod:`tltl_runtime.stealth.capabilities.reach`.
 
 ``python -m benchmarks.reach`` shows both for ``navigation`` v0 and v2, from the start, with the gap shut until its
 switch has been pressed.  It takes a minute, and is no part of ``python -m benchmarks``.
@@ -18,7 +18,7 @@ from itertools import product
 from math import floor
 from typing import TYPE_CHECKING
 
-from tltlc.record import record
+from tltlc.core.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.level import Point
@@ -94,7 +94,7 @@ def _pose(state: PlayerState, cell: float) -> tuple[int, int, int, bool, bool, i
 
 
 def _rested(state: PlayerState) -> PlayerState:
-    from tltlc.record import replace
+    from tltlc.core.record import replace
 
     return replace(state, stamina=1.0)
 
@@ -106,8 +106,8 @@ def main() -> None:
 
 
 def _show(variant: str) -> None:
+    from tltl_runtime.stealth.capabilities.reach import reachable
     from tltl_runtime.stealth.levels.file import load_level
-    from tltl_runtime.stealth.supply.reach import reachable
     from tltl_runtime.stealth.world.physics import World
 
     level = load_level("navigation", variant)

@@ -363,7 +363,7 @@ def _batch(records: dict[str, Record]) -> str:
     return f"""
 ## Many automata at once, steps per second
 
-`tltl_runtime.batch` on one core for N = {batch.COUNT:,} environments in different states, in float64, beside
+`tltl_runtime.spec.batch` on one core for N = {batch.COUNT:,} environments in different states, in float64, beside
 `tltlc.monitor`, one sample at a time; both in turns in each of {batch.ROUNDS} rounds, checked to be equal before. A
 step computes atoms, transition, progress, reward and the end of the episode from signals that are given as one tensor.
 On a GPU: wall time of one call for {batch.GPU_COUNT:,} environments.

@@ -86,7 +86,7 @@ def tried(level: str, variant: str, steps: int) -> Record:
 def _begin(env: GameEnv, own: Level, rng: np.random.Generator, *, anywhere: bool) -> None:
     """Begin an episode at the start of the level, its ``own``, or anywhere on a floor where there is room."""
     from tltl_runtime.stealth.level import Start
-    from tltlc.record import replace
+    from tltlc.core.record import replace
 
     world = env.game.world
     world.level = own

@@ -76,8 +76,8 @@ def _keystrokes() -> Record:
     """Wall times from a change to the answer of a server in a process of its own, and CPU times of a bare parse."""
     from tests.lsp.client import Client
     from tests.lsp.test_speed import TEXT
+    from tltlc.core.source import SourceFile
     from tltlc.grammar.parser import parse
-    from tltlc.source import SourceFile
 
     with tempfile.TemporaryDirectory() as folder:
         client = Client()

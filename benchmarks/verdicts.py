@@ -20,7 +20,7 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 if TYPE_CHECKING:
     import numpy as np
 
-    from tltl_runtime.regression.verdict import Judgement
+    from tltl_runtime.regression.verdict.verdict import Judgement
 
 SECTION = "verdicts"
 
@@ -181,8 +181,8 @@ def drawn(scenario: Scenario, generator: np.random.Generator) -> tuple[list[Draw
 
 def judged(now: Sequence[Drawn], before: Sequence[Drawn], error: float) -> tuple[Judgement, int]:
     """The verdict, and after how many episodes it came."""
-    from tltl_runtime.regression.suite import LEAST_EPISODES, Thresholds
-    from tltl_runtime.regression.verdict import judge
+    from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
+    from tltl_runtime.regression.verdict.verdict import judge
 
     thresholds = Thresholds()
     for count in range(LEAST_EPISODES, len(now) + 1):
@@ -224,7 +224,7 @@ def _seldom(count: int, trials: int, probability: float) -> float:
 def _episodes(play: Play, generator: np.random.Generator) -> list[Drawn]:
     import numpy as np
 
-    from tltl_runtime.regression.suite import MOST_EPISODES
+    from tltl_runtime.regression.suite.suite import MOST_EPISODES
 
     count = MOST_EPISODES
     successes = generator.random(count) < play.rate

@@ -10,8 +10,8 @@ from typing import Final
 import click
 
 from docs_site.page import Page
-from tltlc.cli.command_line import OF_THE_RUNTIME, cli
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.interfaces.cli.command_line import OF_THE_RUNTIME, cli
 
 FOLDER: Final = "commands"
 

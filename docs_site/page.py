@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Final
 
-from tltlc.record import record
+from tltlc.core.record import record
 
 ROOT: Final = Path(__file__).parents[1]
 

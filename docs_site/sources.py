@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from docs_site.page import ROOT, Page
-from tltlc.files import read_source
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Declaration, LetDecl, ParamDecl, PredicateDecl, SignalDecl, SpecDecl
+from tltlc.io.files import read_source
 
 EXAMPLES: Final = "examples"
 LIBRARIES: Final = "stdlib_predicates"

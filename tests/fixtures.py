@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.resolve import spec
 
 

@@ -7,8 +7,8 @@ from unicodedata import normalize
 
 import pytest
 
-from tltlc.archive import Archive, inside, unpack
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.io.archive import Archive, inside, unpack
 
 ARCHIVE = Archive("the archive", damaged="make it again", elsewhere="unpack it elsewhere")
 OUTSIDE = ["../x", "a/../../x", "/x", "//x", "a//x", "..", ".", "", "a/..", "a/.", "./x", "a/", "x\0", "/"]
@@ -44,7 +44,7 @@ def test_two_entries_for_one_path_are_refused(names: tuple[str, str], tmp_path: 
 def test_names_that_are_one_on_some_file_systems_do_not_blame_the_archive(
     names: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tltlc.archive.inside", lambda folder, name, _: folder / normalize("NFC", name).lower())
+    monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, name, _: folder / normalize("NFC", name).lower())
     with pytest.raises(TltlError) as caught:
         unpack(tmp_path, [("other", b""), *((name, b"") for name in names)], ARCHIVE)
     (found,) = caught.value.diagnostics
@@ -60,7 +60,7 @@ def test_what_is_no_file_on_windows_is_refused_there(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
-    monkeypatch.setattr("tltlc.archive._IS_WINDOWS", True)
+    monkeypatch.setattr("tltlc.io.archive._IS_WINDOWS", True)
     with pytest.raises(TltlError) as caught:
         inside(tmp_path, name, ARCHIVE)
     (found,) = caught.value.diagnostics
@@ -69,7 +69,7 @@ def test_what_is_no_file_on_windows_is_refused_there(
 
 @pytest.mark.parametrize("name", ["console", "a.con", "com", "com10", "nu", "a/lpt.txt", ".x"])
 def test_plain_names_are_files_on_windows(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltlc.archive._IS_WINDOWS", True)
+    monkeypatch.setattr("tltlc.io.archive._IS_WINDOWS", True)
     assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
 
 

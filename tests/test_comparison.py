@@ -13,13 +13,13 @@ from tests.logic.strategies import formulas
 from tests.rabin.runs import compiled
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.compare import Trace, are_equivalent, is_included, less_is_left, separating
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import Trace, are_equivalent, is_included, less_is_left, separating
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.work import OutOfWork
 from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces, holds
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.work import OutOfWork
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=4)
 SAMPLES = [frozenset(names) for names in ((), ("a",), ("b",), ("a", "b"))]

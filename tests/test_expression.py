@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When, nodes
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
 
 
 def test_nodes_come_in_order_of_appearance() -> None:

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import pytest
 
-from tltlc.files import exists, is_dir, is_file, note_read, noted, read_source, stamp, walk, was_read
+from tltlc.io.files import exists, is_dir, is_file, note_read, noted, read_source, stamp, walk, was_read
 
 
 def test_what_is_there(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from tests.diff.test_breaking import needs_git, repository  # noqa: F401
 from tests.waiting import HANG_S
-from tltlc.interrupted import raise_if_interrupted
+from tltlc.io.child_interrupts import raise_if_interrupted
 
 ROOT = Path(__file__).parents[1]
 

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.json_text import JsonLimitError, load, loads
-from tltlc.limits import Limit
+from tltlc.io.json_text import JsonLimitError, load, loads
+from tltlc.io.limits import Limit
 from tltlc.pipeline import read_artefact
-from tltlc.source import SourceFile
 
 SMALL = Limit(size=100, values=10)
 

@@ -6,7 +6,7 @@ import pickle
 
 import pytest
 
-from tltlc.record import EMPTY, record, replace
+from tltlc.core.record import EMPTY, record, replace
 
 
 @record

@@ -10,8 +10,8 @@ import pytest
 
 from tests.waiting import HANG_S
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import COMMAND
-from tltlc.resources import OutOfTimeError, exhausted
+from tltlc.io.limits import COMMAND
+from tltlc.io.resources import OutOfTimeError, exhausted
 
 if sys.platform == "win32":
     pytest.skip("Windows bounds neither", allow_module_level=True)
@@ -29,7 +29,7 @@ def _run(*arguments: str, given: str = "") -> subprocess.CompletedProcess[str]:
 
 
 def _script(script: str) -> subprocess.CompletedProcess[str]:
-    head = "from tltlc.limits import Process\nfrom tltlc.resources import *\n"
+    head = "from tltlc.io.limits import Process\nfrom tltlc.io.resources import *\n"
     command = [sys.executable, "-c", head + script]
     return subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
 

@@ -11,19 +11,19 @@ from tests.soon import soon
     "code",
     [
         # A project file of blank lines, with one key that nothing knows.
-        "from tltlc.project import _place; from tltlc.source import SourceFile\n"
+        "from tltlc.io.project import _place; from tltlc.core.source import SourceFile\n"
         "_place(SourceFile('tltl.toml', '\\n' * 1_000_000 + 'librarys'), 'kez')",
         # A project file of many keys that nothing knows.
-        "from tltlc.project import _place; from tltlc.source import SourceFile\n"
+        "from tltlc.io.project import _place; from tltlc.core.source import SourceFile\n"
         "source = SourceFile('tltl.toml', ''.join(f'k{n}=1\\n' for n in range(100_000)))\n"
         "for n in range(100_000): assert _place(source, f'k{n}')",
         # A param whose value ends in what is no unit.
         "from tltlc.resolve.constants import override; assert override('1' * 1_000_000 + '!') is None",
         "from tltlc.resolve.constants import override; assert override('1' + ' ' * 1_000_000 + '!') is None",
         # An automaton of another tool, with a text that does not end.
-        "from tltlc.hoa.reader import _without_comments; from tltlc.source import SourceFile\n"
+        "from tltlc.tools.hoa.reader import _without_comments; from tltlc.core.source import SourceFile\n"
         "_without_comments(SourceFile('a.hoa', '\"' + '\\\\\"' * 2_000_000))",
-        "from tltlc.hoa.reader import _without_comments; from tltlc.source import SourceFile\n"
+        "from tltlc.tools.hoa.reader import _without_comments; from tltlc.core.source import SourceFile\n"
         "_without_comments(SourceFile('a.hoa', '\"' + '\\\\\"' * 2_000_000 + '\\\\'))",
     ],
     ids=["blank lines", "unknown keys", "digits", "blanks", "quotes", "quotes and a backslash"],

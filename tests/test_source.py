@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.source import SourceFile, Span
+from tltlc.core.source import SourceFile, Span
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"], ids=["LF", "CR LF", "CR"])

@@ -14,8 +14,8 @@ import pytest
 
 from tests.waiting import HANG_S
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.temporary import remove_abandoned, temporaries, temporary_folder
-from tltlc.writing import write_files
+from tltlc.io.temporary import remove_abandoned, temporaries, temporary_folder
+from tltlc.io.writing import write_files
 
 ROOT = Path(__file__).parents[1]
 
@@ -34,7 +34,7 @@ def told(path, target):
     Path.replace = replace
     return replace(path, target)
 Path.replace = told
-from tltlc.cli.main import main
+from tltlc.interfaces.cli.main import main
 main()
 """
 """Compiles, and waits for a line on standard input between writing its temporary files and renaming them."""
@@ -74,7 +74,7 @@ def test_a_signal_ends_a_command_in_order(number: signal.Signals, tmp_path: Path
 AT_THE_LOCK = """
 import os, signal, sys, time
 from pathlib import Path
-from tltlc import temporary
+from tltlc.io import temporary
 # The files are not renamed before the signal has been handled.
 Path.replace = lambda path, target: time.sleep(60)
 try_lock = temporary.try_lock
@@ -105,7 +105,7 @@ Path.replace, Path.unlink = first, second
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_at_a_bad_moment_leaves_no_file(number: signal.Signals, program: str, tmp_path: Path) -> None:
     (tmp_path / "specs.tltl").write_text(SPECS, encoding="utf-8")
-    script = program.format(name=number.name) + "from tltlc.cli.main import main\nmain()\n"
+    script = program.format(name=number.name) + "from tltlc.interfaces.cli.main import main\nmain()\n"
     command = [sys.executable, "-c", script, "compile", "specs.tltl", "-o", "out"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": ""}
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=HANG_S)
@@ -116,7 +116,7 @@ def test_a_signal_at_a_bad_moment_leaves_no_file(number: signal.Signals, program
 def test_the_next_folder_removes_that_of_a_killed_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     script = (
-        "import os\nfrom tltlc.temporary import temporary_folder\n"
+        "import os\nfrom tltlc.io.temporary import temporary_folder\n"
         "with temporary_folder() as folder:\n"
         "    (folder / 'a' / 'b').mkdir(parents=True)\n    (folder / 'a' / 'b' / 'c').touch()\n"
         "    os.kill(os.getpid(), 9)\n"
@@ -218,7 +218,7 @@ def test_a_file_system_without_locks_is_written_to_all_the_same(
 
 def test_a_lock_file_that_is_taken_away_is_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Another process may take a lock file for an abandoned one before it is locked."""
-    from tltlc import temporary as module
+    from tltlc.io import temporary as module
 
     attempts = []
 

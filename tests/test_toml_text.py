@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import TOML
-from tltlc.source import SourceFile
-from tltlc.toml_text import parse
+from tltlc.io.limits import TOML
+from tltlc.io.toml_text import parse
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.writing import remove_file, rewrite, write_file, write_files
+from tltlc.io.writing import remove_file, rewrite, write_file, write_files
 
 
 @pytest.fixture(name="done")
@@ -72,7 +72,7 @@ def test_what_a_killed_process_left_of_a_durable_file_is_removed(tmp_path: Path)
     killed = """
 import os, signal, sys
 from pathlib import Path
-from tltlc.writing import write_file
+from tltlc.io.writing import write_file
 os.fsync = lambda _: os.kill(os.getpid(), signal.SIGKILL)
 write_file(Path(sys.argv[1]), "newer", durable=True)
 """
@@ -90,7 +90,7 @@ write_file(Path(sys.argv[1]), "newer", durable=True)
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
 @pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1"])
 def test_a_pipe_is_written_by_the_name_of_its_descriptor(name: str) -> None:
-    code = "import sys, pathlib, tltlc.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'é')"
+    code = "import sys, pathlib, tltlc.io.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'é')"
     done = subprocess.run([sys.executable, "-c", code, name], capture_output=True, check=False)
     assert (done.returncode, done.stdout) == (0, "é".encode()), done.stderr
 
@@ -99,7 +99,7 @@ def test_a_pipe_is_written_by_the_name_of_its_descriptor(name: str) -> None:
 @pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/dev/stderr", "log"])
 @pytest.mark.parametrize("again", [False, True])
 def test_the_file_that_output_goes_to_keeps_what_others_write(tmp_path: Path, name: str, *, again: bool) -> None:
-    code = "import sys, pathlib, tltlc.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'new')"
+    code = "import sys, pathlib, tltlc.io.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'new')"
     log = tmp_path / "log"
     log.write_text("new" if again else "before, ")
     with log.open("ab") as file:

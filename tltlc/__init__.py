@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from tltlc.automaton.graph import to_networkx as to_networkx
     from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
     from tltlc.diagnostics.diagnostic import TltlError as TltlError
-    from tltlc.hoa.load import ImportOptions as ImportOptions
     from tltlc.logic.formula import Formula as Formula
     from tltlc.pipeline import CompileOptions as CompileOptions
     from tltlc.pipeline import compile_file as compile_file
     from tltlc.pipeline import compile_text as compile_text
     from tltlc.pipeline import load as load
-    from tltlc.pipeline import load_hoa as load_hoa
+    from tltlc.tools.hoa.load import ImportOptions as ImportOptions
+    from tltlc.tools.hoa.load import load_hoa as load_hoa
 
 __version__ = "0.1.0"
 
@@ -49,12 +49,12 @@ _HOMES = {
     "Diagnostic": "tltlc.diagnostics.diagnostic",
     "Formula": "tltlc.logic.formula",
     "Fspa": "tltlc.automaton.fspa",
-    "ImportOptions": "tltlc.hoa.load",
+    "ImportOptions": "tltlc.tools.hoa.load",
     "TltlError": "tltlc.diagnostics.diagnostic",
     "compile_file": "tltlc.pipeline",
     "compile_text": "tltlc.pipeline",
     "load": "tltlc.pipeline",
-    "load_hoa": "tltlc.pipeline",
+    "load_hoa": "tltlc.tools.hoa.load",
     "to_networkx": "tltlc.automaton.graph",
 }
 

@@ -1,7 +1,7 @@
 """``python -m tltlc``."""
 
 try:
-    from tltlc.cli.main import main
+    from tltlc.interfaces.cli.main import main
 
     main()
 except KeyboardInterrupt:

@@ -9,23 +9,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build
+from tltlc.core.record import EMPTY, record, replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
-from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.grammar.allow_index import unsilenced
 from tltlc.grammar.parser import parse
-from tltlc.grammar.silencing import unsilenced
-from tltlc.record import EMPTY, record, replace
+from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.io.resources import bounded
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolution
-from tltlc.resources import bounded
-from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
     import os
     from pathlib import Path
 
     from tltlc.automaton.fspa import Fspa
-    from tltlc.hoa.load import ImportOptions
     from tltlc.logic.formula import Formula
     from tltlc.resolve.spec import Program, Spec
 
@@ -91,7 +90,7 @@ def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[
     """The automaton of a spec, or None and the errors why not; with warnings."""
     try:
         if spec.semantics == "infinite":
-            from tltlc.rabin.build import build_infinite
+            from tltlc.automaton.infinite.build import build_infinite
 
             fspa = build_infinite(spec, state_budget=options.state_budget)
         else:
@@ -185,34 +184,6 @@ def read_artefact(source: SourceFile) -> Fspa:
     return read(source.text, source.name)
 
 
-@bounded()
-def load_hoa(
-    path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
-) -> Fspa:
-    """The automaton of a HOA file whose atomic propositions are predicates of the library ``predicates``.
-
-    Errors: :class:`TltlError` where one of the files cannot be read, the automaton is not deterministic or not
-    complete, or a proposition is no predicate.
-
-    >>> import tltlc, tempfile, pathlib
-    >>> from tltlc.backends import emit
-    >>> text = "signal a: bool  spec again { semantics infinite  require G F a }"
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     library, file = pathlib.Path(folder, "again.tltl"), pathlib.Path(folder, "again.hoa")
-    ...     _ = library.write_text(text)
-    ...     _ = file.write_text(emit("hoa", *tltlc.compile_file(library))["again.hoa"])
-    ...     fspa = tltlc.load_hoa(file, library)
-    >>> len(fspa.states), len(fspa.acceptance)
-    (1, 1)
-    """
-    from tltlc.hoa.load import ImportOptions
-    from tltlc.hoa.load import load as load_automaton
-
-    source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
-    fspa, _ = load_automaton(source, read_source(predicates), options or ImportOptions())
-    return fspa
-
-
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
     """The automaton with other values of its params, as written (``{"level_size": "30 m"}``).
 
@@ -247,12 +218,12 @@ def _recurs(formula: Formula) -> bool:
 
 def _unsatisfiable(spec: Spec) -> Diagnostic:
     """The warning that no trace satisfies a spec, with the parts that are to blame."""
-    from tltlc.automaton.contradiction import contradiction, unsatisfiable
+    from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
 
     endless = spec.semantics == "infinite"
     decision = unsatisfiable
     if endless:
-        from tltlc.rabin import contradiction as over_infinite_traces
+        from tltlc.automaton.infinite import contradiction as over_infinite_traces
 
         decision = over_infinite_traces.unsatisfiable
     parts = contradiction(spec, decision)

@@ -15,7 +15,7 @@ from benchmarks.specs import source
 from benchmarks.store import ROOT
 from tltlc import compile_file
 from tltlc.backends import emit
-from tltlc.record import record
+from tltlc.core.record import record
 
 LONGEST_BUILD_S: Final = 120.0
 DRIVERS: Final = ROOT / "benchmarks/engines/drivers"

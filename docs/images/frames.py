@@ -9,7 +9,7 @@ from PIL import Image
 
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.pictures.render import Renderer
+from tltl_runtime.stealth.rendering.render import Renderer
 
 SIZE = (640, 360)
 MOMENTS = {

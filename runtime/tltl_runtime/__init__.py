@@ -9,16 +9,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tltl_runtime.task import Task as Task
-    from tltl_runtime.task import load_task as load_task
-    from tltl_runtime.wrapper import TltlEnv as TltlEnv
+    from tltl_runtime.spec.task import Task as Task
+    from tltl_runtime.spec.task import load_task as load_task
+    from tltl_runtime.spec.wrapper import TltlEnv as TltlEnv
 
 __all__ = ["Task", "TltlEnv", "load_task"]
 
 _HOMES = {
-    "Task": "tltl_runtime.task",
-    "TltlEnv": "tltl_runtime.wrapper",
-    "load_task": "tltl_runtime.task",
+    "Task": "tltl_runtime.spec.task",
+    "TltlEnv": "tltl_runtime.spec.wrapper",
+    "load_task": "tltl_runtime.spec.task",
 }
 
 

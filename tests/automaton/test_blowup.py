@@ -9,14 +9,14 @@ import pytest
 
 from tests.automaton.test_bounds import within
 from tests.reference_formulas import read_formula
-from tltlc.automaton import blowup
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite import blowup
+from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.core.record import replace
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import WORK
+from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, next_, until, weak_next
-from tltlc.record import replace
 from tltlc.resolve.spec import Part, Spec
-from tltlc.source import Span
 
 
 def with_parts(*formulas: Formula) -> Spec:

@@ -9,15 +9,15 @@ import pytest
 
 import tltlc
 from tltlc.automaton.diagrams import Diagrams
+from tltlc.automaton.finite.readback import Writer
+from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.successors import Successors
-from tltlc.automaton.written import Writer
+from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.infinite.work import Work
 from tltlc.logic import formula as f
 from tltlc.logic.bounded import counted_down
 from tltlc.logic.formula import Formula
-from tltlc.rabin.after import After
-from tltlc.rabin.letters import Letters
-from tltlc.rabin.work import Work
 
 A, B = f.atom("a"), f.atom("b")
 

@@ -12,20 +12,20 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import state_formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton import build as build_module
-from tltlc.automaton import composition
-from tltlc.automaton.build import allowed_letters, build, spec_from_formula
 from tltlc.automaton.diagrams import Diagrams
+from tltlc.automaton.finite import build as build_module
+from tltlc.automaton.finite import composition
+from tltlc.automaton.finite.build import allowed_letters, build, spec_from_formula
+from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.successors import Successors
+from tltlc.automaton.infinite.build import build_infinite
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.limits import WORK
+from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, iff, next_, or_
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.oracle import holds
 from tltlc.monitor.guards import holds as guard_holds
-from tltlc.rabin.build import build_infinite
-from tltlc.record import replace
 from tltlc.resolve.spec import Spec
 
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.automaton.letters import holds, letters, minimal_size, named, run, table, traces
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula
@@ -162,7 +162,7 @@ def test_equal_input_gives_equal_output(formula: Formula) -> None:
 def test_output_does_not_depend_on_the_order_of_hashes() -> None:
     program = """
 from tests.reference_formulas import corpus
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 small = [entry.formula for entry in corpus() if entry.states is not None and entry.states <= 12]
 print([build(spec_from_formula(formula)) for formula in small])
 """

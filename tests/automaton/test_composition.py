@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton import composition
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite import composition
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.logic.formula import Formula, and_, or_
 

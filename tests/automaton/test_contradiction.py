@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton.build import build, spec_from_formula
-from tltlc.automaton.contradiction import contradiction
+from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.automaton.finite.contradiction import contradiction
+from tltlc.core.record import replace
 from tltlc.logic.formula import Formula, and_
-from tltlc.record import replace
 from tltlc.resolve.spec import Part, Spec
 
 

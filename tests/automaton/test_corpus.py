@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.reference_formulas import Entry, corpus
-from tltlc.automaton.build import build, minimal_machine, spec_from_formula, state_leaves
+from tltlc.automaton.finite.build import build, minimal_machine, spec_from_formula, state_leaves
 
 CORPUS = list(corpus())
 SMALL = [entry for entry in CORPUS if entry.states is not None and entry.states <= 40]

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from tests.automaton.test_budgets import any_order, names, refusal
 from tests.logic.strategies import formulas
-from tltlc.automaton import composition
-from tltlc.automaton.build import allowed_letters, build, minimal_machine, spec_from_formula
-from tltlc.automaton.composition import _Composition
 from tltlc.automaton.diagrams import Diagrams
-from tltlc.automaton.estimate import Estimate
-from tltlc.automaton.machine import Machine
-from tltlc.automaton.successors import Successors
-from tltlc.limits import WORK
+from tltlc.automaton.finite import composition
+from tltlc.automaton.finite.build import allowed_letters, build, minimal_machine, spec_from_formula
+from tltlc.automaton.finite.composition import _Composition
+from tltlc.automaton.finite.estimate import Estimate
+from tltlc.automaton.finite.machine import Machine
+from tltlc.automaton.finite.successors import Successors
+from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, always, and_, atom, eventually, next_, not_, or_
 from tltlc.logic.normal_form import negation_normal_form
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import state_formulas
 from tltlc.automaton import guards
-from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Guard
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic import oracle

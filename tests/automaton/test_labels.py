@@ -8,7 +8,7 @@ import pytest
 
 from tests.calls import calls
 from tests.resolve.helpers import only
-from tltlc.automaton.build import build
+from tltlc.automaton.finite.build import build
 from tltlc.resolve.spec import Spec
 
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from tests.automaton.test_composition import _isomorphic
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton import build as build_module
-from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.diagrams import Diagrams
-from tltlc.automaton.order import better_order, reordered, restored
-from tltlc.limits import WORK
+from tltlc.automaton.finite import build as build_module
+from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.automaton.finite.order import better_order, reordered, restored
+from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, iff, or_
 from tltlc.resolve.spec import Spec
 

@@ -10,12 +10,12 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, settings
 
 from tests.conformance.runner import Outcome, Runner, built
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.expression import Expression
+from tltlc.core.record import replace
+from tltlc.expression.tree import Expression
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, MonitorError
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 HEADER = ["step", "state", "verdict", "accepting", "done", "progress", "reward", "robustness", "limiting"]

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 
 from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, Guard, Text
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
-from tltlc.rabin.build import build_infinite
-from tltlc.record import replace
+from tltlc.automaton.infinite.build import build_infinite
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.resolve import spec
 
 HOSTILE = (

@@ -21,16 +21,16 @@ from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.conformance.runners.c import CPP, RUNNERS, SANITIZED, C, linked
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
-from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.conformance.corpus import CASES
-from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.record import replace
 from tltlc.resolve import spec
+from tltlc.tools.conformance.corpus import CASES
 
 COMPILERS = {"gcc": C, "g++": CPP}
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wfloat-conversion", "-Werror")

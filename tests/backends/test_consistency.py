@@ -12,11 +12,11 @@ from tests.backends.strategies import automata, infinite_automata
 from tests.calls import calls
 from tests.fixtures import cover_and_hide
 from tltlc import compile_text
+from tltlc.artefact import consistency, guards
+from tltlc.artefact.consistency import problems
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State
-from tltlc.backends.artefact import consistency, guards
-from tltlc.backends.artefact.consistency import problems
-from tltlc.expression import Param, Signal
-from tltlc.record import replace
+from tltlc.core.record import replace
+from tltlc.expression.tree import Param, Signal
 
 SAFE = Guard("alive", (((3, True),),))
 

@@ -22,13 +22,13 @@ from tests.conformance.runner import Outcome
 from tests.conformance.runners.csharp import RUNNERS, STRICT
 from tests.fixtures import cover_and_hide
 from tests.waiting import HANG_S
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.expression import Const, Op, Signal
+from tltlc.core.record import replace
+from tltlc.expression.tree import Const, Op, Signal
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 pytestmark = pytest.mark.skipif(not (shutil.which("mcs") and shutil.which("mono")), reason="there is no Mono here")

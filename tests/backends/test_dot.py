@@ -15,7 +15,7 @@ from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
 from tltlc.backends.drawing.folding import marked
 from tltlc.backends.drawing.texts import Guards, arrows, visible, wrapped
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 def emitted(fspa: Fspa, options: Options | None = None) -> str:

@@ -13,7 +13,7 @@ from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends import Options
 from tltlc.backends.dot import graph
 from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, folded, marked, span, whole
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 def automaton(formula: str) -> Fspa:

@@ -30,19 +30,19 @@ from tests.conformance.runners.gdscript3 import RUNNERS
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
 from tests.waiting import HANG_S
-from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit, gdscript, gdscript3
 from tltlc.backends.godot import source
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import number
-from tltlc.conformance.corpus import CASES
-from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.record import replace
 from tltlc.resolve import spec
+from tltlc.tools.conformance.corpus import CASES
 
 GDPARSE = os.environ.get("GDPARSE") or shutil.which("gdparse")
 

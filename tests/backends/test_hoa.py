@@ -12,17 +12,17 @@ from tests.backends.strategies import EXCLUSIVE, automata, hostile_automata, hos
 from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
 from tltlc import __version__, backends, compile_text
-from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.diagrams import Diagrams
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
+from tltlc.automaton.infinite.build import build_infinite
+from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.backends import hoa
 from tltlc.backends.drawing.texts import visible
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import Limit
+from tltlc.io.limits import Limit
 from tltlc.logic import oracle
-from tltlc.rabin.build import build_infinite
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.record import replace
 from tltlc.resolve.spec import Spec
 
 INFINITE = """
@@ -295,9 +295,9 @@ def test_the_reader_knows_what_a_lasso_is() -> None:
 def test_a_file_that_could_not_be_imported_again_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     (text,) = backends.emit("hoa", cover_and_hide()).values()
     assert isinstance(text, str)
-    monkeypatch.setattr("tltlc.backends.artefact.size.ARTEFACT", Limit(len(text.encode())))
+    monkeypatch.setattr("tltlc.artefact.size.ARTEFACT", Limit(len(text.encode())))
     assert backends.emit("hoa", cover_and_hide()) == {"cover_and_hide.hoa": text}
-    monkeypatch.setattr("tltlc.backends.artefact.size.ARTEFACT", Limit(len(text.encode()) - 1))
+    monkeypatch.setattr("tltlc.artefact.size.ARTEFACT", Limit(len(text.encode()) - 1))
     with pytest.raises(TltlError) as caught:
         backends.emit("hoa", cover_and_hide())
     assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]

@@ -19,15 +19,15 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from tests.backends.monitors import FAR
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.conformance.corpus import CASES
-from tltlc.expression import Const, Op, Signal
+from tltlc.core.record import replace
+from tltlc.expression.tree import Const, Op, Signal
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.record import replace
 from tltlc.resolve import spec
+from tltlc.tools.conformance.corpus import CASES
 
 TSC = os.environ.get("TSC") or shutil.which("tsc")
 ESBUILD = os.environ.get("ESBUILD") or shutil.which("esbuild")

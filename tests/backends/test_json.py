@@ -12,18 +12,18 @@ from hypothesis import strategies as st
 from tests.backends.strategies import automata, expressions, finite, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends
+from tltlc.artefact import size as sizes
+from tltlc.artefact.encode import encode
+from tltlc.artefact.layout import WIDTH, layout
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.artefact import size as sizes
-from tltlc.backends.artefact.encode import encode
-from tltlc.backends.artefact.layout import WIDTH, layout
 from tltlc.backends.json import read
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.diff.relation import different_atoms
-from tltlc.expression import Condition, Const, Expression, Op, Signal, When
-from tltlc.expression_python import compile_expressions
-from tltlc.limits import ARITHMETIC, Limit
-from tltlc.record import replace
+from tltlc.expression.python import compile_expressions
+from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
+from tltlc.io.limits import ARITHMETIC, Limit
 from tltlc.resolve.spec import Atom
+from tltlc.tools.diff.relation import different_atoms
 
 
 def emitted(fspa: Fspa) -> str:

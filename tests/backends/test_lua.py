@@ -15,14 +15,14 @@ from tests.backends.monitors import FAR
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_javascript import NAMES, Outcome, awkward, printed, rows, trace_of
 from tests.fixtures import cover_and_hide
-from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 INTERPRETERS = tuple(name for name in ("lua5.1", "lua5.4", "luajit") if shutil.which(name))

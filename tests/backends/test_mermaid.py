@@ -9,7 +9,7 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.drawing.shown import shown
+from tltlc.backends.drawing.picture_content import shown
 from tltlc.backends.drawing.texts import arrows, visible
 
 STATE = re.compile(r'    state "([^"]*)" as s(\d+)')

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from tests.backends.strategies import hostile_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Options
 from tltlc.backends.drawing import layout

@@ -8,8 +8,8 @@ import pytest
 
 from tests.fixtures import cover_and_hide
 from tltlc import backends
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 
 @pytest.mark.parametrize("name", backends.targets())

@@ -10,10 +10,10 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.backends.test_folding import automaton, chains, counting, endless
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.fspa import Edge, Fspa, Guard
+from tltlc.backends.drawing.counting_states import folded_in_step
 from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, marked
-from tltlc.backends.drawing.rungs import folded_in_step
-from tltlc.backends.drawing.shown import notes, shown
-from tltlc.record import replace
+from tltlc.backends.drawing.picture_content import notes, shown
+from tltlc.core.record import replace
 
 IN_STEP = (
     "F[0,{n}] a & F[0,{m}] b",

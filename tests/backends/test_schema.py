@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from tests.backends.strategies import automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import compile_text
+from tltlc.artefact.encode import encode
+from tltlc.artefact.errors import JsonSchemaValueException
+from tltlc.artefact.generate import FOLDER, validator_source
+from tltlc.artefact.schema_messages import worded
+from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.artefact.encode import encode
-from tltlc.backends.artefact.errors import JsonSchemaValueException
-from tltlc.backends.artefact.generate import FOLDER, validator_source
-from tltlc.backends.artefact.validator import validate
-from tltlc.backends.artefact.wording import worded
 
 SCHEMA = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
 REFERENCE = jsonschema.Draft7Validator(SCHEMA)

@@ -115,7 +115,7 @@ def test_settings_of_the_plan_and_of_an_ablation_come_together() -> None:
 def test_the_settings_of_an_ablation_are_ones_that_a_training_takes(name: str, tmp_path: Path) -> None:
     for package in training.NEEDED:
         pytest.importorskip(package)
-    from tltl_runtime.training.settings import read_settings
+    from tltl_runtime.training.run.settings import read_settings
 
     ablation = training.ABLATIONS[name]
     (tmp_path / "settings.toml").write_text(training.settings_text(training.QUICK.settings, ablation.settings))

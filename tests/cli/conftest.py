@@ -37,7 +37,7 @@ def tltlc(capfd: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
     """Run a command line in this process."""
 
     def run(*arguments: str | Path) -> Outcome:
-        from tltlc.cli.main import main
+        from tltlc.interfaces.cli.main import main
 
         capfd.readouterr()
         with pytest.raises(SystemExit) as exit_:

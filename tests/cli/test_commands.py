@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tltlc.cli.command_line import BUILT_IN
 from tltlc.diagnostics.codes import codes
+from tltlc.interfaces.cli.command_line import BUILT_IN
 
 
 @pytest.mark.parametrize("command", BUILT_IN)

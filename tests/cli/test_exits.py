@@ -11,7 +11,7 @@ import pytest
 
 from tests.cli.conftest import EXAMPLE, HIDE, ROOT
 from tests.waiting import HANG_S, until_it_reads
-from tltlc.cli import exits
+from tltlc.interfaces.cli import exits
 
 
 def test_clean_and_warnings_are_0(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

@@ -11,8 +11,8 @@ import pytest
 
 from tests import pipes
 from tests.cli.conftest import HIDE, Outcome
-from tltlc.cli.folders import below
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.interfaces.cli.folders import below
 from tltlc.pipeline import load
 
 Command = Callable[..., Outcome]

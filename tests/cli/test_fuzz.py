@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.calls import calls
 from tests.cli.conftest import ROOT
-from tltlc.cli.main import main
+from tltlc.interfaces.cli.main import main
 
 SPECS = [path.read_text() for path in sorted([*ROOT.glob("examples/*.tltl"), *ROOT.glob("stdlib_predicates/*.tltl")])]
 WORDS_OF_THE_LANGUAGE = (

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import HIDE, Outcome
-from tltlc.spec_file import split
+from tltlc.io.spec_file import split
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ except BaseException:
 
 
 def _started(folder: Path, script: str) -> subprocess.Popen[str]:
-    script = f"from tltlc.cli.interrupts import signals_end\n{script}"
+    script = f"from tltlc.interfaces.cli.interrupts import signals_end\n{script}"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
     return subprocess.Popen([sys.executable, "-c", script], env=environment, stdout=-1, stderr=-1, text=True)
 
@@ -84,7 +84,7 @@ def test_what_is_ignored_stays_ignored(tmp_path: Path) -> None:
 
 def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
     script = (
-        "import time\nfrom tltlc.cli import command_line, main\n"
+        "import time\nfrom tltlc.interfaces.cli import command_line, main\n"
         "def broken(*_):\n"
         "    print('works', flush=True)\n"
         "    try:\n        time.sleep(60)\n"
@@ -99,7 +99,7 @@ def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_signal_behind_the_command_gives_its_own_status(name: str, tmp_path: Path) -> None:
     script = (
-        "import signal, sys\nfrom tltlc.cli import interrupts, main\n"
+        "import signal, sys\nfrom tltlc.interfaces.cli import interrupts, main\n"
         "stop = interrupts._stop_listening\n"
         "def stop_late():\n"
         "    interrupts._stop_listening = stop\n"

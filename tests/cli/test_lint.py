@@ -10,9 +10,9 @@ import pytest
 
 from tests.calls import calls
 from tests.cli.conftest import ROOT, Outcome
-from tltlc.lint.run import lint
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.lint.run import lint
 
 Command = Callable[..., Outcome]
 

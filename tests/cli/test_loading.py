@@ -24,7 +24,7 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
         "import sys, atexit\n"
         "atexit.register(lambda: sys.stdout.write('\\nMODULES ' + ' '.join(sys.modules)))\n"
         f"sys.path.insert(0, {str(ROOT)!r})\n"
-        "from tltlc.cli.main import main\n"
+        "from tltlc.interfaces.cli.main import main\n"
         "main(sys.argv[1:])\n"
     )
     done = subprocess.run(
@@ -63,40 +63,44 @@ def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Pa
 
 def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
     def rabin(*arguments: str | Path) -> set[str]:
-        return {name for name in loaded(*arguments, folder=tmp_path) if name.startswith("tltlc.rabin")}
+        return {name for name in loaded(*arguments, folder=tmp_path) if name.startswith("tltlc.automaton.infinite")}
 
     assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
     assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
-    assert rabin("explain", EXAMPLE) == {"tltlc.rabin", "tltlc.rabin.work"}
+    assert rabin("explain", EXAMPLE) == {"tltlc.automaton.infinite", "tltlc.automaton.infinite.work"}
     # Strongly connected components are the same for every graph.
-    assert rabin("witness", EXAMPLE) == {"tltlc.rabin", "tltlc.rabin.work", "tltlc.rabin.graphs"}
+    assert rabin("witness", EXAMPLE) == {
+        "tltlc.automaton.infinite",
+        "tltlc.automaton.infinite.work",
+        "tltlc.automaton.infinite.graphs",
+    }
     endless = tmp_path / "again.tltl"
     endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
-    assert "tltlc.rabin.construct" in rabin("compile", endless, "-t", "json")
+    assert "tltlc.automaton.infinite.construct" in rabin("compile", endless, "-t", "json")
     # What an artefact says is checked, and nothing constructed.
-    assert "tltlc.rabin.cycles" in rabin("compile", "again.fspa.json", "-t", "mermaid")
-    assert "tltlc.rabin.construct" not in rabin("compile", "again.fspa.json", "-t", "mermaid")
+    assert "tltlc.automaton.infinite.cycles" in rabin("compile", "again.fspa.json", "-t", "mermaid")
+    assert "tltlc.automaton.infinite.construct" not in rabin("compile", "again.fspa.json", "-t", "mermaid")
 
 
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
     modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
     line = {
         "tltlc",
-        "tltlc.cli",
-        "tltlc.cli.main",
-        "tltlc.cli.command_line",
-        "tltlc.cli.exits",
-        "tltlc.cli.interrupts",
-        "tltlc.cli.numbers",
-        "tltlc.cli.plugins",
+        "tltlc.interfaces.cli",
+        "tltlc.interfaces.cli.main",
+        "tltlc.interfaces.cli.command_line",
+        "tltlc.interfaces.cli.exits",
+        "tltlc.interfaces.cli.interrupts",
+        "tltlc.interfaces.cli.numbers",
+        "tltlc.interfaces.cli.plugins",
     }
     shared = {
-        "tltlc.limits",
-        "tltlc.resources",
+        "tltlc.io.limits",
+        "tltlc.io.resources",
         "tltlc.diagnostics",
         "tltlc.diagnostics.diagnostic",
-        "tltlc.record",
-        "tltlc.source",
+        "tltlc.core.record",
+        "tltlc.core.source",
     }
     assert modules <= line | shared
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.cli.conftest import Outcome
 from tests.cli.test_paths import commands
-from tltlc.cli.numbers import LARGEST, FiniteRange, WholeRange
+from tltlc.interfaces.cli.numbers import LARGEST, FiniteRange, WholeRange
 
 LARGE = ("9" * 20, "1" + "0" * 400, "9" * 5000, "-" + "9" * 5000, "+" + "9" * 30)
 

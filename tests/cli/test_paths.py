@@ -10,8 +10,8 @@ import click
 import pytest
 
 from tests.cli.conftest import EXAMPLE
-from tltlc.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
-from tltlc.cli.paths import OutputPath
+from tltlc.interfaces.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
+from tltlc.interfaces.cli.paths import OutputPath
 
 READ: Final = {"library", "pyodide", "resume", "config", "demonstrations", "policy", "suite", "baseline", "libraries"}
 """Parameters whose paths are read."""
@@ -27,7 +27,7 @@ def commands() -> Iterator[tuple[str, click.Command]]:
         assert command is not None
         yield name, command
     try:
-        from tltl_runtime.commands.levels import command as levels
+        from tltl_runtime.cli.support.levels import command as levels
     except ModuleNotFoundError:
         return
     yield "check --level", levels

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import ROOT
-from tltlc.cli.command_line import OF_THE_RUNTIME
+from tltlc.interfaces.cli.command_line import OF_THE_RUNTIME
 
 if sys.version_info >= (3, 11):
     import tomllib as tomli

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tests.cli.conftest import EXAMPLE, Outcome
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.project import Project, project_for, read_project
+from tltlc.io.project import Project, project_for, read_project
 
 
 def test_no_project(inside: Path) -> None:

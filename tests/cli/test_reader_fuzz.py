@@ -16,21 +16,21 @@ import tltlc
 from tests.cli.conftest import ROOT
 from tests.fuzzing import NUMBERS, PIECES, SEEDS, VALUES, check, mutated_bytes, mutated_json, mutated_text, times
 from tltlc.backends import emit
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.hoa.load import ImportOptions
-from tltlc.hoa.load import load as load_hoa
-from tltlc.json_text import loads
-from tltlc.limits import ARTEFACT
-from tltlc.mine.gathering import gathered
-from tltlc.mine.reading import TraceFile
+from tltlc.interfaces.playground.protocol import RequestError, answer
+from tltlc.io.json_text import loads
+from tltlc.io.limits import ARTEFACT
+from tltlc.io.project import read_project
 from tltlc.monitor import Monitor
 from tltlc.monitor.run import outcome, run
 from tltlc.monitor.traces import read_trace
 from tltlc.pipeline import CompileOptions, compile_source, read_artefact
-from tltlc.playground.protocol import RequestError, answer
-from tltlc.project import read_project
 from tltlc.resolve.options import ResolveOptions
-from tltlc.source import SourceFile
+from tltlc.tools.hoa.load import ImportOptions
+from tltlc.tools.hoa.load import load as load_hoa
+from tltlc.tools.mine.evidence_reader import gathered
+from tltlc.tools.mine.reading import TraceFile
 
 LIBRARY: Final = SourceFile(
     "library.tltl",

@@ -7,7 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from tests.cli.conftest import ROOT
-from tltlc.cli.command_line import BUILT_IN
+from tltlc.interfaces.cli.command_line import BUILT_IN
 
 README = (ROOT / "README.md").read_text()
 

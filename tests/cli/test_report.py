@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from io import StringIO
 
-from tltlc.cli.report import show
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.source import SourceFile, Span
+from tltlc.interfaces.cli.report import show
 
 
 def found(code: str, count: int, file: str = "a.toml") -> list[Diagnostic]:

@@ -50,7 +50,7 @@ atexit.register(lambda: os.getpid() == main and tell())
 sys.addaudithook(copies)
 """
 
-SCRIPT = "import re, sys; from tltlc.cli.main import main; sys.exit(main())"
+SCRIPT = "import re, sys; from tltlc.interfaces.cli.main import main; sys.exit(main())"
 """What the installed command `tltlc` holds."""
 
 
@@ -87,4 +87,4 @@ def test_an_interrupt_at_the_start_shows_no_traceback_of_ours(how: tuple[str, st
     assert {(status, bool(said)) for status, said in rest} == {(130, False), (130, True), (0, True)}
     # Up to there, only the modules of the entry point are loaded.
     before = [what for _, event, what, _ in ends[:first] if event == "import" and what.startswith("tltlc")]
-    assert set(before) <= {"tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.__main__"}
+    assert set(before) <= {"tltlc", "tltlc.interfaces.cli", "tltlc.interfaces.cli.main", "tltlc.__main__"}

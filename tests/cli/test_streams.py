@@ -17,7 +17,7 @@ import pytest
 
 from tests.cli.conftest import ROOT
 from tests.waiting import HANG_S
-from tltlc.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
+from tltlc.interfaces.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descriptors that a shell closes")
 

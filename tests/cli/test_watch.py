@@ -157,8 +157,8 @@ def test_what_cannot_be_mended_by_a_change_ends_it(process, inside: Path) -> Non
 def test_a_file_that_changes_all_the_time_is_compiled_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tltlc import files
-    from tltlc.cli import watching
+    from tltlc.interfaces.cli import watching
+    from tltlc.io import files
 
     log, looks, worked = tmp_path / "log.tltl", [], []
 

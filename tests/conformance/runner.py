@@ -13,9 +13,9 @@ from pathlib import Path
 from tests.waiting import HANG_S
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
-from tltlc.conformance.check import differences
-from tltlc.conformance.expected import COLUMNS, Expected
-from tltlc.record import record
+from tltlc.core.record import record
+from tltlc.tools.conformance.check import differences
+from tltlc.tools.conformance.expected import COLUMNS, Expected
 
 LONGEST_BUILD_S = LONGEST_RUN_S = HANG_S
 

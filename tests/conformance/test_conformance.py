@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from tests.conformance.runner import Outcome, Runner, build, built, problems, ran, runners, write
-from tltlc.conformance.case import Case
-from tltlc.conformance.corpus import CASES, is_exact
-from tltlc.conformance.expected import Expected, expected
+from tltlc.tools.conformance.case import Case
+from tltlc.tools.conformance.corpus import CASES, is_exact
+from tltlc.tools.conformance.expected import Expected, expected
 
 ALONE = ("by_zero", "exclusive_many", "names_of_code")
 """Cases whose programs are built, and started for each trace, as a person does it; ``test_programs`` has one more."""

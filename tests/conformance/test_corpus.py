@@ -17,16 +17,16 @@ import pytest
 from tests.cli.conftest import ROOT
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.conformance import borders
-from tltlc.conformance.corpus import CASES, files
-from tltlc.conformance.draw import Draw
-from tltlc.conformance.expected import COLUMNS, Kind
-from tltlc.expression import ArithmeticOp, Condition, ConditionOp, Const, Op, Param, When, nodes
+from tltlc.core.source import SourceFile
+from tltlc.expression.tree import ArithmeticOp, Condition, ConditionOp, Const, Op, Param, When, nodes
+from tltlc.io.writing import write_files
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
 from tltlc.pipeline import CompileOptions, compile_text, read_artefact
-from tltlc.source import SourceFile
-from tltlc.writing import write_files
+from tltlc.tools.conformance import borders
+from tltlc.tools.conformance.corpus import CASES, files
+from tltlc.tools.conformance.draw import Draw
+from tltlc.tools.conformance.expected import COLUMNS, Kind
 
 FLAGS = ("true", "false")
 

@@ -10,9 +10,9 @@ from tests.conformance.runner import Runner, built, runners
 from tests.conformance.runner import problems as differences
 from tests.monitor.odd_bytes import csv_traces
 from tltlc.automaton.fspa import Fspa
-from tltlc.conformance.corpus import CASES
-from tltlc.conformance.expected import expected
-from tltlc.conformance.odd_traces import CELLS, LINES, MORE_VALUES, VALUES
+from tltlc.tools.conformance.corpus import CASES
+from tltlc.tools.conformance.expected import expected
+from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, VALUES
 
 NAME = "trace_values"
 # C++ is the program of C again, and Godot takes long to read a megabyte.

@@ -16,9 +16,9 @@ import pytest
 
 from tests.backends.monitors import FAR, HEAD, expected, trace_of
 from tests.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, built, runners, write
-from tltlc.conformance.case import Case
-from tltlc.conformance.corpus import CASES
-from tltlc.limits import TRACE_LINE
+from tltlc.io.limits import TRACE_LINE
+from tltlc.tools.conformance.case import Case
+from tltlc.tools.conformance.corpus import CASES
 
 NAME = "cover_and_hide"
 ROW_BYTES = TRACE_LINE.size

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from tests.conformance.runner import Runner, built, problems, ran, runners
-from tltlc.automaton.build import build, spec_from_formula
-from tltlc.conformance.expected import COLUMNS, Expected, Refusal
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.logic import formula as f
+from tltlc.tools.conformance.expected import COLUMNS, Expected, Refusal
 
 RIGHT = ("1", "0", "pending", "false", "false", "0.10000000000000001", "0", "0.5", "a, b")
 HEADER = ",".join(COLUMNS)

@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.diagnostics.formats.text import columns
 from tltlc.diagnostics.render import FORMATS, render
-from tltlc.source import SourceFile, Span
 
 
 def diagnostic(text: str, marked: str, message: str = "", **more: object) -> Diagnostic:

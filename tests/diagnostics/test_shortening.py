@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.diagnostics.render import FORMATS, render
 from tltlc.diagnostics.shortening import LONGEST_QUOTE, LONGEST_TEXT, short_text
-from tltlc.source import SourceFile, Span
 
 LONG = "a" * (3 << 20)
 

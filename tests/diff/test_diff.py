@@ -18,16 +18,16 @@ from tests.calls import calls
 from tests.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
 from tests.logic.strategies import formulas
 from tltlc import TltlError, compile_text
-from tltlc.diff.document import document
-from tltlc.diff.pairs import FileDiff, diff, diff_files
-from tltlc.diff.text import text
-from tltlc.diff.traces import block, told
+from tltlc.core.source import SourceFile
+from tltlc.io.spec_file import STDIN_NAME
 from tltlc.logic.formula import Formula
-from tltlc.logic.notation import ASCII, write
+from tltlc.logic.text.notation import ASCII, write
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
-from tltlc.spec_file import STDIN_NAME
+from tltlc.tools.diff.diff_json import document
+from tltlc.tools.diff.pairs import FileDiff, diff, diff_files
+from tltlc.tools.diff.text import text
+from tltlc.tools.diff.traces import block, told
 
 GOLDEN = Path(__file__).parent / "golden"
 CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())

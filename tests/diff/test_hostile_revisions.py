@@ -12,8 +12,8 @@ import pytest
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.diff.test_breaking import git, needs_git, repository  # noqa: F401
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.diff import git as revisions
-from tltlc.limits import Limit
+from tltlc.io.limits import Limit
+from tltlc.tools.diff import git as revisions
 
 Run = Callable[..., Outcome]
 
@@ -101,7 +101,7 @@ def test_names_that_differ_in_capitals_have_a_help_that_is_right(
     """A file system that ignores case, as macOS and Windows have it: the revision is a sound one."""
     blob = stored("blob", b"")
     name = revision("capitals", tree((PLAIN, b"Leave.tltl", blob), (PLAIN, b"leave.tltl", blob)))
-    monkeypatch.setattr("tltlc.archive.inside", lambda folder, path, archive: folder / path.lower())
+    monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, path, archive: folder / path.lower())
     done = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert done.status == 3
     assert done.err == (

@@ -10,18 +10,18 @@ from hypothesis import given, settings
 from tests.logic.strategies import formulas
 from tests.rabin.runs import compiled
 from tltlc import compile_text
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.compare import Letter, Trace, is_included
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import Letter, Trace, is_included
-from tltlc.diff.differences import differences
-from tltlc.diff.pairs import diff
-from tltlc.diff.relation import Group, Relation, compare
+from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.logic.formula import Formula, always, and_, atom, not_
 from tltlc.logic.oracle import all_traces, holds
-from tltlc.logic.printer import ascii_text
+from tltlc.logic.text.printer import ascii_text
 from tltlc.monitor.guards import holds as guard_holds
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.witness.blocks import values
+from tltlc.tools.diff.differences import differences
+from tltlc.tools.diff.pairs import diff
+from tltlc.tools.diff.relation import Group, Relation, compare
+from tltlc.tools.witness.blocks import values
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=4)
 SAMPLES = [frozenset(names) for names in ((), ("a",), ("b",), ("a", "b"))]

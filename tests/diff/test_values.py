@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
-from tltlc.diff.values import Apart, apart, meaning
 from tltlc.monitor import Monitor
+from tltlc.tools.diff.values import Apart, apart, meaning
 
 TENTHS = st.integers(1, 99).map(lambda number: number / 10)
 

@@ -12,8 +12,8 @@ import pytest
 
 from tests.docs.blocks import DOCS, ROOT, blocks
 from tests.docs.test_pages import PAGES
-from tltlc.cli.command_line import OF_THE_RUNTIME, cli
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.interfaces.cli.command_line import OF_THE_RUNTIME, cli
 
 # The page of TLT0700 shows wrong usage.
 CODES = (ROOT / "tltlc" / "diagnostics" / "pages").glob("*.md")

@@ -9,11 +9,11 @@ import pytest
 
 import tltlc
 from tests.docs.blocks import blocks
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics import codes
-from tltlc.lint.allow import CODE as ALLOWED_IN_VAIN
-from tltlc.lint.rules import rules
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.lint.allow import CODE as ALLOWED_IN_VAIN
+from tltlc.tools.lint.rules import rules
 
 FOLDER = Path(codes.__file__).parent / "pages"
 ABBREVIATED = {"TLT0012", "TLT0103", "TLT0317"}

@@ -9,20 +9,21 @@ import pytest
 
 import tltlc
 from tests.docs.blocks import DOCS, blocks
-from tltlc import files
-from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.guards import PRIME_LIMIT, TOTAL_PRIME_LIMIT
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.codes import codes
-from tltlc.grammar import lalr, lexer, nesting, words
+from tltlc.grammar import keywords as words
+from tltlc.grammar import lalr, lexer, nesting
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tables import STARTS, load
-from tltlc.limits import ARITHMETIC, IMPORTED, WORK
-from tltlc.record import replace
+from tltlc.io import files
+from tltlc.io.limits import ARITHMETIC, IMPORTED, WORK
 from tltlc.resolve import context, scope, units
-from tltlc.resolve.predicate_check import cases, check
-from tltlc.source import SourceFile
+from tltlc.resolve.range_proof import cases, check
 
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")
 IN_CODE = {found.replace(r"\|", "|") for found in re.findall(r"`([^`\n]+)`", PAGE)}

@@ -13,7 +13,7 @@ import pytest
 import tltlc
 from tests.docs.blocks import DOCS, ROOT, blocks
 from tltlc.backends import emit
-from tltlc.cli import exits
+from tltlc.interfaces.cli import exits
 from tltlc.monitor import Step
 from tltlc.monitor.run import header
 

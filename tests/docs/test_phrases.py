@@ -9,11 +9,11 @@ import pytest
 
 import tltlc
 from tests.docs.blocks import DOCS, blocks
+from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import are_equivalent
-from tltlc.lint import run
+from tltlc.core.source import SourceFile
 from tltlc.monitor import Monitor
-from tltlc.source import SourceFile
+from tltlc.tools.lint import run
 
 PAGE = DOCS / "guides" / "phrases.md"
 (DECLARED,) = (block.text for block in blocks(PAGE) if block.kind == "tltl")

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from tests.docs.blocks import DOCS, blocks
-from tltlc import project
+from tltlc.io import project
 
 PAGE = DOCS / "guides" / "project.md"
 TEXT = PAGE.read_text(encoding="utf-8")

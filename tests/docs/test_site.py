@@ -17,8 +17,8 @@ import pytest
 from tests.docs.blocks import DOCS, ROOT
 from tests.runtime.regression.page import chromium
 from tests.waiting import HANG_S
-from tltlc.cli.command_line import BUILT_IN
 from tltlc.diagnostics.codes import codes, title
+from tltlc.interfaces.cli.command_line import BUILT_IN
 
 MISSING = [name for name in ("mkdocs", "material", "pymdownx") if find_spec(name) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from tests.docs.blocks import DOCS, ROOT
 from tltlc.backends import targets
-from tltlc.conformance import odd_traces
-from tltlc.limits import TRACE_LINE
+from tltlc.io.limits import TRACE_LINE
 from tltlc.monitor.trace_rows import Lines, Table, cell_number, read_rows
 from tltlc.monitor.traces import read_trace
 from tltlc.resolve.spec import Signal
+from tltlc.tools.conformance import odd_traces
 
 TEXT = (DOCS / "traces.md").read_text(encoding="utf-8")
 

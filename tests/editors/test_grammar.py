@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from tltlc.core.source import SourceFile
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, VERDICTS
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tables import load
-from tltlc.grammar.words import CLAUSES, DECLARATIONS, VERDICTS
 from tltlc.resolve.scope import FUNCTIONS
 from tltlc.resolve.units import TYPES
-from tltlc.source import SourceFile
 
 ROOT = Path(__file__).parents[2]
 EXTENSION = ROOT / "editors" / "vscode"

@@ -11,10 +11,10 @@ import pytest
 from tests.editors.neovim import PROGRAM, Neovim
 from tests.editors.test_grammar import SOURCES
 from tests.waiting import HANG_S, until
+from tltlc.core.source import SourceFile
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.tables import load
-from tltlc.grammar.words import CLAUSES, DECLARATIONS
-from tltlc.source import SourceFile
 
 pytest.importorskip("pygls", reason="the extra `lsp` is not installed")
 pytestmark = [

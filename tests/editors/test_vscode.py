@@ -15,7 +15,7 @@ import pytest
 
 import tltlc
 from tests.waiting import HANG_S
-from tltlc.grammar.words import CLAUSES
+from tltlc.grammar.keywords import CLAUSES
 
 EXTENSION = Path(__file__).parents[2] / "editors" / "vscode"
 FILES = [

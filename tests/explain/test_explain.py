@@ -15,21 +15,21 @@ import tltlc as compiler
 from tests.calls import calls
 from tests.cli.conftest import EXAMPLE, Outcome, inside, tltlc
 from tests.logic.strategies import formulas
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.compare import Letter
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import Letter
-from tltlc.explain.document import Table, document
-from tltlc.explain.explanation import explain
-from tltlc.explain.formulas import formula_of, guard_reader
-from tltlc.explain.text import text
-from tltlc.explain.values import values
-from tltlc.files import read_source
+from tltlc.io.files import read_source
 from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces, robustness_of_state
-from tltlc.logic.printer import ascii_text
+from tltlc.logic.text.printer import ascii_text
 from tltlc.monitor.guards import holds
 from tltlc.pipeline import compile_source
-from tltlc.witness import blocks
+from tltlc.tools.explain.explanation import explain
+from tltlc.tools.explain.formulas import formula_of, guard_reader
+from tltlc.tools.explain.sections import Table, document
+from tltlc.tools.explain.text import text
+from tltlc.tools.explain.values import values
+from tltlc.tools.witness import blocks
 
 __all__ = ["inside", "tltlc"]
 

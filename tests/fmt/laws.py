@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltlc.fmt import format_text
-from tltlc.grammar import allowed, tree
+from tltlc.core.source import SourceFile, Span
+from tltlc.grammar import allow_comments as allowed
+from tltlc.grammar import tree
 from tltlc.grammar.parser import parse
-from tltlc.source import SourceFile, Span
+from tltlc.tools.fmt import format_text
 
 STEPS = (None, "step", "steps")
 

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from tests.calls import calls
 from tests.fmt.laws import check
 from tests.fmt.random_texts import join
-from tltlc.fmt import STYLES, format_text
-from tltlc.fmt.allowed import NOTHING, keeping
-from tltlc.grammar.allowed import statements
+from tltlc.core.source import SourceFile
+from tltlc.grammar.allow_comments import statements
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse
-from tltlc.lint.run import findings, view_of
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.fmt import STYLES, format_text
+from tltlc.tools.fmt.allowed import NOTHING, keeping
+from tltlc.tools.lint.run import findings, view_of
 
 ALLOW = "// tltlc: allow"
 CLAUSES = (

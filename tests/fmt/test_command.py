@@ -50,7 +50,7 @@ def test_diff_prints_and_writes_nothing(tltlc, inside: Path) -> None:  # type: i
 
 
 def test_a_diff_in_colour() -> None:
-    from tltlc.fmt.changes import unified
+    from tltlc.tools.fmt.changes import unified
 
     assert unified("a", "x\ny\n", "x\nz\n", color=True) == (
         "\x1b[1m--- a\x1b[0m\n\x1b[1m+++ a\x1b[0m\n\x1b[36m@@ -1,2 +1,2 @@\x1b[0m\n"

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from tests.fmt import random_texts
 from tests.fmt.laws import check
-from tltlc.fmt import STYLES
+from tltlc.core.source import SourceFile
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse
-from tltlc.source import SourceFile
+from tltlc.tools.fmt import STYLES
 
 ROOT = Path(__file__).parents[2]
 EVERYTHING = (ROOT / "tests" / "grammar" / "everything.tltl").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ import pytest
 
 from tests.fmt.laws import check
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.fmt import format_text
+from tltlc.tools.fmt import format_text
 
 ROOT = Path(__file__).parents[2]
 

@@ -8,13 +8,13 @@ import pytest
 
 from tests.calls import calls
 from tests.fmt.laws import check
-from tltlc.fmt import STYLES, format_text
+from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
+from tltlc.io.project import FORMATTINGS
 from tltlc.pipeline import compile_text
-from tltlc.project import FORMATTINGS
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
+from tltlc.tools.fmt import STYLES, format_text
 
 ROOT = Path(__file__).parents[2]
 OPERATORS = (

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
-from tltlc.cli.main import main
 from tltlc.diagnostics.codes import codes, page, title
+from tltlc.interfaces.cli.main import main
 
 ROOT = Path(__file__).parents[2]
 CASES = sorted(path for path in (Path(__file__).parent / "error").iterdir() if path.is_dir())

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.parser import parse_formula
-from tltlc.source import SourceFile
 
 
 def read(text: str) -> tree.Expr:

@@ -1,9 +1,9 @@
 from math import inf
 from pathlib import Path
 
+from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.parser import parse
-from tltlc.source import SourceFile
 
 TEXT = Path(__file__).with_name("everything.tltl").read_text(encoding="utf-8")
 

@@ -14,13 +14,13 @@ import pytest
 
 import tltlc
 from tltlc.automaton.fspa import Fspa
-from tltlc.grammar import english
+from tltlc.core.source import SourceFile
+from tltlc.grammar.mistakes import english
 from tltlc.grammar.parser import parse
-from tltlc.lint.scopes import after
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
-from tltlc.source import SourceFile
-from tltlc.witness.blocks import values
+from tltlc.tools.lint.scopes import after
+from tltlc.tools.witness.blocks import values
 
 Letter = frozenset[str]
 Trace = tuple[Letter, ...]

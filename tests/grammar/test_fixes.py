@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
-from tltlc.lint.scopes import after
-from tltlc.source import SourceFile
+from tltlc.tools.lint.scopes import after
 
 
 def mended(text: str) -> str:

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.codes import codes
 from tltlc.diagnostics.render import FORMATS, render
 from tltlc.grammar.parser import MAX_CHARACTERS, parse, parse_formula
 from tltlc.grammar.tables import load
-from tltlc.source import SourceFile
 
 TEXT = Path(__file__).with_name("everything.tltl").read_text(encoding="utf-8")
 TABLES = load()

@@ -32,12 +32,12 @@ from tests.grammar.test_english import (
     verdicts,
     whole,
 )
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.parser import parse
-from tltlc.lint.fixes import of_errors
-from tltlc.lint.scopes import after
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
+from tltlc.tools.lint.fixes import of_errors
+from tltlc.tools.lint.scopes import after
 
 HEAD = """entity k, d
 signal a: bool

@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.mistakes.recovery import MAX_ERRORS, recover
 from tltlc.grammar.parser import parse
-from tltlc.grammar.recovery import MAX_ERRORS, recover
-from tltlc.source import SourceFile
 
 TEXT = Path(__file__).with_name("everything.tltl").read_text(encoding="utf-8")
 GOOD_CLAUSES = ["reach a then b", "keep a", "avoid b | c", "require F (a & X b)", "limit 3 steps", "tag x, y"]

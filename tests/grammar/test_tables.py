@@ -40,7 +40,7 @@ def test_a_conflict_is_refused() -> None:
 
 def test_parsing_needs_no_lark() -> None:
     code = (
-        "import sys; from tltlc.grammar.parser import parse; from tltlc.source import SourceFile;"
+        "import sys; from tltlc.grammar.parser import parse; from tltlc.core.source import SourceFile;"
         "parse(SourceFile('a', 'spec a = F b')); parse(SourceFile('a', 'spec a = F'));"
         "print([name for name in ('lark', 'sympy', 'pathlib') if name in sys.modules])"
     )

@@ -13,13 +13,13 @@ import tltlc
 from tests.backends.strategies import automata, infinite_automata
 from tests.hoa.files import Automaton, Condition, Shape, some_automaton, written
 from tltlc import backends
+from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa, Text
-from tltlc.comparison import are_equivalent
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import read_source
-from tltlc.hoa.load import ImportOptions, load
-from tltlc.record import replace
-from tltlc.source import SourceFile
+from tltlc.io.files import read_source
+from tltlc.tools.hoa.load import ImportOptions, load
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.tltl"))
 SPECS = [spec for path in EXAMPLES for spec in tltlc.compile_file(path)]
@@ -272,7 +272,7 @@ def test_letters_of_many_atoms_are_not_counted() -> None:
 
 
 def test_every_terminal_has_words_for_messages() -> None:
-    from tltlc.hoa import reader
+    from tltlc.tools.hoa import reader
 
     patterns = [each.name for each in reader._parser().terminals if each.pattern.type == "re"]
     assert set(patterns) - {"__IGNORE_0"} <= set(reader._NAMES)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from tltlc.lint.fixing import Fixed, fix
-from tltlc.lint.rule import Finding, Remark
-from tltlc.lint.run import lint, view_of
-from tltlc.lint.view import SpecView, View
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.fixing import Fixed, fix
+from tltlc.tools.lint.rule import Finding, Remark
+from tltlc.tools.lint.run import lint, view_of
 
 SIGNALS = "signal a: bool signal b: bool signal c: bool\n"
 RANGES = "signal x in [0, 10]\nsignal y in [0, 10]\n" + SIGNALS

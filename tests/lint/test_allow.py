@@ -8,12 +8,12 @@ import pytest
 
 from tests.calls import calls
 from tests.lint.helpers import codes, mended
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.lint.allow import silenced
-from tltlc.lint.rule import Finding
-from tltlc.lint.run import lint, view_of
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.lint.allow import silenced
+from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.run import lint, view_of
 
 BEFORE = "signal seen: bool\n"
 

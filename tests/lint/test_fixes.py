@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 import pytest
 
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
-from tltlc.lint.fixes import Offer, of_errors, of_findings
-from tltlc.lint.run import findings, lint, view_of
-from tltlc.lint.scopes import after, keeping_scopes
 from tltlc.pipeline import CompileOptions
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
+from tltlc.tools.lint.fixes import Offer, of_errors, of_findings
+from tltlc.tools.lint.run import findings, lint, view_of
+from tltlc.tools.lint.scopes import after, keeping_scopes
 
 
 def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
@@ -78,7 +78,7 @@ def test_the_same_fix_of_many_findings_is_tried_once(monkeypatch: pytest.MonkeyP
         tried.append(edits)
         return keeping_scopes(module, edits)
 
-    monkeypatch.setattr("tltlc.lint.fixes.keeping_scopes", noted)
+    monkeypatch.setattr("tltlc.tools.lint.fixes.keeping_scopes", noted)
     source = SourceFile("example.tltl", f"// tltlc: allow{' TLT0421' * 50}\nsignal a: bool\nspec s = F a\n")
     view = view_of(source, CompileOptions())
     found = [each for each in findings(view) if each.diagnostic.code == "TLT0427"]
@@ -86,7 +86,7 @@ def test_the_same_fix_of_many_findings_is_tried_once(monkeypatch: pytest.MonkeyP
 
 
 def test_after_some_fixes_no_more_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltlc.lint.fixes.WORK", {"fixes tried": 5})
+    monkeypatch.setattr("tltlc.tools.lint.fixes.WORK", {"fixes tried": 5})
     many = 9
     lets = "".join(f"let l{number} = F a\n" for number in range(many))
     source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a  // tltlc: allow TLT0420\n{lets}")

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 import tltlc
 from tests.calls import calls
 from tests.lint.helpers import codes, found, mended
+from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
-from tltlc.lint.rule import Edit
-from tltlc.lint.scopes import keeping_scopes
-from tltlc.source import SourceFile
+from tltlc.tools.lint.rule import Edit
+from tltlc.tools.lint.scopes import keeping_scopes
 
 SPEC = "spec s = F a\n"
 MORE = "signal x in [0, 9]\nspec s = F more(x, 1, 1)\n"

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from tests.lint.helpers import codes
 from tests.soon import soon
-from tltlc.lint.fixing import fix
-from tltlc.lint.importers import used_elsewhere, words
-from tltlc.source import SourceFile
+from tltlc.core.source import SourceFile
+from tltlc.tools.lint.fixing import fix
+from tltlc.tools.lint.importers import used_elsewhere, words
 
 NAMES = st.lists(st.sampled_from(["a", "b", "ab", "ba"]), min_size=1, max_size=5).map(".".join)
 
@@ -68,7 +68,7 @@ def test_the_ends_of_a_long_name_are_not_stored() -> None:
 
 def test_comments_that_speak_of_imports_cost_no_time() -> None:
     text = '"// import\\n" * 2_000_000'
-    assert soon(f"from tltlc.lint.importers import words; print(words('x.tltl', {text}))").startswith("Words")
+    assert soon(f"from tltlc.tools.lint.importers import words; print(words('x.tltl', {text}))").startswith("Words")
 
 
 def test_what_a_neighbour_uses_stays(tmp_path: Path) -> None:

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import tltlc
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, TltlError
 from tltlc.grammar.parser import parse
-from tltlc.lint.fixes import Offer, of_errors
-from tltlc.lint.scopes import after
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
+from tltlc.tools.lint.fixes import Offer, of_errors
+from tltlc.tools.lint.scopes import after
 
 GOLDEN = sorted((Path(__file__).parents[1] / "golden" / "error").glob("TLT0[123]*/input.tltl"))
 HEAD = """clock 10 Hz

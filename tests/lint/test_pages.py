@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from tests.docs.blocks import blocks
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics import codes
-from tltlc.lint import allow
-from tltlc.lint import rules as package
-from tltlc.lint.rules import rules
-from tltlc.lint.run import lint
-from tltlc.source import SourceFile
+from tltlc.tools.lint import allow
+from tltlc.tools.lint import rules as package
+from tltlc.tools.lint.rules import rules
+from tltlc.tools.lint.run import lint
 
 FOLDER = Path(codes.__file__).parent / "pages"
 CODES = sorted([*(rule.code for rule in rules()), allow.CODE])

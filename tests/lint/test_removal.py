@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from tests.lint.helpers import codes, mended
+from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Comment
-from tltlc.lint.removal import without
-from tltlc.source import SourceFile, Span
+from tltlc.tools.lint.removal import without
 
 SPEC = "spec s = F a\n"
 

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import pytest
 
 from tests.lint.helpers import APART, block, codes, found
-from tltlc.lint.rule import Remark
-from tltlc.lint.run import lint
-from tltlc.lint.view import View
-from tltlc.source import SourceFile
+from tltlc.core.source import SourceFile
+from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.run import lint
 
 NO_TRACE, NO_GOAL = "TLT0410", "TLT0414"
 IMPOSSIBLE = block("reach at(x) and at(y)", before=APART)
@@ -77,6 +77,6 @@ class _Rule:
 
 def test_a_rule_is_asked_once_what_it_supersedes(monkeypatch: pytest.MonkeyPatch) -> None:
     rule = _Rule()
-    monkeypatch.setattr("tltlc.lint.run.rules", lambda: (rule,))
+    monkeypatch.setattr("tltlc.tools.lint.run.rules", lambda: (rule,))
     assert len(found("".join(f"signal a{number}: bool\n" for number in range(100)))) == 100
     assert rule.asked == 1

@@ -13,8 +13,8 @@ from tests.logic.truth_table import TruthTable
 from tests.reference_formulas import corpus, read_formula
 from tltlc.logic import formula as f
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.printer import english_text
 from tltlc.logic.rewrite import simplify
+from tltlc.logic.text.printer import english_text
 
 EXAMPLES = {
     "true": "Nothing remains to be done.",

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.logic.english import english_text
+from tltlc.automaton.infinite.readback import without_constants
 from tltlc.logic.formula import Formula
-from tltlc.logic.outline import Goal, Outline, outline
-from tltlc.rabin.written import without_constants
+from tltlc.logic.text.english import english_text
+from tltlc.logic.text.outline import Goal, Outline, outline
 
 SMALL = formulas(max_leaves=8)
 

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from tests.logic.small_formulas import formulas_up_to
 from tests.logic.strategies import formulas
 from tests.reference_formulas import corpus, read_formula
+from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.parser import parse_formula
 from tltlc.logic import formula as f
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.printer import ascii_text, unicode_text, words_text
-from tltlc.source import SourceFile
+from tltlc.logic.text.printer import ascii_text, unicode_text, words_text
 
 NAMES = ("a", "near(s1)", "spatial.near(s1, close = 2)", "health > 0.5")
 NOTATIONS = pytest.mark.parametrize("write", [ascii_text, unicode_text, words_text])

@@ -23,9 +23,9 @@ ROOT = Path(__file__).parents[2]
 PROGRAM = f"""
 import sys
 sys.path.insert(0, {str(ROOT)!r})
-from tltlc.lsp import answers, worker
+from tltlc.interfaces.lsp import answers, worker
 worker.LONGEST_S = {10 * HANG_S}
-from tltlc.cli.main import main
+from tltlc.interfaces.cli.main import main
 main(['lsp'])
 """
 

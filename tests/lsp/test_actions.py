@@ -8,14 +8,14 @@ import pytest
 from lsprotocol import types
 
 from tests.lsp.texts import opened
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.parser import parse
-from tltlc.lsp.actions import actions
-from tltlc.lsp.document import Document
-from tltlc.lsp.edits import applied
-from tltlc.lsp.positions import offset
-from tltlc.lsp.remarks import label_in
-from tltlc.source import SourceFile, Span
+from tltlc.interfaces.lsp.actions import actions
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.diagnostics import label_in
+from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.positions import offset
 
 ERRORS = sorted((Path(__file__).parents[1] / "golden" / "error").glob("TLT0[123]*/input.tltl"))
 URI = "file:///x.tltl"

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from tltlc.cli.main import main
+from tltlc.interfaces.cli.main import main
 
 
 def test_what_is_missing_is_said_with_the_way_to_install_it(

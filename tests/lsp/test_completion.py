@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.lsp.texts import opened
-from tltlc.lsp.completion import completions
-from tltlc.lsp.edits import applied
+from tltlc.interfaces.lsp.completion import completions
+from tltlc.interfaces.lsp.edits import applied
 
 BEFORE = """\
 import stealth

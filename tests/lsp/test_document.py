@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from tests.lsp.texts import EXAMPLES, opened
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import is_file, read_source, unsaved
-from tltlc.lsp.analysis import Request, analyse
-from tltlc.lsp.edits import applied, difference
-from tltlc.lsp.formatting import formatting
-from tltlc.lsp.remarks import remark
-from tltlc.lsp.symbols import symbols
-from tltlc.source import SourceFile
+from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.diagnostics import remark
+from tltlc.interfaces.lsp.edits import applied, difference
+from tltlc.interfaces.lsp.formatting import formatting
+from tltlc.interfaces.lsp.symbols import symbols
+from tltlc.io.files import is_file, read_source, unsaved
 
 
 def test_predicates_are_proved_later() -> None:

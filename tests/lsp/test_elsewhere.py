@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.lsp.client import Client
-from tltlc.cli.main import main
-from tltlc.lsp.analysis import Request, analyse
-from tltlc.source import SourceFile
+from tltlc.core.source import SourceFile
+from tltlc.interfaces.cli.main import main
+from tltlc.interfaces.lsp.analysis import Request, analyse
 
 LIBRARY = """\
 signal loud: bool
@@ -57,7 +57,7 @@ def test_files_around_are_read_where_something_seems_unused_alone(
     def read(_: object) -> dict[Path, str]:
         raise AssertionError("it was read")
 
-    monkeypatch.setattr("tltlc.lsp.analysis.neighbours", read)
+    monkeypatch.setattr("tltlc.interfaces.lsp.analysis.neighbours", read)
     used = LIBRARY.replace("F dark", "F (dark and hushed)")
     assert analyse(Request(SourceFile(str(tmp_path / "library.tltl"), used), (), {}, {})).figures
     with pytest.raises(AssertionError, match="it was read"):

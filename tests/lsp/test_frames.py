@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltlc.limits import MESSAGE, MESSAGE_HEAD
-from tltlc.lsp.frames import Body, Fault, Frame, Frames
-from tltlc.lsp.json_end import JsonEnd
+from tltlc.interfaces.lsp.frames import Body, Fault, Frame, Frames
+from tltlc.interfaces.lsp.json_end import JsonEnd
+from tltlc.io.limits import MESSAGE, MESSAGE_HEAD
 
 MESSAGES = (b"{}", b'{"a": [1, "}"]}', b'{"text": "Content-Length: 3\\r\\n\\r\\n"}', b"[" + b"7, " * 300 + b"8]")
 

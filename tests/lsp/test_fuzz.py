@@ -9,17 +9,28 @@ import pytest
 from lsprotocol import types
 
 from tests.lsp.texts import EXAMPLES, opened
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Edit, TltlError
-from tltlc.lsp import actions, completion, folding, formatting, hover, imports, lenses, references, symbols, tokens
-from tltlc.lsp.analysis import Analysis, Figures
-from tltlc.lsp.cursor import cursor, quoted
-from tltlc.lsp.document import Document
-from tltlc.lsp.edits import applied
-from tltlc.lsp.paths import uri_of
-from tltlc.lsp.positions import offset, position, range_of
-from tltlc.lsp.remarks import label_in, remark
-from tltlc.lsp.workspace import Workspace
-from tltlc.source import Span
+from tltlc.interfaces.lsp import (
+    actions,
+    completion,
+    folding,
+    formatting,
+    hover,
+    imports,
+    lenses,
+    references,
+    symbols,
+    tokens,
+)
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.analysis import Analysis, Figures
+from tltlc.interfaces.lsp.cursor import cursor, quoted
+from tltlc.interfaces.lsp.diagnostics import label_in, remark
+from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.paths import uri_of
+from tltlc.interfaces.lsp.positions import offset, position, range_of
+from tltlc.interfaces.lsp.workspace import Workspace
 
 PIECES = (
     "(", ")", "{", "}", "[", "]", ",", ":", "=", '"', "//", "///", "\r\n", "\n", "\t", ".", "-",

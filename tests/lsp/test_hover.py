@@ -6,9 +6,9 @@ import pytest
 from lsprotocol import types
 
 from tests.lsp.texts import opened
-from tltlc.lsp.analysis import Request, analyse
-from tltlc.lsp.document import Document
-from tltlc.lsp.hover import hover
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.hover import hover
 
 TEXT = """\
 import stealth

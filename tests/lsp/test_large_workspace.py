@@ -9,9 +9,9 @@ import pytest
 
 from tests.lsp.client import Client, Refused
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import Limit
-from tltlc.lsp import workspace as module
-from tltlc.lsp.workspace import Workspace
+from tltlc.interfaces.lsp import workspace as module
+from tltlc.interfaces.lsp.workspace import Workspace
+from tltlc.io.limits import Limit
 
 TEXT = "signal quiet: bool\nspec hide = G quiet\n"
 OTHER = "signal on: bool\nlet start = F on\n" + "// A comment.\n" * 10_000

@@ -14,9 +14,9 @@ import pytest
 from tests.lsp.client import Client
 from tests.lsp.texts import ENDLESS
 from tests.waiting import HANG_S, until
-from tltlc.limits import MESSAGE
-from tltlc.lsp.paths import name_of
-from tltlc.lsp.server import create
+from tltlc.interfaces.lsp.paths import name_of
+from tltlc.interfaces.lsp.server import create
+from tltlc.io.limits import MESSAGE
 
 HERE = "file:///nowhere/a.tltl"
 START = {"line": 0, "character": 0}

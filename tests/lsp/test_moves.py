@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.lsp.client import Client
-from tltlc.lsp.edits import applied
-from tltlc.lsp.moves import edits_of_moves
-from tltlc.lsp.workspace import Workspace
+from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.file_renames import edits_of_moves
+from tltlc.interfaces.lsp.workspace import Workspace
 
 FILES = {
     "tltl.toml": 'libraries = ["shared"]\n',

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lsprotocol import types
 
-from tltlc.lsp.positions import offset, position, range_of
-from tltlc.source import SourceFile, Span
+from tltlc.core.source import SourceFile, Span
+from tltlc.interfaces.lsp.positions import offset, position, range_of
 
 TEXT = "spec é = a 𝒰 b\r\nlet 𝒰"
 

@@ -13,9 +13,9 @@ from lsprotocol import types
 from tests.lsp.client import Client
 from tests.lsp.test_server import codes
 from tests.lsp.texts import ENDLESS
-from tltlc.lsp import queue
-from tltlc.lsp.analysis import Analysis
-from tltlc.lsp.server import create
+from tltlc.interfaces.lsp import queue
+from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.server import create
 
 FOUND = Analysis(())
 

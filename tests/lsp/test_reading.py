@@ -10,13 +10,13 @@ from lsprotocol import types
 
 from tests.lsp.client import Client
 from tests.lsp.texts import EXAMPLES, opened
-from tltlc.lsp.document import Document
-from tltlc.lsp.durations import hints
-from tltlc.lsp.folding import folds
-from tltlc.lsp.positions import offset
-from tltlc.lsp.symbols import found
-from tltlc.lsp.tokens import LEGEND, tokens
-from tltlc.source import Span
+from tltlc.core.source import Span
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.durations import hints
+from tltlc.interfaces.lsp.folding import folds
+from tltlc.interfaces.lsp.positions import offset
+from tltlc.interfaces.lsp.symbols import found
+from tltlc.interfaces.lsp.tokens import LEGEND, tokens
 
 TEXT = """\
 import stealth

@@ -9,9 +9,9 @@ import pytest
 
 from tests.lsp.texts import EXAMPLES, opened
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.lsp.analysis import Request, analyse
-from tltlc.lsp.edits import applied
-from tltlc.lsp.references import references, rename
+from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.references import references, rename
 
 LIBRARY = """\
 signal dark: ratio

@@ -13,17 +13,17 @@ from tests.calls import calls
 from tests.lsp.client import Client
 from tests.lsp.texts import opened
 from tests.waiting import printed
+from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import EntityDecl
-from tltlc.lsp import names, symbols
-from tltlc.lsp.document import Document
-from tltlc.lsp.paths import uri_of
-from tltlc.lsp.positions import UTF_16, offset, range_of
-from tltlc.lsp.references import rename
-from tltlc.lsp.remarks import remark
-from tltlc.lsp.tokens import tokens
-from tltlc.lsp.workspace import Workspace
-from tltlc.source import SourceFile
+from tltlc.interfaces.lsp import names, symbols
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.diagnostics import remark
+from tltlc.interfaces.lsp.paths import uri_of
+from tltlc.interfaces.lsp.positions import UTF_16, offset, range_of
+from tltlc.interfaces.lsp.references import rename
+from tltlc.interfaces.lsp.tokens import tokens
+from tltlc.interfaces.lsp.workspace import Workspace
 
 SPEC = """
 /// The two switches, then the exit.
@@ -150,7 +150,7 @@ def test_the_label_of_a_state_is_read_without_the_text_before_it(monkeypatch: py
 
 def test_a_long_word_is_completed_in_linear_time() -> None:
     program = (
-        "from tltlc.lsp.cursor import cursor; from tltlc.source import SourceFile\n"
+        "from tltlc.interfaces.lsp.cursor import cursor; from tltlc.core.source import SourceFile\n"
         "text = '// ' + 'a' * 1_000_000 + ' '\n"
         "print(cursor(SourceFile('long.tltl', text), len(text)))"
     )

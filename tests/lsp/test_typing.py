@@ -7,8 +7,8 @@ from pathlib import Path
 from tests.lsp.client import Client
 from tests.lsp.test_server import SPEC, codes
 from tests.lsp.texts import ENDLESS, opened
-from tltlc.lsp.analysis import Request, analyse
-from tltlc.lsp.kept import kept
+from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.previous_diagnostics import kept
 
 END = {"line": 9, "character": 0}
 IDLE = "spec idle = G (alive or not alive)\n"

@@ -7,9 +7,9 @@ import multiprocessing
 
 import pytest
 
-from tltlc.lsp.analysis import Request
-from tltlc.lsp.worker import Worker
-from tltlc.source import SourceFile
+from tltlc.core.source import SourceFile
+from tltlc.interfaces.lsp.analysis import Request
+from tltlc.interfaces.lsp.worker import Worker
 
 
 def test_where_no_process_can_be_started_the_next_analysis_tries_again(monkeypatch: pytest.MonkeyPatch) -> None:

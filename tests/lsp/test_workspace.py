@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests import pipes
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.lsp.workspace import Workspace
-from tltlc.record import replace
+from tltlc.interfaces.lsp.workspace import Workspace
 
 TEXTS = {
     "common.tltl": (

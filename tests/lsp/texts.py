@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.lsp.endless.sitecustomize import NEVER_ENDS
-from tltlc.lsp.document import Document
-from tltlc.lsp.workspace import Workspace
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.workspace import Workspace
 
 MARK = "¦"
 """Where the cursor is in a text."""

@@ -3,8 +3,8 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from tests.cli.conftest import inside, process, tltlc
-from tltlc.mine.evidence import Evidence, Recorded
-from tltlc.mine.vocabulary import Words, of_columns
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.vocabulary import Words, of_columns
 
 __all__ = ["inside", "process", "tltlc"]
 

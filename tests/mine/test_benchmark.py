@@ -9,12 +9,12 @@ from benchmarks.mine_peers import enumerated, has_scarlet, scarlet
 from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
 from tests.mine.conftest import words
 from tests.waiting import HANG_S
+from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import are_equivalent
-from tltlc.mine.confirm import judge
-from tltlc.mine.evidence import Evidence
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.mine.confirm import judge
+from tltlc.tools.mine.evidence import Evidence
 
 SHORT = Planted("short", ("reach p0 then p1",), dict.fromkeys(("p0", "p1", "p2"), 0.2))
 

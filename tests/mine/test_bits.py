@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.mine.conftest import evidences
-from tltlc.mine.bits import Bits, count
-from tltlc.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.bits import Bits, count
+from tltlc.tools.mine.evidence import Evidence, Recorded
 
 
 def places(bits: Bits, samples: int, evidence: Evidence) -> list[set[int]]:

@@ -12,10 +12,10 @@ import pytest
 from benchmarks.mine_traces import Planted, evidence
 from tests.cli.conftest import ROOT, Outcome
 from tests.cli.test_loading import HEAVY, loaded
-from tltlc.comparison import are_equivalent
-from tltlc.fmt import format_text
-from tltlc.mine.evidence import Recorded
+from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import CompileOptions, compile_file
+from tltlc.tools.fmt import format_text
+from tltlc.tools.mine.evidence import Recorded
 
 SPEC = Planted(
     "heist",
@@ -303,7 +303,7 @@ def test_an_interrupt_shows_what_there_is(
     recorded: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from tltlc.mine.search import Search
+    from tltlc.tools.mine.search import Search
 
     whole = Search.run
 

@@ -7,8 +7,8 @@ import pytest
 
 from tests.docs.blocks import DOCS
 from tests.docs.sessions import Shell, run_page
-from tltlc.mine.measure import PRICE
-from tltlc.mine.templates import LONGEST_BOUND
+from tltlc.tools.mine.measure import PRICE
+from tltlc.tools.mine.templates import LONGEST_BOUND
 
 GUIDE = (DOCS / "guides" / "mining.md").read_text(encoding="utf-8")
 

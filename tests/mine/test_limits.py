@@ -11,22 +11,22 @@ from random import Random
 import pytest
 
 from tests.cli.conftest import Outcome
-from tltlc.limits import WORK
-from tltlc.mine import candidates
-from tltlc.mine.bits import Bits
-from tltlc.mine.candidates import Candidates
-from tltlc.mine.clause import Clause, Conjunction
-from tltlc.mine.conjunctions import best
-from tltlc.mine.events import MOST_EVENTS, best_events
-from tltlc.mine.evidence import Evidence, Recorded
-from tltlc.mine.gathering import gathered
-from tltlc.mine.reading import TraceFile
-from tltlc.mine.search import Options, Search
-from tltlc.mine.sequences import sequences
-from tltlc.mine.templates import clauses
-from tltlc.rabin.work import Work
+from tltlc.automaton.infinite.work import Work
+from tltlc.core.source import SourceFile
+from tltlc.io.limits import WORK
 from tltlc.resolve.options import ResolveOptions
-from tltlc.source import SourceFile
+from tltlc.tools.mine import candidates
+from tltlc.tools.mine.bits import Bits
+from tltlc.tools.mine.candidates import Candidates
+from tltlc.tools.mine.clause import Clause, Conjunction
+from tltlc.tools.mine.conjunctions import best
+from tltlc.tools.mine.events import MOST_EVENTS, best_events
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence_reader import gathered
+from tltlc.tools.mine.reading import TraceFile
+from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.sequences import sequences
+from tltlc.tools.mine.templates import clauses
 
 Run = Callable[..., Outcome]
 

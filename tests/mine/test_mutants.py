@@ -3,8 +3,8 @@ from __future__ import annotations
 from hypothesis import given
 
 from tests.mine.conftest import evidences
-from tltlc.mine.evidence import Evidence, Recorded
-from tltlc.mine.mutants import with_mutants
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.mutants import with_mutants
 
 
 @given(evidences(longest=10))

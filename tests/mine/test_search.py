@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 
 from benchmarks.mine_traces import ATOMS, Planted, evidence, of_the_paper, planted
 from tests.mine.conftest import evidences, words
-from tltlc.comparison import are_equivalent
-from tltlc.mine.bits import Bits
-from tltlc.mine.clause import Conjunction, accepted_by, atoms_of
-from tltlc.mine.confirm import Proposal, confirmed, judge
-from tltlc.mine.evidence import Evidence, Recorded
-from tltlc.mine.measure import figures
-from tltlc.mine.search import Options, Search
-from tltlc.mine.sequences import sequences
-from tltlc.mine.templates import KINDS, clauses
+from tltlc.automaton.compare import are_equivalent
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.mine.bits import Bits
+from tltlc.tools.mine.clause import Conjunction, accepted_by, atoms_of
+from tltlc.tools.mine.confirm import Proposal, confirmed, judge
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.sequences import sequences
+from tltlc.tools.mine.templates import KINDS, clauses
 
 
 def proposals(given_: Evidence, options: Options | None = None, top: int = 5) -> tuple[Proposal, ...]:

@@ -2,12 +2,12 @@ from __future__ import annotations
 
 import pytest
 
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.mine.columns import columns, shared
-from tltlc.mine.reading import TraceFile, read
-from tltlc.mine.vocabulary import of_columns, of_library
 from tltlc.resolve.options import ResolveOptions
-from tltlc.source import SourceFile
+from tltlc.tools.mine.columns import columns, shared
+from tltlc.tools.mine.reading import TraceFile, read
+from tltlc.tools.mine.vocabulary import of_columns, of_library
 
 LIBRARY = """\
 import spatial

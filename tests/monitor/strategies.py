@@ -7,11 +7,11 @@ from typing import Literal
 from hypothesis import strategies as st
 
 from tests.logic.strategies import formulas
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
-from tltlc.rabin.build import build_infinite
-from tltlc.record import replace
+from tltlc.automaton.infinite.build import build_infinite
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
 
 SIGNALS, PARAMS = ("x", "y(a, b)"), ("p", 'q"')
 

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from tests.fixtures import near
 from tests.monitor.strategies import PARAMS, SIGNALS, expressions, numbers
-from tltlc import expression_python
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
-from tltlc.expression_eval import evaluate
-from tltlc.expression_json import from_json, to_json
-from tltlc.expression_python import compile_expressions
+from tltlc.expression import python as expression_python
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.json import from_json, to_json
+from tltlc.expression.python import compile_expressions
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
 
 FAILURES = (ZeroDivisionError, OverflowError, ValueError)
 

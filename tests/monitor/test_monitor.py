@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
 from tests.monitor.strategies import atom_traces, automata, values
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.expression import Const, Expression, Op, Signal
+from tltlc.core.record import replace
+from tltlc.expression.tree import Const, Expression, Op, Signal
 from tltlc.logic import formula as f
 from tltlc.logic.oracle import holds as oracle
 from tltlc.monitor import Monitor, MonitorError
 from tltlc.monitor.guards import bounding_atom, holds, prime_robustness, robustness
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}

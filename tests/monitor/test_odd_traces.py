@@ -18,12 +18,12 @@ from hypothesis import strategies as st
 
 from tests.monitor.odd_bytes import csv_traces, json_traces
 from tltlc.backends import emit
-from tltlc.conformance.corpus import CASES
-from tltlc.conformance.odd_traces import CELLS, LINES, MORE_VALUES, SIGNALS, VALUES, Odd
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import TRACE_LINE
-from tltlc.mine.columns import columns
+from tltlc.io.limits import TRACE_LINE
 from tltlc.monitor.traces import read_trace
+from tltlc.tools.conformance.corpus import CASES
+from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, SIGNALS, VALUES, Odd
+from tltlc.tools.mine.columns import columns
 
 ONE = ((0.5, 1.0),)
 

@@ -23,14 +23,14 @@ from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.expression import Const, Expression, Op, Signal
+from tltlc.core.record import replace
+from tltlc.expression.tree import Const, Expression, Op, Signal
 from tltlc.logic import formula as f
 from tltlc.logic import oracle
 from tltlc.monitor import Monitor, MonitorError
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 ROOT = Path(__file__).parents[2]

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import atom_traces, automata
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, RewardOptions, Step
 from tltlc.monitor.reward import reward_step
 from tltlc.monitor.tables import tables
-from tltlc.record import replace
 
 A, P = f.atom("a"), f.atom("p")
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}

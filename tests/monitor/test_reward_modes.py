@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import formulas
 from tests.monitor.strategies import atom_traces, automata, values
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.logic.oracle import holds
 from tltlc.monitor import Monitor, RewardOptions
-from tltlc.record import replace
 
 A, B, P = f.atom("a"), f.atom("b"), f.atom("p")
 SPARSE, EDGE = RewardOptions(mode="sparse"), RewardOptions(mode="edge")

@@ -3,10 +3,10 @@ from __future__ import annotations
 import pytest
 
 from tests.calls import calls
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
 
 SPEC = """
 signal a: bool

@@ -6,7 +6,7 @@ import re
 import socket
 
 from tests.waiting import HANG_S
-from tltlc.playground.server import Server
+from tltlc.interfaces.playground.server import Server
 
 
 def connected(server: Server) -> socket.socket:

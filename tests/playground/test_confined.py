@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.playground.test_server import JSON, ask, serving
-from tltlc.files import confined, exists, is_dir, is_file, may_read, outside, read_source
-from tltlc.playground import view
-from tltlc.playground.child import readable_folders
+from tltlc.interfaces.playground import view
+from tltlc.interfaces.playground.child import readable_folders
+from tltlc.io.files import confined, exists, is_dir, is_file, may_read, outside, read_source
 from tltlc.resolve.imports import standard_library
 
 SECRET = "signal the_secret: bool\n  the_password = 12345\n"

@@ -18,11 +18,11 @@ import pytest
 from tests.playground.raw import connected, read_to_end, statuses
 from tests.playground.test_server import JSON, PATIENT, SLOW, ask, eventually, request, serving
 from tests.waiting import HANG_S, until
-from tltlc.limits import PLAYGROUND
-from tltlc.playground import children
-from tltlc.playground.server import Server
-from tltlc.playground.start import start
-from tltlc.record import replace
+from tltlc.core.record import replace
+from tltlc.interfaces.playground import children
+from tltlc.interfaces.playground.page_config import start
+from tltlc.interfaces.playground.server import Server
+from tltlc.io.limits import PLAYGROUND
 
 MANY = 300
 FEW = replace(PATIENT, most=4)
@@ -189,7 +189,7 @@ class Full:
 
 
 def test_without_descriptors_it_looks_again_in_a_while_and_not_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltlc.playground.server._AGAIN_S", NEVER_S)
+    monkeypatch.setattr("tltlc.interfaces.playground.server._AGAIN_S", NEVER_S)
     with serving() as server, held(server, 3) as made:
         assert eventually(lambda: len(server.open) == 3)
         full = Full(server._listener)
@@ -208,7 +208,7 @@ def test_without_descriptors_it_looks_again_in_a_while_and_not_at_once(monkeypat
 LOW = f"""
 import resource, selectors, sys, threading
 resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64))
-from tltlc.playground.server import Server
+from tltlc.interfaces.playground.server import Server
 
 turns = []
 select = selectors.DefaultSelector.select

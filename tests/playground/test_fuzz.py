@@ -14,10 +14,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.playground.raw import statuses
-from tltlc.limits import PLAYGROUND, REQUEST_HEAD, REQUEST_LINE
-from tltlc.playground.connections import Connection, Open, Response
-from tltlc.playground.protocol import Question, RequestError, question
-from tltlc.playground.request_head import Head, RefusedError, read_head
+from tltlc.interfaces.playground.connections import Connection, Open, Response
+from tltlc.interfaces.playground.protocol import Question, RequestError, question
+from tltlc.interfaces.playground.request_head import Head, RefusedError, read_head
+from tltlc.io.limits import PLAYGROUND, REQUEST_HEAD, REQUEST_LINE
 
 LINES = [
     "GET",

@@ -13,10 +13,10 @@ import pytest
 
 from tests.playground.test_server import SLOW, serving
 from tests.runtime.regression.page import chromium
-from tltlc.playground.opening import leading_to
-from tltlc.playground.site import PYODIDE, site_files
-from tltlc.playground.start import examples
-from tltlc.writing import write_files
+from tltlc.interfaces.playground.browser import leading_to
+from tltlc.interfaces.playground.page_config import examples
+from tltlc.interfaces.playground.site import PYODIDE, site_files
+from tltlc.io.writing import write_files
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -17,10 +17,10 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Notation
 from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.formats.text import columns
-from tltlc.playground.curves import Curve
-from tltlc.playground.layout import Box, Size, layout
-from tltlc.playground.ordering import Ends
-from tltlc.playground.picture import MOST_STATES, picture
+from tltlc.interfaces.playground.curves import Curve
+from tltlc.interfaces.playground.layout import Box, Size, layout
+from tltlc.interfaces.playground.ordering import Ends
+from tltlc.interfaces.playground.picture import MOST_STATES, picture
 
 SIGNALS = "signal a: bool  signal b: bool  signal c: bool  "
 SPECS = (
@@ -37,7 +37,7 @@ DENSE = "G((a -> X b) | (c U !a)) & F(b & X c)"
 """Of 10 states or so and many more edges."""
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted(
-    path for folder in ("examples", "tltlc/playground/examples") for path in (ROOT / folder).glob("*.tltl")
+    path for folder in ("examples", "tltlc/interfaces/playground/examples") for path in (ROOT / folder).glob("*.tltl")
 )
 
 

@@ -12,11 +12,11 @@ import pytest
 from tests.playground.raw import connected, read_to_end, refused, statuses
 from tests.playground.test_server import JSON, ask, request, serving
 from tests.waiting import HANG_S, printed
-from tltlc.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE
-from tltlc.playground.connections import Connection
-from tltlc.playground.request_head import read_head
-from tltlc.playground.server import Server
-from tltlc.playground.start import start
+from tltlc.interfaces.playground.connections import Connection
+from tltlc.interfaces.playground.page_config import start
+from tltlc.interfaces.playground.request_head import read_head
+from tltlc.interfaces.playground.server import Server
+from tltlc.io.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE
 
 HOST = b"Host: localhost\r\n"
 GET = b"GET / HTTP/1.1\r\n" + HOST
@@ -138,7 +138,7 @@ LONG = {
 @pytest.mark.parametrize("header", LONG.values(), ids=LONG)
 def test_a_long_header_that_is_wrong_is_refused_in_linear_time(header: bytes) -> None:
     program = (
-        "import sys; from tltlc.playground.request_head import RefusedError, read_head\n"
+        "import sys; from tltlc.interfaces.playground.request_head import RefusedError, read_head\n"
         "try: read_head(sys.stdin.buffer.read())\n"
         "except RefusedError as error: print(error.status.value)"
     )

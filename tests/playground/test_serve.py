@@ -20,8 +20,8 @@ import pytest
 
 from tests.cli.conftest import ROOT, inside, tltlc  # noqa: F401 (fixtures)
 from tests.waiting import HANG_S
-from tltlc.playground.opening import leading_to
-from tltlc.playground.site import PYODIDE
+from tltlc.interfaces.playground.browser import leading_to
+from tltlc.interfaces.playground.site import PYODIDE
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
 
@@ -158,7 +158,7 @@ def test_the_file_leads_to_the_address_as_it_is() -> None:
 
 @needs_signals
 def test_where_no_file_can_be_written_the_page_is_still_there(tmp_path: Path) -> None:
-    code = "import tempfile; tempfile.tempdir = 'none/there'\nfrom tltlc.cli.main import main; main()"
+    code = "import tempfile; tempfile.tempdir = 'none/there'\nfrom tltlc.interfaces.cli.main import main; main()"
     with served("--open", program=("-c", code)) as (running, _):
         assert running.stderr is not None
         assert running.stderr.readline() == "no temporary file can be written: open the address yourself\n"
@@ -196,7 +196,7 @@ def test_the_site_holds_all_that_the_page_needs(tltlc, inside: Path) -> None:  #
 PROGRAM = """
 import json, sys
 sys.path.insert(0, "unpacked")
-from tltlc.playground.protocol import answer
+from tltlc.interfaces.playground.protocol import answer
 
 for example in json.loads(answer("{}"))["examples"]:
     found = json.loads(answer(json.dumps({"text": example["text"]})))

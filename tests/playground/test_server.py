@@ -19,12 +19,12 @@ from types import FrameType
 import pytest
 
 from tests.waiting import HANG_S, until
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import ANSWER, MESSAGE, PLAYGROUND, PLAYGROUND_CHILD, Connections
-from tltlc.playground import children, view
-from tltlc.playground.server import Server
-from tltlc.playground.start import start
-from tltlc.record import replace
+from tltlc.interfaces.playground import children, view
+from tltlc.interfaces.playground.page_config import start
+from tltlc.interfaces.playground.server import Server
+from tltlc.io.limits import ANSWER, MESSAGE, PLAYGROUND, PLAYGROUND_CHILD, Connections
 
 JSON = {"Content-Type": "application/json"}
 PLACES = [f"place_{number}" for number in range(9)]
@@ -321,7 +321,7 @@ def replaced_by(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch) -> None:
     limits = subprocess.run(
         program(
-            "import resource; from tltlc.playground.child import limit_resources; limit_resources()\n"
+            "import resource; from tltlc.interfaces.playground.child import limit_resources; limit_resources()\n"
             "print(*resource.getrlimit(resource.RLIMIT_AS), *resource.getrlimit(resource.RLIMIT_CPU))"
         ),
         capture_output=True,
@@ -331,7 +331,7 @@ def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch)
     memory, work = PLAYGROUND_CHILD.memory, PLAYGROUND_CHILD.work_s
     assert limits.stdout.split() == [str(each) for each in (memory, memory, work, work)]
     replaced_by(
-        "from tltlc.playground import child, protocol\n"
+        "from tltlc.interfaces.playground import child, protocol\n"
         "protocol.view = lambda *_: bytearray(child.PLAYGROUND_CHILD.memory)\n"
         "child.main()",
         monkeypatch,
@@ -357,7 +357,8 @@ if os.name == "posix":
 @pytest.mark.parametrize(("code", "title"), ENDS.items(), ids=str)
 def test_a_child_that_fails_is_reported_as_what_it_is(code: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
     replaced_by(
-        f"from tltlc.playground import child, protocol\ndef fail(_): {code}\nprotocol.answer = fail\nchild.main()",
+        "from tltlc.interfaces.playground import child, protocol\n"
+        f"def fail(_): {code}\nprotocol.answer = fail\nchild.main()",
         monkeypatch,
     )
     answering = children.Children(HANG_S)
@@ -401,7 +402,7 @@ def test_what_is_at_work_when_the_server_ends_is_abandoned() -> None:
 @pytest.mark.skipif(os.name != "posix", reason="limits of this kind are those of POSIX")
 def test_a_lower_limit_that_is_there_already_stays() -> None:
     code = (
-        "import resource; from tltlc.playground.child import limit_resources\n"
+        "import resource; from tltlc.interfaces.playground.child import limit_resources\n"
         "resource.setrlimit(resource.RLIMIT_CPU, (7, 7)); limit_resources()\n"
         "print(*resource.getrlimit(resource.RLIMIT_CPU))"
     )
@@ -412,7 +413,8 @@ def test_a_lower_limit_that_is_there_already_stays() -> None:
 @pytest.mark.parametrize(
     "code",
     [
-        f"from tltlc.playground import child, protocol\nprotocol.view = lambda *_: 'a' * {ANSWER.size}\nchild.main()",
+        "from tltlc.interfaces.playground import child, protocol\n"
+        f"protocol.view = lambda *_: 'a' * {ANSWER.size}\nchild.main()",
         "while True: sys.stdout.write('a' * 100_000)",
     ],
     ids=["told", "without end"],

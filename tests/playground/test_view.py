@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltlc.lint.fixing import fix
-from tltlc.lint.run import lint
-from tltlc.playground import protocol, view
-from tltlc.playground.document import NAME
-from tltlc.playground.protocol import RequestError, answer
-from tltlc.playground.start import examples, start
-from tltlc.source import SourceFile
+from tltlc.core.source import SourceFile
+from tltlc.interfaces.playground import protocol, view
+from tltlc.interfaces.playground.page_config import examples, start
+from tltlc.interfaces.playground.page_data import NAME
+from tltlc.interfaces.playground.protocol import RequestError, answer
+from tltlc.tools.lint.fixing import fix
+from tltlc.tools.lint.run import lint
 
 BUTTONS = "signal a: bool\nsignal b: bool\nsignal fuel in [0, 5]\nspec both { reach a then b  keep fuel > 1 }\n"
 

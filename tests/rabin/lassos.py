@@ -8,9 +8,9 @@ from random import Random
 from hypothesis import strategies as st
 
 from tltlc.automaton.fspa import Mark
+from tltlc.automaton.infinite.automaton import Rabin
 from tltlc.logic import formula as f
 from tltlc.logic.formula import Formula
-from tltlc.rabin.automaton import Rabin
 
 Sample = frozenset[str]
 Lasso = tuple[tuple[Sample, ...], tuple[Sample, ...]]

@@ -7,7 +7,7 @@ from itertools import product
 
 import networkx as nx
 
-from tltlc.rabin.automaton import Rabin
+from tltlc.automaton.infinite.automaton import Rabin
 
 Letter = tuple[bool, ...]
 Mark = tuple[str, int, str]

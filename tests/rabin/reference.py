@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.reference_formulas import read_formula
-from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.infinite.analysis import analysis_of_rabin
+from tltlc.automaton.infinite.automaton import Rabin
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.work import DEFAULT_WORK, Work
 from tltlc.logic.formula import Formula
-from tltlc.rabin.analysis import analysis_of_rabin
-from tltlc.rabin.automaton import Rabin
-from tltlc.rabin.construct import rabin
-from tltlc.rabin.work import DEFAULT_WORK, Work
 
 TABLE = Path(__file__).parents[1] / "corpus" / "infinite_sizes.tsv"
 _COLUMNS = ("source", "formula", "states", "pairs", "steps")

@@ -7,11 +7,11 @@ from itertools import product
 
 from tests.automaton.letters import Letter, holds, letters
 from tests.reference_formulas import read_formula
-from tltlc.automaton.build import spec_from_formula
+from tltlc.automaton.finite.build import spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.infinite.build import build_infinite
+from tltlc.core.record import replace
 from tltlc.logic.formula import Formula
-from tltlc.rabin.build import build_infinite
-from tltlc.record import replace
 
 
 def compiled(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:

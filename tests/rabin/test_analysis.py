@@ -7,9 +7,9 @@ from itertools import combinations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tltlc.rabin.analysis import Analysis
-from tltlc.rabin.cycles import Edge
-from tltlc.rabin.work import Work
+from tltlc.automaton.infinite.analysis import Analysis
+from tltlc.automaton.infinite.cycles import Edge
+from tltlc.automaton.infinite.work import Work
 
 PAIRS = 2
 marks = st.frozensets(st.integers(0, 2 * PAIRS - 1), max_size=3)

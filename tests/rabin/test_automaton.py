@@ -13,12 +13,12 @@ import pytest
 from tests.rabin.lassos import ABC, accepts, allowed, some_formulas, some_lassos
 from tests.rabin.products import equal, letters, opposite
 from tests.reference_formulas import read_formula
-from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.infinite.automaton import Rabin
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.work import OutOfWork
 from tltlc.logic.formula import Formula, not_
-from tltlc.rabin.automaton import Rabin
-from tltlc.rabin.construct import rabin
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.work import OutOfWork
 
 Groups = tuple[tuple[str, ...], ...]
 SEEDS = pytest.mark.parametrize("seed", range(10))

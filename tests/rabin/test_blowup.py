@@ -10,15 +10,15 @@ from tests.automaton.test_blowup import with_parts
 from tests.reference_formulas import read_formula
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.guards import TooManyPrimes
+from tltlc.automaton.infinite import blowup
+from tltlc.automaton.infinite.blowup import blow_up
+from tltlc.automaton.infinite.contradiction import unsatisfiable
+from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.core.record import replace
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.limits import WORK
-from tltlc.rabin import blowup
-from tltlc.rabin.blowup import blow_up
-from tltlc.rabin.contradiction import unsatisfiable
-from tltlc.rabin.work import OutOfWork
-from tltlc.record import replace
+from tltlc.io.limits import WORK
 from tltlc.resolve.spec import Bound, Spec
-from tltlc.source import Span
 
 FAIR = "G F a{0} -> G F b{0}"
 

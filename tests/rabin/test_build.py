@@ -13,15 +13,15 @@ from tests.logic.strategies import formulas
 from tests.rabin.runs import accepts, compiled, lassos
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
-from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build, spec_from_formula
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, State
+from tltlc.automaton.infinite import construct
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.work import DEFAULT_WORK, STEPS_PER_STATE, OutOfWork
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.formula import Formula
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.rabin import construct
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.work import DEFAULT_WORK, STEPS_PER_STATE, OutOfWork
-from tltlc.source import SourceFile
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=5)
 GROUPS = st.sampled_from([(), (("a", "b"),)])

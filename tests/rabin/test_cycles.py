@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.calls import calls
-from tltlc.rabin.cycles import Edge, decomposition
-from tltlc.rabin.products import telling_apart
-from tltlc.rabin.skeleton import Clause, Marks
-from tltlc.rabin.work import OutOfWork, Work
+from tltlc.automaton.infinite.cycles import Edge, decomposition
+from tltlc.automaton.infinite.mark_conditions import Clause, Marks
+from tltlc.automaton.infinite.products import telling_apart
+from tltlc.automaton.infinite.work import OutOfWork, Work
 
 NONE: Marks = frozenset()
 SIZE = 200

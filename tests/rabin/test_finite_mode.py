@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from tests.automaton.letters import step
 from tests.rabin.lassos import ABC, Lasso, accepts, lassos
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.work import OutOfWork
 from tltlc.logic import formula as f
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula
-from tltlc.rabin.construct import rabin
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.work import OutOfWork
 
 LITERALS = st.sampled_from([each for name in ABC for each in (f.atom(name), f.not_(f.atom(name)))])
 

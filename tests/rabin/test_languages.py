@@ -9,10 +9,10 @@ import pytest
 from tests.rabin.lassos import ABC, accepts_cycle
 from tests.rabin.test_automaton import made, some_made
 from tests.reference_formulas import read_formula
-from tltlc.rabin.automaton import Rabin
-from tltlc.rabin.construct import rabin
-from tltlc.rabin.languages import accepting, equal_states
-from tltlc.rabin.work import OutOfWork, Work
+from tltlc.automaton.infinite.automaton import Rabin
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.languages import accepting, equal_states
+from tltlc.automaton.infinite.work import OutOfWork, Work
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from tests.logic.strategies import formulas
 from tests.rabin.lassos import Lasso, Sample, lasso, lassos
 from tests.reference_formulas import read_formula
+from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.logic.formula import TRUE, Formula
-from tltlc.rabin.lasso import holds_on_lasso
 
 CASES = """
 true            | -        yes

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from tltlc.automaton.infinite.after_automaton import STEPS_PER_OBLIGATION, After
+from tltlc.automaton.infinite.infinite import infinite_form
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.infinite.work import OutOfWork, Work
 from tltlc.logic import formula as build
-from tltlc.rabin.after import STEPS_PER_OBLIGATION, After
-from tltlc.rabin.infinite import infinite_form
-from tltlc.rabin.letters import Letters
-from tltlc.rabin.work import OutOfWork, Work
 
 
 def test_what_letters_lead_to_is_limited_by_the_work_that_is_left() -> None:

@@ -8,11 +8,11 @@ import pytest
 
 from tests.rabin.lassos import ABC, some_formulas, some_lassos
 from tests.reference_formulas import read_formula
+from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually, has, is_pi_2, is_sigma_2
+from tltlc.automaton.infinite.infinite import infinite_form, is_rigid, negated, readable
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.work import OutOfWork
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.rabin.delta2 import delta_2, delta_2_dually, has, is_pi_2, is_sigma_2
-from tltlc.rabin.infinite import infinite_form, is_rigid, negated, readable
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.work import OutOfWork
 
 SEEDS = pytest.mark.parametrize("seed", range(10))
 

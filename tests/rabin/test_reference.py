@@ -6,7 +6,7 @@ import pytest
 
 from tests.rabin.lassos import accepts, some_lassos
 from tests.rabin.reference import Entry, entries, made, states
-from tltlc.rabin.lasso import holds_on_lasso
+from tltlc.automaton.infinite.lasso import holds_on_lasso
 
 ENTRIES = entries()
 QUICK = [entry for entry in ENTRIES if entry.steps <= 60_000]

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from tltlc.rabin.letters import Letters
-from tltlc.rabin.pairs import Piece
-from tltlc.rabin.shrink import shrunk
-from tltlc.rabin.work import Work
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.infinite.pairs import Piece
+from tltlc.automaton.infinite.state_merging import shrunk
+from tltlc.automaton.infinite.work import Work
 
 A, B, C = ("a",), ("b",), ("c",)
 

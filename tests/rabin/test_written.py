@@ -14,12 +14,12 @@ from tests.rabin.lassos import ABC, some_formulas, some_lassos
 from tests.rabin.reference import entries, made
 from tests.rabin.runs import compiled
 from tests.reference_formulas import read_formula
+from tltlc.automaton.infinite.factoring import Factoring
+from tltlc.automaton.infinite.infinite import infinite_form, readable
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.readback import Writer, text_of
 from tltlc.logic.formula import Formula
-from tltlc.logic.printer import ascii_text, english_text
-from tltlc.rabin.factoring import Factoring
-from tltlc.rabin.infinite import infinite_form, readable
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.written import Writer, text_of
+from tltlc.logic.text.printer import ascii_text, english_text
 
 
 def written(label: str, source: str) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.expression_eval import evaluate
+from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
 from tltlc.resolve.spec import Program, Spec
-from tltlc.source import SourceFile
 
 
 def resolved(text: str, name: str = "<test>", **options: object) -> tuple[Program, tuple[Diagnostic, ...]]:

@@ -8,13 +8,13 @@ import pytest
 
 from tests.cli.conftest import ROOT
 from tests.resolve.helpers import codes, resolved
+from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
-from tltlc.limits import WORK
+from tltlc.io.limits import WORK
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.predicate_check import work
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
+from tltlc.resolve.range_proof import work
 
 
 def test_a_wrong_range_is_an_error_with_a_witness() -> None:
@@ -177,11 +177,11 @@ def test_predicates_inside_predicates_do_not_grow_without_end() -> None:
 
 
 def test_numbers_of_any_length_end_a_proof() -> None:
-    from tltlc.expression import Const, Op, Signal
-    from tltlc.resolve.predicate_check.elimination import GiveUpError
-    from tltlc.resolve.predicate_check.exact import _Translation
-    from tltlc.resolve.predicate_check.normal_form import TooLargeError, quotient
-    from tltlc.resolve.predicate_check.region import Region
+    from tltlc.expression.tree import Const, Op, Signal
+    from tltlc.resolve.range_proof.elimination import GiveUpError
+    from tltlc.resolve.range_proof.exact import _Translation
+    from tltlc.resolve.range_proof.normal_form import TooLargeError, quotient
+    from tltlc.resolve.range_proof.region import Region
 
     for exponent, compute, error in (
         (12.0, quotient, TooLargeError),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tltlc.limits import ARITHMETIC
+from tltlc.io.limits import ARITHMETIC
 
 SIGNAL = "signal x in [0, 1]\n"
 

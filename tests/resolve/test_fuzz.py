@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.calls import calls
+from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
 
 ROOT = Path(__file__).parents[2]
 TEXTS = [

@@ -8,7 +8,7 @@ import pytest
 
 from tests.calls import calls
 from tests.resolve.helpers import good, only, resolved, write
-from tltlc.limits import IMPORTED
+from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.spec import Spec
 

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.resolve.helpers import codes, only, resolved, value
-from tltlc.expression import LEAST, Const, Expression, Signal, nodes
-from tltlc.expression_eval import evaluate
-from tltlc.expression_python import compile_expressions
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.python import compile_expressions
+from tltlc.expression.tree import LEAST, Const, Expression, Signal, nodes
 from tltlc.resolve import units
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import Quantity, constant

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
-from tltlc.expression_eval import evaluate
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.resolve import spec
-from tltlc.resolve.predicate_check import Finding, check_predicate
+from tltlc.resolve.range_proof import Finding, check_predicate
 
 D, X, Y, H, OPEN = Signal("distance(s1)"), Signal("x"), Signal("y"), Signal("health"), Signal("open")
 FAR, CLOSE = Param("far"), Param("close")

@@ -9,13 +9,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.resolve.test_predicate_check import CLOSE, FAR, D, H, X, Y, near, op, value_at
-from tltlc.expression import Const, Expression, Param, Signal
-from tltlc.resolve.predicate_check.cases import Constraint, cases
-from tltlc.resolve.predicate_check.continuity import meetings
-from tltlc.resolve.predicate_check.exact import proves_all, proves_within_exactly
-from tltlc.resolve.predicate_check.interval import EVERYTHING
-from tltlc.resolve.predicate_check.proof import Task
-from tltlc.resolve.predicate_check.region import Region, Variable
+from tltlc.expression.tree import Const, Expression, Param, Signal
+from tltlc.resolve.range_proof.cases import Constraint, cases
+from tltlc.resolve.range_proof.continuity import meetings
+from tltlc.resolve.range_proof.exact import proves_all, proves_within_exactly
+from tltlc.resolve.range_proof.interval import EVERYTHING
+from tltlc.resolve.range_proof.proof import Task
+from tltlc.resolve.range_proof.region import Region, Variable
 
 BOX: dict[Variable, tuple[float, float]] = {
     D: (0.0, float("inf")),

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tltlc.expression import Const, Expression, Op, Param, Signal
-from tltlc.resolve.predicate_check import memory
+from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.resolve.range_proof import memory
 
 YES, NO = memory.Answer(True, 7), memory.Answer(False, 8)
 
@@ -91,7 +91,7 @@ from tltlc.grammar.parser import parse
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
-from tltlc.source import SourceFile
+from tltlc.core.source import SourceFile
 for path in sorted(standard_library().glob("*.tltl")):
     resolve(parse(SourceFile(str(path), path.read_text("utf-8")))[0], ResolveOptions())
 assert "sympy" not in sys.modules, "sympy was imported"

@@ -6,8 +6,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.resolve.helpers import codes
-from tltlc.expression import ArithmeticOp, Const, Op, Signal
-from tltlc.expression_eval import evaluate
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import ArithmeticOp, Const, Op, Signal
 from tltlc.resolve.ranges import range_of
 
 COUNTS: dict[ArithmeticOp, int] = {"+": 3, "-": 2, "*": 3, "/": 2, "neg": 1, "min": 2, "max": 2, "abs": 1, "sqrt": 1}

@@ -9,8 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.resolve.helpers import codes, only, resolved
-from tltlc.expression import Const, Op
-from tltlc.expression_eval import evaluate
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import Const, Op
 from tltlc.resolve.ranges import range_of
 from tltlc.resolve.units import in_si
 

@@ -25,26 +25,26 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.policies.summary import summary as policy_summary
 from tltl_runtime.policies.summary import summary_text as policy_summary_text
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import read_baseline
-from tltl_runtime.regression.kept import read_kept
-from tltl_runtime.regression.suite import read_suite
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.suite.result_cache import read_kept
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.check import check as check_episode
-from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
-from tltl_runtime.stealth.episodes.file import to_bytes as episode_to_bytes
-from tltl_runtime.stealth.episodes.summary import judged_with, trace_csv
-from tltl_runtime.stealth.episodes.summary import summary as episode_summary
-from tltl_runtime.stealth.episodes.summary import summary_text as episode_summary_text
 from tltl_runtime.stealth.levels.file import read_level
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.training.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
-from tltl_runtime.training.metrics import METRICS, read_metrics, truncate
-from tltl_runtime.training.record import ended_as, record_so_far, recorded_end
-from tltl_runtime.training.run import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
-from tltl_runtime.training.search import Searched
-from tltl_runtime.training.settings import read_settings
-from tltl_runtime.training.windows import Windows
+from tltl_runtime.stealth.recordings.check import check as check_episode
+from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
+from tltl_runtime.stealth.recordings.file import to_bytes as episode_to_bytes
+from tltl_runtime.stealth.recordings.summary import judged_with, trace_csv
+from tltl_runtime.stealth.recordings.summary import summary as episode_summary
+from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.ppo.windows import Windows
+from tltl_runtime.training.run.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.run.metrics import METRICS, read_metrics, truncate
+from tltl_runtime.training.run.record import ended_as, record_so_far, recorded_end
+from tltl_runtime.training.run.run import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
+from tltl_runtime.training.run.settings import read_settings
 
 FOLDER: Final = ROOT / "runtime" / "tltl_runtime"
 SUITE: Final = """\

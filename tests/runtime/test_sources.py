@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime import sources
+from tltl_runtime.support import source_hash as sources
 
 
 @pytest.fixture(name="packages")

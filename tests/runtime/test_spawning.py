@@ -10,7 +10,7 @@ from contextlib import nullcontext
 import pytest
 
 from tests.waiting import HANG_S
-from tltl_runtime.spawning import interrupts_withheld
+from tltl_runtime.support.child_processes import interrupts_withheld
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs signals that can be withheld")
 

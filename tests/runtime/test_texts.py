@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.texts import column, counted, listed, number, percent, share
+from tltl_runtime.support.number_text import column, counted, listed, number, percent, share
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ import pytest
 
 from tests.waiting import HANG_S
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.file import write_episode
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.file import write_episode
 
 PROGRAM = "import sys; sys.modules['pybullet'] = None; "
-COMMAND = PROGRAM + "from tltlc.cli.main import main; main()"
+COMMAND = PROGRAM + "from tltlc.interfaces.cli.main import main; main()"
 
 
 def run(program: str, *arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:

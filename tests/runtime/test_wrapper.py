@@ -21,8 +21,8 @@ from hypothesis import strategies as st
 from tests.fixtures import cover_and_hide
 from tltl_runtime import TltlEnv
 from tltlc import TltlError
+from tltlc.core.record import replace
 from tltlc.monitor import MonitorError, RewardOptions
-from tltlc.record import replace
 
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
 SWING_UP = """

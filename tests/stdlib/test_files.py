@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from tests.resolve.helpers import good
-from tltlc.expression_eval import evaluate
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.core.source import SourceFile
+from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import PredicateDecl, SignalDecl
 from tltlc.logic.oracle import holds
-from tltlc.rabin.lasso import holds_on_lasso
 from tltlc.resolve.spec import Expect, Program, Spec, Step
-from tltlc.source import SourceFile
 
 ROOT = Path(__file__).parents[2]
 LIBRARIES = sorted(path for path in (ROOT / "stdlib_predicates").glob("*.tltl") if "_tests" not in path.name)

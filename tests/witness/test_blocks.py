@@ -7,10 +7,10 @@ from itertools import product
 import pytest
 
 import tltlc
+from tltlc.core.source import SourceFile
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
-from tltlc.witness import blocks
+from tltlc.tools.witness import blocks
 
 NAMES = """import spatial (near)
 import core as c

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import tltlc
 from tltlc.monitor import Monitor
-from tltlc.witness.samples import Obstacle, Realiser, Unrealised, csv_text, samples
+from tltlc.tools.witness.samples import Obstacle, Realiser, Unrealised, csv_text, samples
 
 
 @pytest.mark.parametrize(

@@ -12,22 +12,23 @@ from hypothesis import strategies as st
 
 import tltlc
 from tests.logic.strategies import formulas
+from tltlc.automaton.compare import Letter
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import Letter
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.core.source import SourceFile
 from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces, holds
-from tltlc.logic.printer import ascii_text
+from tltlc.logic.text.printer import ascii_text
 from tltlc.monitor import Monitor
 from tltlc.monitor.guards import holds as guard_holds
 from tltlc.monitor.traces import read_trace
 from tltlc.pipeline import compile_source
-from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.source import SourceFile
-from tltlc.witness import blocks, written
-from tltlc.witness.cover import Cover, cover
-from tltlc.witness.moves import Move, Moves
-from tltlc.witness.nearest import Nearest
-from tltlc.witness.traces import Witness, accepting, rejecting
+from tltlc.tools.witness import blocks
+from tltlc.tools.witness import text as written
+from tltlc.tools.witness.cover import Cover, cover
+from tltlc.tools.witness.nearest import Nearest
+from tltlc.tools.witness.traces import Witness, accepting, rejecting
+from tltlc.tools.witness.transitions import Move, Moves
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.record import record
+from tltlc.core.record import record
 from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]

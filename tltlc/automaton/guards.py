@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, REJECT, Diagrams
 from tltlc.automaton.fspa import Implicant
-from tltlc.limits import WORK
+from tltlc.io.limits import WORK
 from tltlc.logic import formula as build
-from tltlc.logic.printer import operand_text
+from tltlc.logic.text.printer import operand_text
 
 Cube = tuple[int, ...]
 
@@ -32,7 +32,7 @@ class TooManyPrimes(Exception):
 
     These are the prime implicants of a guard, or the products of its short form (:data:`PRIME_LIMIT`), the prime
     implicants of all guards (:data:`TOTAL_PRIME_LIMIT`), and the rows "edges" and "partial products" of
-    :data:`~tltlc.limits.WORK`.
+    :data:`~tltlc.io.limits.WORK`.
     """
 
     def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT, what: str = "prime implicants") -> None:

@@ -13,8 +13,8 @@ from types import ModuleType
 from typing import Literal, Union
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.record import record
 
 Files = dict[str, Union[str, bytes]]
 """File names (without folders) and what is to stand in them."""

@@ -12,18 +12,18 @@ from collections.abc import Sequence
 from functools import reduce
 from textwrap import wrap
 
-from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.code.names import visible
-from tltlc.backends.program import judge, pieces, states
-from tltlc.backends.program.arithmetic import defined
-from tltlc.backends.program.build import program
-from tltlc.backends.program.printer import Printer
-from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import FAILING, Assign, Int
-from tltlc.backends.program.uses import called, read
 from tltlc.monitor.samples import range_text
+from tltlc.program import judge, pieces, states
+from tltlc.program.arithmetic import defined
+from tltlc.program.build import program
+from tltlc.program.names import visible
+from tltlc.program.printer import Printer
+from tltlc.program.template import filled
+from tltlc.program.tree import FAILING, Assign, Int
+from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Atom, Param, Signal
 
 TARGET = Target(

@@ -9,7 +9,7 @@ from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import Drawing, span, whole
 from tltlc.backends.drawing.html_like import BACKED, LEFT, escaped, plain, table
-from tltlc.backends.drawing.shown import notes, on_distances
+from tltlc.backends.drawing.picture_content import notes, on_distances
 from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
 
 if TYPE_CHECKING:

@@ -11,14 +11,14 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from tltlc import __version__
-from tltlc.automaton.blowup import recursion_room
+from tltlc.artefact.size import check_size
 from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams, OutOfSteps
+from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.automaton.guards import Guards, TooManyPrimes
+from tltlc.automaton.infinite.mark_conditions import pair_marks
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.artefact.size import check_size
 from tltlc.backends.drawing.texts import visible
-from tltlc.rabin.skeleton import pair_marks
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
@@ -95,7 +95,7 @@ class _Labels:
     """
 
     def __init__(self, fspa: Fspa) -> None:
-        from tltlc.automaton.build import allowed_letters
+        from tltlc.automaton.finite.build import allowed_letters
 
         self._diagrams = Diagrams()
         self._allowed = allowed_letters(self._diagrams, fspa.exclusive)

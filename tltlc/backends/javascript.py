@@ -10,17 +10,17 @@ import re
 from collections.abc import Collection, Sequence
 from itertools import combinations
 
-from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.program import judge, pieces, states
-from tltlc.backends.program.arithmetic import defined
-from tltlc.backends.program.build import program
-from tltlc.backends.program.printer import Printer, remark
-from tltlc.backends.program.shallow import shallow
-from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import FAILING, Assign, Compare, Declare, Expression, Int
-from tltlc.backends.program.uses import called, read
+from tltlc.program import judge, pieces, states
+from tltlc.program.arithmetic import defined
+from tltlc.program.build import program
+from tltlc.program.printer import Printer, remark
+from tltlc.program.shallow import shallow
+from tltlc.program.template import filled
+from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, Int
+from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(

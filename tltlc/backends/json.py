@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
+from tltlc.artefact.decode import decode
+from tltlc.artefact.encode import encode
+from tltlc.artefact.errors import JsonSchemaValueException
+from tltlc.artefact.layout import layout
+from tltlc.artefact.locations import Path, path_of, span_of
+from tltlc.artefact.size import check_size, least_size
+from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.artefact.decode import decode
-from tltlc.backends.artefact.encode import encode
-from tltlc.backends.artefact.errors import JsonSchemaValueException
-from tltlc.backends.artefact.layout import layout
-from tltlc.backends.artefact.place import Path, path_of, span_of
-from tltlc.backends.artefact.size import check_size, least_size
-from tltlc.backends.artefact.validator import validate
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.expression import depth, most_parts
-from tltlc.limits import ARITHMETIC, ARTEFACT
-from tltlc.source import SourceFile, Span
+from tltlc.expression.tree import depth, most_parts
+from tltlc.io.limits import ARITHMETIC, ARTEFACT
 
 TARGET = Target("json", "the automaton as JSON, for every tool that loads one", (".fspa.json",))
 
@@ -53,7 +53,7 @@ def read(text: str, name: str) -> Fspa:
         TltlError: TLT0601 not an artefact, TLT0602 another version, TLT0603 against the schema,
             TLT0604 it contradicts itself.
     """
-    from tltlc.backends.artefact.consistency import problems
+    from tltlc.artefact.consistency import problems
 
     source = SourceFile(name, text)
     try:
@@ -88,7 +88,7 @@ def _document(source: SourceFile) -> dict[str, Any]:
     """The parsed text, once it is known to be an artefact of this version and to fit the schema."""
     import json
 
-    from tltlc.json_text import JsonLimitError, loads
+    from tltlc.io.json_text import JsonLimitError, loads
 
     try:
         document = loads(source.text, ARTEFACT, _no_constant)
@@ -134,7 +134,7 @@ def _other_version(source: SourceFile, version: object) -> Diagnostic:
 
 
 def _broken_schema(source: SourceFile, error: JsonSchemaValueException) -> Diagnostic:
-    from tltlc.backends.artefact.wording import worded
+    from tltlc.artefact.schema_messages import worded
 
     return _problem(source, "TLT0603", worded(error), path_of(error.place))
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from tltlc.automaton.fspa import Fspa, State
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import span
-from tltlc.backends.drawing.shown import notes, on_distances, shown
+from tltlc.backends.drawing.picture_content import notes, on_distances, shown
 from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
 
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))

@@ -14,9 +14,9 @@ from math import inf
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.code.names import Names, call, comment, in_docstring, literal, number
 from tltlc.backends.code.states import INDENT, StateWriter
-from tltlc.expression_python import Writer
+from tltlc.expression.python import Writer
+from tltlc.program.names import Names, call, comment, in_docstring, literal, number
 from tltlc.resolve.spec import Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))

@@ -11,16 +11,16 @@ from collections.abc import Sequence
 from textwrap import wrap
 from typing import ClassVar
 
-from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.program import judge, pieces, states
-from tltlc.backends.program.arithmetic import defined
-from tltlc.backends.program.build import program
-from tltlc.backends.program.printer import Printer, remark
-from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import FAILING, Assign, Binary, Comment, Declare, Type, Variable
-from tltlc.backends.program.uses import read
+from tltlc.program import judge, pieces, states
+from tltlc.program.arithmetic import defined
+from tltlc.program.build import program
+from tltlc.program.printer import Printer, remark
+from tltlc.program.template import filled
+from tltlc.program.tree import FAILING, Assign, Binary, Comment, Declare, Type, Variable
+from tltlc.program.uses import read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bevy", "rs"))

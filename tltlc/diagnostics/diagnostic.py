@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal
 
-from tltlc.record import record
-from tltlc.source import SourceFile, Span
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
 
 Severity = Literal["error", "warning", "note"]
 Applicability = Literal["safe", "maybe"]

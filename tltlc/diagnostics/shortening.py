@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.record import replace
 
 _QUOTED: Final = re.compile("`([^`]*)`")
 LONGEST_QUOTE: Final = 300

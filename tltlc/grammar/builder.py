@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from math import inf, isinf
 
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
+from tltlc.grammar.keywords import TEST_ITEMS
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Expr
-from tltlc.grammar.words import TEST_ITEMS
-from tltlc.record import replace
-from tltlc.source import SourceFile, Span
 
 OPERATORS = {
     "NOT": "not",

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar import tree
-from tltlc.grammar.then_check import check_then
+from tltlc.grammar.keywords import JUDGE, SEMANTICS, VERDICTS, closest
+from tltlc.grammar.then_rule import check_then
 from tltlc.grammar.tree import Declaration, Expr
 from tltlc.grammar.walk import expressions, parts
-from tltlc.grammar.words import JUDGE, SEMANTICS, VERDICTS, closest
-from tltlc.source import SourceFile, Span
 
 _FORMULA_CLAUSES: Final = {"reach", "keep", "avoid", "require"}
 _BOUND_OPERATORS: Final = {"within": ("F",), "for": ("G",), "after": ("X", "N"), "[": ("F", "G")}

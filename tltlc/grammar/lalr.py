@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from tltlc.core.source import Span
 from tltlc.grammar.lexer import BAD, END, Token
 from tltlc.grammar.tables import Tables
-from tltlc.source import Span
 
 
 class UnexpectedTokenError(Exception):

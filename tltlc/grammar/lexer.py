@@ -6,9 +6,9 @@ import re
 from functools import lru_cache
 from typing import Final, NamedTuple
 
+from tltlc.core.source import Span
 from tltlc.grammar.tables import Tables, load
 from tltlc.grammar.tree import Comment
-from tltlc.source import Span
 
 MAX_TOKENS: Final = 1 << 17
 """How many tokens are read: a file with more is refused, so that no file keeps a reader waiting."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Declaration, Expr
 from tltlc.grammar.walk import children, expressions
-from tltlc.record import replace
-from tltlc.source import SourceFile, Span
 
 MAX_BRACKETS: Final = 200
 """How many brackets may be open at once."""

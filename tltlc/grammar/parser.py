@@ -1,21 +1,21 @@
 """Parse a .tltl text into its syntax tree.
 
 A text without errors goes through the tables in one run.  Otherwise it is read again, declaration by
-declaration and clause by clause (:mod:`tltlc.grammar.recovery`), so that each broken one is reported once.
+declaration and clause by clause (:mod:`tltlc.grammar.mistakes.recovery`), so that each broken one is reported once.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import checks, lalr, nesting
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import MAX_TOKENS, Tokens, tokenize
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Declaration, Expr, Module
-from tltlc.limits import SOURCE
-from tltlc.source import SourceFile, Span
+from tltlc.io.limits import SOURCE
 
 MAX_CHARACTERS: Final = 1 << 20
 """Greatest length of a text."""
@@ -43,7 +43,7 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
     try:
         formula: Expr = lalr.run(load(), "expression", lexed.tokens, builder)
     except lalr.UnexpectedTokenError as error:
-        from tltlc.grammar.messages import unexpected
+        from tltlc.grammar.mistakes.messages import unexpected
 
         return None, (unexpected(source, lexed.tokens, error, "expression"),)
     too_deep = nesting.deep_expression(source, formula)
@@ -78,7 +78,7 @@ def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration,
         else:
             shallow, found = nesting.drop_deep(source, declarations)
             return shallow, (*builder.diagnostics, *found, *checks.check(source, shallow))
-    from tltlc.grammar.recovery import recover
+    from tltlc.grammar.mistakes.recovery import recover
 
     return recover(source, lexed)
 

@@ -14,7 +14,7 @@ import zlib
 from functools import lru_cache
 from typing import Any
 
-from tltlc.record import record
+from tltlc.core.record import record
 
 _FOLDER = os.path.dirname(__file__)  # noqa: PTH120 (pathlib costs the start of a command 5 ms)
 GRAMMAR = f"{_FOLDER}/tltl.lark"

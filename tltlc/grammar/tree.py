@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import Union
 
-from tltlc.record import record
-from tltlc.source import SourceFile, Span
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
 
 # --- expressions ------------------------------------------------------------------------------
 

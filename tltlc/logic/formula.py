@@ -30,12 +30,12 @@ class Formula:
     name: str
 
     def __repr__(self) -> str:
-        from tltlc.logic.printer import ascii_text
+        from tltlc.logic.text.printer import ascii_text
 
         return f"<Formula {ascii_text(self)}>"
 
     def __str__(self) -> str:
-        from tltlc.logic.printer import ascii_text
+        from tltlc.logic.text.printer import ascii_text
 
         return ascii_text(self)
 

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Final
 
+from tltlc.core.record import record
 from tltlc.logic import boolean_rules, temporal_rules
 from tltlc.logic.formula import Formula, Op, rebuild
-from tltlc.record import record
 
 _MOST_PASSES: Final = 12
 _MOST_STEPS: Final = 50

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, get_args
 
+from tltlc.core.record import record
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.tables import Tables
-from tltlc.record import record
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
 Termination = Literal["entry", "paper"]

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.core.record import record
 from tltlc.monitor.monitor import Monitor, Step
-from tltlc.record import record
 
 
 @record

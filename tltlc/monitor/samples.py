@@ -8,7 +8,7 @@ from typing import Final, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.expression_python import compile_expressions
+from tltlc.expression.python import compile_expressions
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9

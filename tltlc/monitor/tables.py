@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.automaton.fspa import Edge, Fspa
-from tltlc.record import record
+from tltlc.core.record import record
 
 
 @record

@@ -7,10 +7,10 @@ from operator import ge, gt, le, lt
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.monitor.samples import MonitorError, shown
-from tltlc.record import record, replace
 from tltlc.resolve.spec import Expect, Program, Test
 
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 from typing import Any, Final, Protocol
 
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.limits import TRACE_LINE
-from tltlc.record import record
-from tltlc.source import SourceFile, Span
+from tltlc.io.limits import TRACE_LINE
 
 OBJECTS: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
 _BLANKS: Final = " \t"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Argument, Call, Expr, Name, Parameter
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
-from tltlc.source import Span
 
 
 def match(

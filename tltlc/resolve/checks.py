@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
-from tltlc.expression import Param as ParamNode
-from tltlc.expression import Signal as SignalNode
-from tltlc.expression import nodes
-from tltlc.limits import WORK
-from tltlc.record import replace
+from tltlc.expression.tree import Param as ParamNode
+from tltlc.expression.tree import Signal as SignalNode
+from tltlc.expression.tree import nodes
+from tltlc.io.limits import WORK
 from tltlc.resolve.context import Context, Instance
 from tltlc.resolve.spec import Signal
 
 if TYPE_CHECKING:
-    from tltlc.resolve.predicate_check import Finding
+    from tltlc.resolve.range_proof import Finding
 
 N = TypeVar("N", SignalNode, ParamNode)
 
@@ -33,7 +33,7 @@ def check_predicates(context: Context) -> None:
 
     All checks together take a bounded number of steps. One warning names the predicates that were left (TLT0503).
     """
-    from tltlc.resolve.predicate_check.work import limited
+    from tltlc.resolve.range_proof.work import limited
 
     left: list[Instance] = []
     with limited(WORK["checks of all predicates"]) as work:
@@ -48,7 +48,7 @@ def check_predicates(context: Context) -> None:
 
 
 def _check(instance: Instance, context: Context) -> None:
-    from tltlc.resolve.predicate_check import check_predicate
+    from tltlc.resolve.range_proof import check_predicate
 
     found = check_predicate(instance.expression, context.signals, context.params, instance.low, instance.high)
     for finding in found:
@@ -60,7 +60,7 @@ def _check(instance: Instance, context: Context) -> None:
 
 def _holds_without_negatives(instance: Instance, context: Context) -> bool:
     """Whether the range is only wrong where a length, time or speed without a range would be negative."""
-    from tltlc.resolve.predicate_check import check_predicate
+    from tltlc.resolve.range_proof import check_predicate
 
     signals: Mapping[str, Signal] = {
         name: replace(signal, low=0.0) if signal.type in _NEVER_NEGATIVE and signal.low is None else signal
@@ -74,7 +74,7 @@ def _holds_without_negatives(instance: Instance, context: Context) -> bool:
 
 def _jumps_at_present(instance: Instance, context: Context) -> bool:
     """Whether there is a finding on continuity with every param at its value."""
-    from tltlc.resolve.predicate_check import check_predicate
+    from tltlc.resolve.range_proof import check_predicate
 
     if not _read(instance, ParamNode):
         return True

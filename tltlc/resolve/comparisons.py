@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from math import inf
 
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Edit, Fix, instead
 from tltlc.grammar.tree import Binary, Expr, Name, Number, ParamDecl, SignalDecl
 from tltlc.grammar.walk import expressions, parts
@@ -15,7 +16,6 @@ from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
-from tltlc.source import Span
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NEGATED = {"<=": ">", ">=": "<"}

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from math import ceil, inf, isinf
 
-from tltlc.expression import Const
+from tltlc.core.record import replace
+from tltlc.expression.tree import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr, Group, Interval, Number
-from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.problem import ResolutionError, problem

@@ -5,16 +5,16 @@ from __future__ import annotations
 from itertools import islice
 from typing import Any
 
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression import Expression, nodes
+from tltlc.expression.tree import Expression, nodes
 from tltlc.grammar.tree import Call, Expr, Name
 from tltlc.grammar.walk import parts
-from tltlc.limits import WORK
+from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, atom
-from tltlc.record import record
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
-from tltlc.source import SourceFile, Span
 
 LARGEST_EXPANSION = 100_000
 """Nodes of a formula, written out as a tree, that bounds, quantifiers and lets may expand to."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
-from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo

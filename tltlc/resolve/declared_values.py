@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import inf
 
-from tltlc.expression import Param as ParamNode
-from tltlc.expression import Signal as SignalNode
+from tltlc.expression.tree import Param as ParamNode
+from tltlc.expression.tree import Signal as SignalNode
 from tltlc.grammar.tree import Call, Name, ParamDecl, SignalDecl
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match

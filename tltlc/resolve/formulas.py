@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression import Const, Op
+from tltlc.expression.tree import Const, Op
 from tltlc.grammar.tree import Binary, Call, Constant, Expr, Group, LetDecl, Name, Quantified, SignalDecl, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic import formula as logic
@@ -26,7 +27,6 @@ from tltlc.resolve.scope import Binding
 from tltlc.resolve.steps import Steps, run
 from tltlc.resolve.units import value_type
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
-from tltlc.source import Span
 
 _UNARY: dict[str, Callable[[Formula], Formula]] = {
     "not": logic.not_,

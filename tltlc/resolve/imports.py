@@ -7,14 +7,14 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
+from tltlc.core.record import record, replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
-from tltlc.files import is_file, may_be_file, may_read, outside, read_source
 from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Import, Module
-from tltlc.record import record, replace
+from tltlc.io.files import is_file, may_be_file, may_read, outside, read_source
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
-from tltlc.source import SourceFile
 
 STANDARD_LIBRARY_NAME = "<standard library>"
 _NO_FILE: Final = "there is no file `{}` beside this one"

@@ -6,10 +6,10 @@ from typing import Literal
 
 from tltlc.diagnostics.diagnostic import Fix, instead
 from tltlc.grammar import tree
-from tltlc.grammar.at_top import at_top
+from tltlc.grammar.keywords import CONDITIONS
+from tltlc.grammar.mistakes.insertion import at_top
 from tltlc.grammar.tree import Call, Expr, Group, Name, SignalDecl
 from tltlc.grammar.walk import parts
-from tltlc.grammar.words import CONDITIONS
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem

@@ -3,7 +3,7 @@
 The margin is ``left - right``. Doubles subtract without losing the sign: the margin is above 0 exactly where the left
 side is greater. Scaling may lose it: a small margin over a large width rounds to 0, and the width of a large range is
 too large for a number. So a margin above 0 that might round to 0 gives at least the smaller of itself and
-:data:`tltlc.expression.LEAST`, and halves of both sides are subtracted where the width is too large.
+:data:`tltlc.expression.tree.LEAST`, and halves of both sides are subtracted where the width is too large.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from __future__ import annotations
 from math import isinf, ulp
 from typing import Final
 
-from tltlc.expression import LEAST, Const, Expression, Op
-from tltlc.record import record
+from tltlc.core.record import record
+from tltlc.expression.tree import LEAST, Const, Expression, Op
 from tltlc.resolve.values import Quantity
 
 _NEVER_LOST: Final = 2.0**-126

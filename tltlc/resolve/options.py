@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from tltlc.record import EMPTY, record
+from tltlc.core.record import EMPTY, record
 
 
 @record

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import inf
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.constants import override
 from tltlc.resolve.spec import Param

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final, cast
 
+from tltlc.core.record import record, replace
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label, instead
-from tltlc.expression import Const
+from tltlc.expression.tree import Const
 from tltlc.grammar import tree
+from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
-from tltlc.grammar.words import UNITS_ELSEWHERE
-from tltlc.record import record, replace
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
@@ -24,7 +25,6 @@ from tltlc.resolve.quantities import quantity
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.resolve.spec import Signal, ValueType
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
-from tltlc.source import Span
 
 
 @record

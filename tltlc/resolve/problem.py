@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
-from tltlc.record import replace
-from tltlc.source import SourceFile, Span
 
 
 class ResolutionError(Exception):

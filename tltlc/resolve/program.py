@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from tltlc.core.record import record, replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar.allow_index import unsilenced
 from tltlc.grammar.parser import parse_formula
-from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
-from tltlc.record import record, replace
 from tltlc.resolve import formulas, predicates
 from tltlc.resolve.checks import check_predicates
 from tltlc.resolve.context import Context
@@ -22,7 +23,6 @@ from tltlc.resolve.spec import Program, Spec, Vocabulary
 from tltlc.resolve.specs import spec, vocabulary
 from tltlc.resolve.tests import resolved_test
 from tltlc.resolve.values import Env
-from tltlc.source import SourceFile, Span
 
 FormulaOf = Callable[[Expr], "Formula | None"]
 """The formula that an expression stands for, None where it stands for none."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import isinf
 from typing import cast
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Fix, around
-from tltlc.expression import Condition, ConditionOp, Const, When
-from tltlc.expression import depth as depth_of
+from tltlc.expression.tree import Condition, ConditionOp, Const, When
+from tltlc.expression.tree import depth as depth_of
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Number
-from tltlc.limits import ARITHMETIC
-from tltlc.record import replace
+from tltlc.io.limits import ARITHMETIC
 from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.declared_values import of_signal, param, signal

@@ -3,7 +3,7 @@
 Plain interval arithmetic without outward rounding: it gives the ends by which comparisons are
 scaled, where 0 to 1 must stay 0 to 1, and the values of constants.  Each operation rounds as the
 evaluator's does, so no value of an expression lies outside its range by a rounding.  Proofs about predicates use
-the rigorous arithmetic of :mod:`tltlc.resolve.predicate_check`.
+the rigorous arithmetic of :mod:`tltlc.resolve.range_proof`.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from collections.abc import Callable
 from functools import reduce
 from math import exp, inf, isfinite, isnan, prod, sqrt, tanh
 
-from tltlc.expression_eval import MULTIPLIED_EXPONENTS
+from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
 
 Range = tuple[float, float]
 EVERYTHING: Range = (-inf, inf)
 
 
 def range_of(op: str, args: tuple[Range, ...]) -> Range:
-    """The range of ``op`` (as in :class:`tltlc.expression.Op`); everything where it has no bound or no value."""
+    """The range of ``op`` (as in :class:`tltlc.expression.tree.Op`); everything where it has no bound or no value."""
     try:
         low, high = _FUNCTIONS[op](*args)
     except (OverflowError, ZeroDivisionError):
@@ -82,7 +82,7 @@ def _power(a: Range, b: Range) -> Range:
 
 
 def _integer_power(x: float, exponent: float) -> float:
-    """``x ^ exponent``, rounded as :func:`tltlc.expression_eval.evaluate` rounds it."""
+    """``x ^ exponent``, rounded as :func:`tltlc.expression.evaluate.evaluate` rounds it."""
     factors = MULTIPLIED_EXPONENTS.get(exponent)
     return float(x**exponent) if factors is None else prod([x] * (factors - 1), start=x)
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, Union
 
+from tltlc.core.record import record, replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
-from tltlc.limits import IMPORTED
-from tltlc.record import record, replace
+from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import Loaded
 from tltlc.resolve.problem import Log, problem
-from tltlc.source import SourceFile, Span
 
 Kind = Literal["signal", "param", "predicate", "let", "entity"]
 Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, Name]

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.expression import Expression
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
+from tltlc.expression.tree import Expression
 from tltlc.logic.formula import Formula
-from tltlc.record import record
-from tltlc.source import SourceFile, Span
 
 ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "bool"]
 Judge = Literal["goal", "limit"]

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, cast
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, instead
-from tltlc.expression import Expression, nodes
-from tltlc.expression import Param as ParamNode
-from tltlc.expression import Signal as SignalNode
+from tltlc.expression.tree import Expression, nodes
+from tltlc.expression.tree import Param as ParamNode
+from tltlc.expression.tree import Signal as SignalNode
 from tltlc.grammar.tree import Clause, Expr, Name, Number, SpecDecl
 from tltlc.grammar.walk import conjuncts, operands
 from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
-from tltlc.record import replace
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.formulas import formula

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from math import isinf
 from typing import Union
 
-from tltlc.expression import Const, Expression, Op
+from tltlc.core.record import EMPTY, record, replace
+from tltlc.expression.tree import Const, Expression, Op
 from tltlc.logic.formula import Formula
-from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.context import Context
 from tltlc.resolve.ranges import overflows, range_of
 from tltlc.resolve.scope import Scope

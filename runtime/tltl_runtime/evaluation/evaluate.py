@@ -15,10 +15,10 @@ from tltl_runtime.evaluation.spread import Alone, spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
 from tltl_runtime.stealth.env import check_fit
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.supply.offer import params as level_params
-from tltl_runtime.task import load_task
 from tltl_runtime.vector.cores import cores
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from tltl_runtime.evaluation.outcome import TimedOutcome
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
-from tltl_runtime.stealth.episodes.episode import End
-from tltlc.record import record
+from tltl_runtime.stealth.recordings.episode import End
+from tltlc.core.record import record
 
 
 @record

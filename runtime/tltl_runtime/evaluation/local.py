@@ -15,7 +15,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.player import Plays, Result, Task
 from tltl_runtime.evaluation.spread import LostError
-from tltl_runtime.spawning import interrupts_withheld
+from tltl_runtime.support.child_processes import interrupts_withheld
 
 
 class Process:

@@ -8,9 +8,9 @@ import gymnasium
 import numpy as np
 
 from tltl_runtime.policies.policy import NoNumbersError, Policy
-from tltl_runtime.stealth.episodes.episode import End
+from tltl_runtime.stealth.recordings.episode import End
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.record import record
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
 """The streams of random numbers of an episode."""
@@ -42,7 +42,8 @@ class Played:
 def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> Played:
     """Play episode ``index`` of an evaluation's ``seed``, with sampled or with the likeliest actions, to its end.
 
-    ``env`` is a :class:`~tltl_runtime.wrapper.TltlEnv`, or wrappers around one, whose spec has a limit.  The episode
+    ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, or wrappers around one, whose spec has a limit.  The
+    episode
     depends on policy, environment and these three numbers alone; sampled or not, the environment's seed is the same.
 
     Raises:

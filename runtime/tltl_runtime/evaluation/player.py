@@ -11,12 +11,12 @@ from tltl_runtime.evaluation.play import Played, play
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.file import to_bytes
-from tltl_runtime.stealth.episodes.trajectory import Trajectory, trajectory
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.file import to_bytes
+from tltl_runtime.stealth.recordings.trajectory import Trajectory, trajectory
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import EMPTY, record, replace
 from tltlc.monitor import RewardOptions
-from tltlc.record import EMPTY, record, replace
 
 Recorded = Literal["none", "failures", "all"]
 

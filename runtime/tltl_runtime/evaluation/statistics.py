@@ -7,7 +7,7 @@ from math import sqrt
 from statistics import NormalDist, fmean, stdev
 from typing import Final
 
-from tltlc.record import record
+from tltlc.core.record import record
 
 Z_95: Final = NormalDist().inv_cdf(0.975)
 """The quantile of the normal distribution for an interval of 95 %."""

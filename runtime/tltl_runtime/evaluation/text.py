@@ -7,8 +7,8 @@ from typing import Final
 
 from tltl_runtime.evaluation.figures import Ended, Evaluation, Figures
 from tltl_runtime.evaluation.statistics import Spread
-from tltl_runtime.stealth.episodes.episode import End
-from tltl_runtime.texts import column, number, share
+from tltl_runtime.stealth.recordings.episode import End
+from tltl_runtime.support.number_text import column, number, share
 
 _WIDTH: Final = 24
 """Of a column, in letters."""

@@ -8,8 +8,8 @@ from typing import Any, Final
 from tltl_runtime.policies.network import Network
 from tltl_runtime.stealth.level import Sensors
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record
 from tltlc.monitor import RewardOptions
-from tltlc.record import record
 
 OBSERVATION: Final = 1
 """The version of what the environments show an agent: another one wherever the same numbers mean something else."""

@@ -16,20 +16,20 @@ from torch import Tensor
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, blank_actor, weight_count
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
-from tltl_runtime.refusals import Refusals
 from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.snapshot import BRANCHES
+from tltl_runtime.support.load_errors import Refusals
+from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import read_bytes
-from tltlc.json_text import loads
-from tltlc.limits import ARTEFACT, POLICY
+from tltlc.io.files import read_bytes
+from tltlc.io.json_text import loads
+from tltlc.io.limits import ARTEFACT, POLICY
+from tltlc.io.resources import bounded
+from tltlc.io.writing import write_file
 from tltlc.pipeline import read_artefact
-from tltlc.resources import bounded
-from tltlc.source import SourceFile
-from tltlc.writing import write_file
 
 SUFFIX: Final = ".safetensors"
 FORMAT: Final = "tltl-policy"

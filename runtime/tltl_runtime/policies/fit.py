@@ -10,7 +10,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.stealth.snapshot import BRANCHES
-from tltl_runtime.texts import listed
+from tltl_runtime.support.number_text import listed
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 
-from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.support.record_json import to_json
 from tltlc.automaton.fspa import Fspa
-from tltlc.expression_json import to_json as expression_json
+from tltlc.expression.json import to_json as expression_json
 
 
 def spec_hash(fspa: Fspa) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal, get_args
 
-from tltlc.record import record
+from tltlc.core.record import record
 
 Shapes = Mapping[str, tuple[int, ...]]
 """The shapes of observations by key, as of one environment: (n,), or (channels, height, width)."""

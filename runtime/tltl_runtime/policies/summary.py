@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.record_json import to_json
-from tltl_runtime.texts import column, share
+from tltl_runtime.support.number_text import column, share
+from tltl_runtime.support.record_json import to_json
 
 _ENDS: Final[Mapping[str, str]] = {
     "met": "the spec was met",

@@ -14,21 +14,21 @@ from gymnasium import spaces
 from gymnasium.error import ClosedEnvironmentError
 from numpy.typing import NDArray
 
+from tltl_runtime.spec.task import read_spec
+from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.stealth.capabilities.capabilities import check_supply
+from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
+from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.pictures.camera import View
-from tltl_runtime.stealth.senses.observation import Senses
-from tltl_runtime.stealth.senses.sensors import SensorChoice
+from tltl_runtime.stealth.observation.observation import Senses
+from tltl_runtime.stealth.observation.sensors import SensorChoice
+from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.signals import Signals
 from tltl_runtime.stealth.snapshot import ACTIONS, BRANCHES
-from tltl_runtime.stealth.supply.offer import params as level_params
-from tltl_runtime.stealth.supply.spec_places import SpecPlaces
-from tltl_runtime.stealth.supply.supply import check_supply
 from tltl_runtime.stealth.window.screen import MODES, Screen
 from tltl_runtime.stealth.world.player import DECISION
-from tltl_runtime.task import read_spec
-from tltl_runtime.wrapper import TltlEnv
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import RewardOptions
@@ -41,9 +41,11 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     """A level without a spec: what the agent senses, no reward and no end.
 
     Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.snapshot.BRANCHES`; ``action`` is the last
-    one that was played.  Observation: that of :class:`~tltl_runtime.stealth.senses.observation.Senses`.  ``level`` is
+    one that was played.  Observation: that of :class:`~tltl_runtime.stealth.observation.observation.Senses`.
+    ``level`` is
     the name of a shipped level or a ``.toml`` file, ``sensors`` what
-    :func:`~tltl_runtime.stealth.senses.sensors.chosen` takes.  ``reset(seed=...)`` reproduces an episode bit for bit;
+    :func:`~tltl_runtime.stealth.observation.sensors.chosen` takes.  ``reset(seed=...)`` reproduces an episode bit for
+    bit;
     ``game.seed`` is the seed to give for that, drawn where a reset was given none.  ``info["cell"]`` is the number of
     the cell, half a metre wide in each direction, in which the player stands, -1 in the air.
 
@@ -85,7 +87,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self._closed = False
 
     def tltl_params(self) -> dict[str, float]:
-        """The params of specs that the level knows, see :func:`tltl_runtime.stealth.supply.offer.params`."""
+        """The params of specs that the level knows, see :func:`tltl_runtime.stealth.capabilities.vocabulary.params`."""
         return level_params(self.level)
 
     def tltl_signals(self) -> Signals:
@@ -169,7 +171,7 @@ def make_env(
 
     ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.  Raises TltlError
     for all that the spec asks of the level and does not get, see
-    :func:`~tltl_runtime.stealth.supply.supply.check_supply`; TLT0721, where there is no spec at all.
+    :func:`~tltl_runtime.stealth.capabilities.capabilities.check_supply`; TLT0721, where there is no spec at all.
     """
     game = GameEnv(level, variant, sensors, **render)
     try:

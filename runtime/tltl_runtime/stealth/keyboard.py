@@ -7,13 +7,13 @@ from time import monotonic
 from typing import Any, Final, Protocol
 
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.episodes.cause import cause
-from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.pictures.camera import VIEWS, View
-from tltl_runtime.stealth.pictures.hud import Hud, beginning, ending, hud
-from tltl_runtime.stealth.pictures.interpolation import between
-from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.cause import cause
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.rendering.camera import VIEWS, View
+from tltl_runtime.stealth.rendering.hud import Hud, beginning, ending, hud
+from tltl_runtime.stealth.rendering.interpolation import between
+from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.window.window import Keys, Window
 from tltl_runtime.stealth.world.player import DECISION

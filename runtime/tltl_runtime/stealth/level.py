@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.record import record
+from tltlc.core.record import record
 
 Point = tuple[float, float, float]
 

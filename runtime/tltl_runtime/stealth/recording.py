@@ -10,14 +10,14 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.episodes.episode import End, Episode
-from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
-from tltl_runtime.wrapper import TltlEnv
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason
+from tltlc.io.files import reason
 from tltlc.monitor import Step
 
 
@@ -164,7 +164,7 @@ def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
 
 
 def _write(folder: Path, episode: Episode) -> None:
-    from tltl_runtime.stealth.episodes.file import file_stem, new_path, write_episode
+    from tltl_runtime.stealth.recordings.file import file_stem, new_path, write_episode
 
     write_episode(new_path(folder, file_stem(episode)), episode)
 

@@ -14,11 +14,11 @@ from rsl_rl.utils import check_nan
 from torch import Tensor, nn
 
 from tltl_runtime.policies.threads import threads
-from tltl_runtime.training.distributed import peers
-from tltl_runtime.training.environment import Finished, TrainingEnv
-from tltl_runtime.training.self_imitation import imitate
+from tltl_runtime.training.exploration.self_imitation import imitate
+from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.ppo.environment import Finished, TrainingEnv
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.record import record
 
 
 @record
@@ -42,7 +42,7 @@ class Runner(OnPolicyRunner):
 
     It prints nothing.  Updates are computed in ``cfg["threads"]`` threads, since nobody plays meanwhile.  In the first
     ``cfg["warm_up"]`` iterations the critic alone learns.  With several processes,
-    :func:`~tltl_runtime.training.distributed.joined` is around it.
+    :func:`~tltl_runtime.training.ppo.distributed.joined` is around it.
     """
 
     env: TrainingEnv

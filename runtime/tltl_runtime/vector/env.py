@@ -15,6 +15,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import DTypeLike, NDArray
 
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.vector.actions import check_batch
 from tltl_runtime.vector.arguments import check_arguments, split_mask
 from tltl_runtime.vector.cores import cores
@@ -22,7 +23,6 @@ from tltl_runtime.vector.errors import Loss, Playing, WorkerError, report
 from tltl_runtime.vector.memory import Rows, read, write_batch
 from tltl_runtime.vector.worker import EnvFunction
 from tltl_runtime.vector.workers import Workers, shared_out
-from tltl_runtime.wrapper import TltlEnv
 
 if TYPE_CHECKING:
     from tltl_runtime.vector.ray_workers import RayWorkers
@@ -52,7 +52,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     ``autoreset`` is ``SAME_STEP`` (the observation is the new episode's, ``final_obs`` and ``final_info`` are the
     old one's) or ``NEXT_STEP``, as Gymnasium defines them.  ``infos`` has the keys ``info`` at every step, an array
-    each; by default those of a :class:`~tltl_runtime.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``,
+    each; by default those of a :class:`~tltl_runtime.spec.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``,
     ``success``.  All else that an environment says comes with a reset and with the end of an episode, which has
     ``episode``, too: the sum of its rewards ``r`` and its length ``l``.
 

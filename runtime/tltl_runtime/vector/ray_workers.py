@@ -16,7 +16,7 @@ from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
 from tltl_runtime.vector.workers import TO_START_S, shared_out
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 class RayWorkers:

@@ -13,11 +13,11 @@ from typing import Any, Final
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import CloudpickleWrapper
 
-from tltl_runtime.spawning import interrupts_withheld
+from tltl_runtime.support.child_processes import interrupts_withheld
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 TO_START_S: Final = 120.0
 """How long a worker may take to import what it needs and to make its environments, at the least."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from tltlc.backends.program.build import Program
-from tltlc.backends.program.tree import (
+from tltlc.program.build import Program
+from tltlc.program.tree import (
     All,
     Any,
     Assign,

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 
 from tests.backends.program.interpreter import Scope
 from tests.resolve.test_margins import FINITE, THREE, around, varying
-from tltlc.backends.program.arithmetic import Arithmetic, defined
-from tltlc.backends.program.bounds import proven, within
+from tltlc.program.arithmetic import Arithmetic, defined
+from tltlc.program.bounds import proven, within
 from tltlc.resolve import units
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import constant

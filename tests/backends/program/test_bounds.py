@@ -13,16 +13,16 @@ from tests.backends.program.interpreter import NoValueError, Scope
 from tests.backends.strategies import expressions
 from tests.calls import calls
 from tltlc import compile_file
-from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import build, spec_from_formula
-from tltlc.backends.program.arithmetic import Arithmetic, defined
-from tltlc.backends.program.bounds import Range, proven, within
-from tltlc.backends.program.build import program
-from tltlc.backends.program.tree import Statement
-from tltlc.backends.program.uses import called
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.logic import formula as f
-from tltlc.record import replace
+from tltlc.program.arithmetic import Arithmetic, defined
+from tltlc.program.bounds import Range, proven, within
+from tltlc.program.build import program
+from tltlc.program.tree import Statement
+from tltlc.program.uses import called
 from tltlc.resolve import spec
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -2,15 +2,15 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.backends import emit
-from tltlc.backends.program import pieces
-from tltlc.backends.program.printer import Printer
-from tltlc.expression import Op
-from tltlc.expression import Param as NamedParam
-from tltlc.expression import Signal as NamedSignal
+from tltlc.core.record import replace
+from tltlc.expression.tree import Op
+from tltlc.expression.tree import Param as NamedParam
+from tltlc.expression.tree import Signal as NamedSignal
 from tltlc.logic import formula as f
-from tltlc.record import replace
+from tltlc.program import pieces
+from tltlc.program.printer import Printer
 from tltlc.resolve import spec
 
 SIGNALS = (spec.Signal("x", "number", None, None), spec.Signal("y", "bool", None, None))

@@ -10,20 +10,20 @@ from hypothesis import strategies as st
 from tests.automaton.letters import letters
 from tests.backends.program.interpreter import NoValueError, Scope, step
 from tests.backends.strategies import automata, expressions, infinite_automata
-from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.program.arithmetic import Arithmetic, defined
-from tltlc.backends.program.build import program
-from tltlc.backends.program.printer import Printer
-from tltlc.backends.program.states import ROBUSTNESS
-from tltlc.backends.program.tree import Assign, Declare, If, Statement, Variable
-from tltlc.backends.program.uses import parts, read
-from tltlc.expression import Condition, Const, Expression, Op, Signal, When
-from tltlc.expression_eval import evaluate
+from tltlc.core.record import replace
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.record import replace
+from tltlc.program.arithmetic import Arithmetic, defined
+from tltlc.program.build import program
+from tltlc.program.printer import Printer
+from tltlc.program.states import ROBUSTNESS
+from tltlc.program.tree import Assign, Declare, If, Statement, Variable
+from tltlc.program.uses import parts, read
 from tltlc.resolve import spec
 
 SIGNALS = {"distance(s1)": "s1", "health": "health"}

@@ -6,9 +6,9 @@ from functools import reduce
 from itertools import accumulate
 
 from tests.backends.program.interpreter import Scope
-from tltlc.backends.program.printer import Printer
-from tltlc.backends.program.shallow import shallow
-from tltlc.backends.program.tree import Assign, Bool, Call, Declare, Expression, If, Negate, Real, Statement, Variable
+from tltlc.program.printer import Printer
+from tltlc.program.shallow import shallow
+from tltlc.program.tree import Assign, Bool, Call, Declare, Expression, If, Negate, Real, Statement, Variable
 
 
 def greatest(terms: Iterable[Expression]) -> Expression:

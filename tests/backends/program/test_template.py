@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.backends.program.template import fill, filled
+from tltlc.program.template import fill, filled
 
 
 def test_places_are_filled_and_pieces_left_alone() -> None:

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from tltlc.backends.program.tree import (
+from tltlc.program.tree import (
     All,
     Assign,
     Binary,
@@ -15,7 +15,7 @@ from tltlc.backends.program.tree import (
     Statement,
     Variable,
 )
-from tltlc.backends.program.uses import called, read
+from tltlc.program.uses import called, read
 
 x, y, z, zero = Variable("x"), Variable("y"), Variable("z"), Real(0.0)
 STATEMENTS: list[Statement] = [

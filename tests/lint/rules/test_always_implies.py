@@ -7,7 +7,7 @@ import re
 import pytest
 
 from tests.lint.helpers import SIGNALS, codes, found, marked
-from tltlc.comparison import are_equivalent
+from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
 
 

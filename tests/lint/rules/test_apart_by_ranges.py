@@ -7,7 +7,7 @@ from hypothesis import given
 
 from tests.lint.helpers import RANGES, of, remarks
 from tests.lint.strategies import RANGED, World, specs
-from tltlc.lint.rules import apart_by_ranges
+from tltlc.tools.lint.rules import apart_by_ranges
 
 
 @pytest.mark.parametrize(

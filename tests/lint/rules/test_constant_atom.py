@@ -7,7 +7,7 @@ from hypothesis import given
 
 from tests.lint.helpers import block, codes, found, remarks
 from tests.lint.predicates import PREDICATES, Predicate
-from tltlc.lint.rules import constant_atom
+from tltlc.tools.lint.rules import constant_atom
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.lint.helpers import SIGNALS, block, found, of
-from tltlc.comparison import are_equivalent
+from tltlc.automaton.compare import are_equivalent
 
 
 @pytest.mark.parametrize(

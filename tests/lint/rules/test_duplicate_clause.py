@@ -7,10 +7,10 @@ import pytest
 import tltlc
 from tests.calls import calls
 from tests.lint.helpers import SIGNALS, mended, of
-from tltlc.lint.rules.duplicate_clause import RULE
-from tltlc.lint.run import view_of
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.lint.rules.duplicate_clause import RULE
+from tltlc.tools.lint.run import view_of
 
 
 @pytest.mark.parametrize(

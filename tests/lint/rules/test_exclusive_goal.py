@@ -7,9 +7,9 @@ from hypothesis import given
 
 from tests.lint.helpers import APART, PLACES, of, remarks
 from tests.lint.strategies import EXCLUSIVE, World, specs
-from tltlc.lint.goals import goals
-from tltlc.lint.rules import exclusive_goal
-from tltlc.lint.view import inner
+from tltlc.tools.lint.file_view import inner
+from tltlc.tools.lint.goals import goals
+from tltlc.tools.lint.rules import exclusive_goal
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.lint.helpers import PLACES, SIGNALS, block, codes, found, of
-from tltlc.comparison import are_equivalent
+from tltlc.automaton.compare import are_equivalent
 
 
 def test_what_speaks_of_the_first_step() -> None:

@@ -7,7 +7,7 @@ from hypothesis import given
 
 from tests.lint.helpers import block, of, remarks
 from tests.lint.predicates import PREDICATES, Predicate
-from tltlc.lint.rules import flat_goal
+from tltlc.tools.lint.rules import flat_goal
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ from hypothesis import given
 
 from tests.lint.helpers import SIGNALS, codes, remarks
 from tests.lint.strategies import FREE, World, specs
-from tltlc.comparison import are_equivalent
-from tltlc.lint.rules import idle_until
+from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
+from tltlc.tools.lint.rules import idle_until
 
 
 @pytest.mark.parametrize(

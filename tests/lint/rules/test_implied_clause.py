@@ -12,10 +12,10 @@ import tltlc
 from tests.lint.helpers import RANGES, SIGNALS, block, codes, found, of, remarks
 from tests.lint.strategies import SMALL, World, specs
 from tests.lint.traces import both, includes
-from tltlc.automaton.build import build, spec_from_formula
-from tltlc.comparison import are_equivalent, is_included
-from tltlc.lint.rules import duplicate_clause, implied_clause, recurrence
+from tltlc.automaton.compare import are_equivalent, is_included
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.logic.formula import Formula, and_
+from tltlc.tools.lint.rules import duplicate_clause, implied_clause, recurrence
 
 
 def automaton(formulas: list[Formula]) -> tltlc.Fspa:

@@ -7,9 +7,9 @@ from hypothesis import given
 
 from tests.lint.helpers import codes, marked, remarks
 from tests.lint.strategies import FREE, World, specs
-from tltlc.lint.rules import lasting_goal
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import compile_text
+from tltlc.tools.lint.rules import lasting_goal
 
 SIGNALS = "clock 10 Hz\nsignal a: bool\nsignal b: bool\nsignal c: bool\n"
 

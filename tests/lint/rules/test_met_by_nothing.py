@@ -12,11 +12,11 @@ from hypothesis import given
 from tests.lint.helpers import RANGES, block, codes, found, marked, of, remarks
 from tests.lint.strategies import World, specs
 from tests.lint.traces import both
-from tltlc.lint.goals import goals
-from tltlc.lint.rule import Remark
-from tltlc.lint.rules import met_by_nothing
-from tltlc.lint.view import SpecView
 from tltlc.logic.formula import TRUE, Formula, atom
+from tltlc.tools.lint.file_view import SpecView
+from tltlc.tools.lint.goals import goals
+from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rules import met_by_nothing
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

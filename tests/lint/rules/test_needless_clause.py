@@ -9,11 +9,11 @@ import tltlc
 from tests.calls import calls
 from tests.lint.helpers import APART, PLACES, RANGES, SIGNALS, found, of, remarks
 from tests.lint.strategies import World, specs
-from tltlc.lint.rules import needless_clause
-from tltlc.lint.rules.needless_clause import RULE
-from tltlc.lint.run import view_of
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.lint.rules import needless_clause
+from tltlc.tools.lint.rules.needless_clause import RULE
+from tltlc.tools.lint.run import view_of
 
 
 @pytest.mark.parametrize(

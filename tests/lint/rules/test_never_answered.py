@@ -7,8 +7,8 @@ from hypothesis import given
 
 from tests.lint.helpers import APART, block, codes, of, remarks
 from tests.lint.strategies import World, specs
-from tltlc.lint.rules import never_answered
 from tltlc.logic.formula import and_
+from tltlc.tools.lint.rules import never_answered
 
 
 @pytest.mark.parametrize(

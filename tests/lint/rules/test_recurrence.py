@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 import tltlc
 from tests.lint.helpers import PLACES, SIGNALS, block, codes, found, marked, of, remarks
 from tests.lint.strategies import FREE, SMALL, World, specs
-from tltlc.automaton.build import build
-from tltlc.comparison import are_equivalent
+from tltlc.automaton.compare import are_equivalent
+from tltlc.automaton.finite.build import build
+from tltlc.core.source import SourceFile
 from tltlc.grammar.tree import Unary
-from tltlc.lint.rule import Remark
-from tltlc.lint.rules import recurrence
-from tltlc.lint.view import SpecView
 from tltlc.pipeline import compile_source
-from tltlc.source import SourceFile
+from tltlc.tools.lint.file_view import SpecView
+from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rules import recurrence
 
 CLAUSES = (
     *("keep {}", "avoid {}", "reach {}", "reach {} then {}", "require G {}", "require F {}"),

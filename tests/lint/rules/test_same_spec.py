@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 import tltlc
 from tests.lint.helpers import SIGNALS, codes
 from tests.lint.strategies import EXCLUSIVE, SMALL, World, specs
-from tltlc.comparison import are_equivalent
-from tltlc.lint.rules import same_spec
-from tltlc.lint.run import view_of
+from tltlc.automaton.compare import are_equivalent
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.lint.rules import same_spec
+from tltlc.tools.lint.run import view_of
 
 
 @pytest.mark.parametrize(

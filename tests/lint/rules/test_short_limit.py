@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tests.lint.helpers import SIGNALS, codes, remarks
 from tests.lint.strategies import World, specs
-from tltlc.lint.rules import short_limit
+from tltlc.tools.lint.rules import short_limit
 
 
 @pytest.mark.parametrize(

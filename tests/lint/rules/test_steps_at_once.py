@@ -11,7 +11,7 @@ import tltlc
 from tests.lint.helpers import APART, PLACES, block, found, of, remarks
 from tests.lint.strategies import World, specs
 from tests.lint.traces import Traces
-from tltlc.lint.rules import steps_at_once
+from tltlc.tools.lint.rules import steps_at_once
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from tests.calls import calls
 from tests.lint.helpers import codes
-from tltlc.lint.rules.unused_import import RULE
-from tltlc.lint.run import view_of
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
-from tltlc.source import SourceFile
+from tltlc.tools.lint.rules.unused_import import RULE
+from tltlc.tools.lint.run import view_of
 
 
 def test_an_import_may_count_without_being_named(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]

@@ -13,7 +13,7 @@ from typing import Final
 NEVER_ENDS: Final = "// an analysis of this text never ends\n"
 
 if "--multiprocessing-fork" in sys.orig_argv and "BEGUN" in os.environ:
-    from tltlc.lsp import analysis
+    from tltlc.interfaces.lsp import analysis
 
     _analyse = analysis.analyse
 

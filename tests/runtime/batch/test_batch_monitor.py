@@ -14,15 +14,15 @@ from hypothesis import strategies as st
 from benchmarks.specs import PAPER_SPECS, source, trace
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import atom_traces, automata
-from tltl_runtime.batch import BatchMonitor, BatchStep
-from tltl_runtime.batch import guards as batch_guards
-from tltl_runtime.batch.rewards import VERDICTS
+from tltl_runtime.spec.batch import BatchMonitor, BatchStep
+from tltl_runtime.spec.batch import guards as batch_guards
+from tltl_runtime.spec.batch.rewards import VERDICTS
 from tltlc import compile_file, compile_text
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, MonitorError, RewardOptions, Step
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}

@@ -13,18 +13,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.resolve.test_margins import FINITE, THREE, around, varying
-from tltl_runtime.batch import BatchMonitor
-from tltl_runtime.batch.formats import fits, narrowed
+from tltl_runtime.spec.batch import BatchMonitor
+from tltl_runtime.spec.batch.formats import fits, narrowed
 from tltlc import compile_text
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.conformance.borders import EXTREMES, Border
-from tltlc.expression import Expression
+from tltlc.core.record import replace
+from tltlc.expression.tree import Expression
 from tltlc.logic import formula as f
-from tltlc.record import replace
 from tltlc.resolve import spec, units
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import constant
+from tltlc.tools.conformance.borders import EXTREMES, Border
 
 FORMATS = (torch.float64, torch.float32)
 NARROW = st.floats(allow_nan=False, allow_infinity=False, width=32)

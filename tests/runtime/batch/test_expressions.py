@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 
 from tests.fixtures import near
 from tests.monitor.strategies import PARAMS, SIGNALS, expressions, numbers
-from tltl_runtime.batch import BatchMonitor
-from tltl_runtime.batch.expressions import Program
-from tltlc.automaton.build import build, spec_from_formula
-from tltlc.expression import ArithmeticOp, Condition, Const, Expression, Op, Signal, When
-from tltlc.expression_eval import evaluate
+from tltl_runtime.spec.batch import BatchMonitor
+from tltl_runtime.spec.batch.expressions import Program
+from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.core.record import replace
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import ArithmeticOp, Condition, Const, Expression, Op, Signal, When
 from tltlc.logic import formula as f
 from tltlc.monitor import MonitorError
-from tltlc.record import replace
 from tltlc.resolve import spec
 
 FAILURES = (ZeroDivisionError, OverflowError, ValueError)

@@ -11,11 +11,11 @@ import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import untrained
-from tltl_runtime.commands.training_run import Asked, new_run
+from tltl_runtime.cli.support.training_run import Asked, new_run
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.training.run import read_run, write_run
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.training.run.run import read_run, write_run
 
 Run = Callable[..., Outcome]
 LEVEL = "cover_and_hide:v0+guard_alert+edits/wide.toml"

@@ -14,10 +14,10 @@ from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tests.waiting import HANG_S
-from tltl_runtime.commands.baseline import _advice
-from tltl_runtime.regression.baseline import read_baseline
-from tltl_runtime.regression.suite import Case, Thresholds
-from tltl_runtime.sources import sources_hash
+from tltl_runtime.cli.baseline import _advice
+from tltl_runtime.regression.suite.suite import Case, Thresholds
+from tltl_runtime.regression.verdict.baseline import read_baseline
+from tltl_runtime.support.source_hash import sources_hash
 
 Run = Callable[..., Outcome]
 ONE = ("--workers", "1")
@@ -84,7 +84,7 @@ def test_a_first_baseline_that_is_stopped_says_what_there_is(
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tltl_runtime.regression.baseline_run._played", stopped)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.baseline_run._played", stopped)
     Path("game.baseline.json").unlink()
     found = tltlc("baseline", "game.toml", *ONE)
     assert (found.status, found.out) == (130, "")

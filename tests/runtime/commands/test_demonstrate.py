@@ -13,8 +13,8 @@ from PIL import Image
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.waiting import HANG_S
-from tltl_runtime.stealth.episodes.check import check
-from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.recordings.check import check
+from tltl_runtime.stealth.recordings.file import read_episode
 
 
 def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

@@ -27,12 +27,12 @@ from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
-from tltl_runtime.stealth.episodes.file import read_episode, write_episode
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.training.run import Run as Training
-from tltl_runtime.training.run import write_run
-from tltl_runtime.training.settings import read_settings
-from tltlc.record import replace
+from tltl_runtime.stealth.recordings.file import read_episode, write_episode
+from tltl_runtime.training.run.run import Run as Training
+from tltl_runtime.training.run.run import write_run
+from tltl_runtime.training.run.settings import read_settings
+from tltlc.core.record import replace
 
 Run = Callable[..., Outcome]
 STARTER = Path(tltl_runtime.__file__).with_name("starter")

@@ -18,10 +18,10 @@ from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
-from tltl_runtime.training.metrics import METRICS, measurements
-from tltl_runtime.training.run import POLICY, write_run
-from tltl_runtime.training.train import train
-from tltlc.record import replace
+from tltl_runtime.training.run.metrics import METRICS, measurements
+from tltl_runtime.training.run.run import POLICY, write_run
+from tltl_runtime.training.run.train import train
+from tltlc.core.record import replace
 
 TRAINING = {
     "seed": 3,

@@ -14,7 +14,7 @@ from tests.waiting import HANG_S
 @pytest.mark.parametrize("command", ["train soon.tltl", "evaluate --level branching", "inspect branching"])
 def test_the_extra_that_is_missing_is_named(command: str, tmp_path: Path) -> None:
     hide = "import sys; sys.modules['torch'] = None"
-    program = f"{hide}; from tltlc.cli.main import main; main({command.split()})"
+    program = f"{hide}; from tltlc.interfaces.cli.main import main; main({command.split()})"
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S, check=False
     )
@@ -29,7 +29,7 @@ def test_the_extra_that_is_missing_is_named(command: str, tmp_path: Path) -> Non
 def test_what_is_not_there_is_told_before_what_learns_is_loaded(tmp_path: Path) -> None:
     program = """
 import sys
-from tltlc.cli.main import main
+from tltlc.interfaces.cli.main import main
 
 for command in sys.argv[1:]:
     try:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tests.cli.conftest import Outcome, inside, tltlc  # noqa: F401
-from tltl_runtime.commands.level_copy import NAMES
-from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.cli.support.level_copy import NAMES
+from tltl_runtime.stealth.capabilities.reach import reachable
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.supply.reach import reachable
+from tltl_runtime.stealth.recordings.file import read_episode
 
 
 @pytest.mark.parametrize("name", NAMES)

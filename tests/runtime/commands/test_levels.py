@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
+from tltl_runtime.stealth.capabilities.vocabulary import offers
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.signals import readers
-from tltl_runtime.stealth.supply.offer import offers
 
 EXAMPLES = ROOT / "examples"
 SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.made import case, made
-from tltl_runtime.commands.plain import plain
-from tltl_runtime.commands.regression_display import RegressionDisplay
-from tltl_runtime.commands.regression_text import case_lines
-from tltl_runtime.regression.case_report import CaseReport
-from tltlc.record import replace
+from tltl_runtime.cli.support.printable import plain
+from tltl_runtime.cli.support.regression_display import RegressionDisplay
+from tltl_runtime.cli.support.regression_text import case_lines
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltlc.core.record import replace
 
 EVIL = "x\n::error::forged\r\n\x1b[31mred\x07"
 

@@ -15,9 +15,9 @@ import pytest
 from tests.runtime.commands.watched import Watched
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
 from tests.waiting import HANG_S
-from tltl_runtime.stealth.episodes.check import check, resimulate
-from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.recordings.check import check, resimulate
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import read_episode
 
 needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 

@@ -16,11 +16,11 @@ from tests.runtime.commands.test_play import PLAYERS, ended, needs_screen, start
 from tests.runtime.stealth.xvfb import keys, screen
 from tests.runtime.training.imitating import SOON, kept, played
 from tests.waiting import HANG_S
-from tltl_runtime.commands.record import _Kept
+from tltl_runtime.cli.record import _Kept
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.check import check
-from tltl_runtime.stealth.episodes.file import read_episode
-from tltl_runtime.training.demonstrations import Demonstrations
+from tltl_runtime.stealth.recordings.check import check
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.training.imitation.demonstrations import Demonstrations
 
 TltlcFunction = Callable[..., Outcome]
 
@@ -189,7 +189,7 @@ def test_what_its_folder_refuses_finds_another_place(
 ) -> None:
     spare, folder = tmp_path / "spare", tmp_path / "mine"
     spare.mkdir()
-    monkeypatch.setattr("tltl_runtime.commands.recording_files.gettempdir", lambda: str(spare))
+    monkeypatch.setattr("tltl_runtime.cli.support.recording_files.gettempdir", lambda: str(spare))
     env = make_env("cover_and_hide", "v0", SOON)
     made = Demonstrations(folder, env.unwrapped.level, env.task)  # type: ignore[attr-defined]
     env.close()

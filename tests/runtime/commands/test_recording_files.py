@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 import pytest
 
-from tltl_runtime.commands.recording_files import RecordingFiles
+from tltl_runtime.cli.support.recording_files import RecordingFiles
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.file import read_episode
 from tltlc.diagnostics.diagnostic import TltlError
 
 
@@ -23,7 +23,7 @@ def test_a_recording_finds_a_place_where_its_own_is_refused(
     wanted, spare = tmp_path / "wanted", tmp_path / "spare"
     wanted.mkdir()
     spare.mkdir()
-    monkeypatch.setattr("tltl_runtime.commands.recording_files.gettempdir", lambda: str(spare))
+    monkeypatch.setattr("tltl_runtime.cli.support.recording_files.gettempdir", lambda: str(spare))
     files = RecordingFiles(wanted, "navigation-v0")
     wanted.rmdir()
     assert files.save(env.episode) == str(spare / "navigation-v0.episode.npz")

@@ -19,10 +19,10 @@ from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit, write_game
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
-from tltl_runtime.regression.run import CASES, case_folder
-from tltl_runtime.regression.suite import read_suite
-from tltlc.cli.main import main
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.run import CASES, case_folder
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.cli.main import main
 
 Run = Callable[..., Outcome]
 NAMES = ["room:v0", "room:v1", "hopeless"]
@@ -153,7 +153,7 @@ def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tltl_runtime.regression.run._done", stopped)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.run._done", stopped)
     found = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
     assert found.status == 130
     assert found.out == "no case was judged\n"
@@ -181,7 +181,7 @@ def test_what_ended_a_run_is_told_where_the_page_cannot_be_written_either(
     (folder / CASES / "hopeless" / "case.json").unlink()
     (folder / "report.html").unlink()
     (folder / "report.html").mkdir()
-    monkeypatch.setattr("tltl_runtime.regression.run.judged", ended)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.run.judged", ended)
     found = tltlc("regress", "game.toml", *ONE)
     assert found.status == status
     assert "error[TLT0005]: cannot write `regression/game/report.html`" in found.err
@@ -446,7 +446,7 @@ def test_findings_of_the_shipped_suite_are_said_to_be_meant(
 ) -> None:
     meant = "v1 and v2 of the shipped levels are changed on purpose: see the page"
     assert meant not in tltlc("regress", "game.toml", *ONE).out
-    monkeypatch.setattr("tltl_runtime.commands.regression_run.SHIPPED", Path("game.toml"))
+    monkeypatch.setattr("tltl_runtime.cli.support.regression_run.SHIPPED", Path("game.toml"))
     assert meant not in tltlc("regress", "game.toml", *ONE).out, "the finding is of a level as it was designed"
     edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nvariant = "v1"')
     assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", meant]
@@ -461,5 +461,5 @@ def test_a_pipe_behind_changed_is_not_read(
 ) -> None:
     pipes.put_beside(Path("pipe.toml"))
     pipes.forbid(monkeypatch)
-    monkeypatch.setattr("tltl_runtime.commands.regression_run.run", lambda _: 0)
+    monkeypatch.setattr("tltl_runtime.cli.support.regression_run.run", lambda _: 0)
     assert tltlc("regress", "--changed", "pipe.toml").status == 0

@@ -9,8 +9,8 @@ import sys
 import pytest
 
 from tests.runtime.regression.made import case, made
-from tltl_runtime.commands.regression_display import RegressionDisplay
-from tltlc.record import replace
+from tltl_runtime.cli.support.regression_display import RegressionDisplay
+from tltlc.core.record import replace
 
 
 class Terminal(io.StringIO):

@@ -8,11 +8,11 @@ import pytest
 
 from tests.runtime.regression.game import Played, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.commands.regression_files import Outcome, json_text, write_reports
-from tltl_runtime.regression.baseline import baseline_of
-from tltl_runtime.regression.run import Done, regress
-from tltl_runtime.regression.suite import SHIPPED, Suite, read_suite
-from tltlc.record import replace
+from tltl_runtime.cli.support.regression_files import Outcome, json_text, write_reports
+from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite
+from tltl_runtime.regression.verdict.baseline import baseline_of
+from tltl_runtime.regression.verdict.run import Done, regress
+from tltlc.core.record import replace
 
 NAMES = ("room:v0", "room:v1", "hopeless")
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from tests.runtime.regression.made import several
-from tltl_runtime.commands.regression_text import sum_line
+from tltl_runtime.cli.support.regression_text import sum_line
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.retrained import Outcome, Retrained, Trained
-from tltl_runtime.regression.verdict import Verdict
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.retrain.retrained import Outcome, Retrained, Trained
+from tltl_runtime.regression.verdict.verdict import Verdict
 
 TRAINED = Trained(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)
 

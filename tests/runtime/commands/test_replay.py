@@ -16,23 +16,23 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import tltl_runtime.stealth.pictures.film as film
+import tltl_runtime.stealth.rendering.film as film
 from tests.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
 from tests.waiting import HANG_S
-from tltl_runtime.commands.notation import NOTATIONS
-from tltl_runtime.commands.replay import _VIEWS
+from tltl_runtime.cli.replay import _VIEWS
+from tltl_runtime.cli.support.notation import NOTATIONS
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.episodes.file import write_episode
-from tltl_runtime.stealth.episodes.summary import Notation, judged_with
-from tltl_runtime.stealth.pictures.camera import VIEWS
-from tltl_runtime.stealth.pictures.film import STRIP, frames
-from tltl_runtime.stealth.pictures.film_file import write_gif
-from tltl_runtime.stealth.pictures.plan import draw_episode, state_colour
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import write_episode
+from tltl_runtime.stealth.recordings.summary import Notation, judged_with
+from tltl_runtime.stealth.rendering.camera import VIEWS
+from tltl_runtime.stealth.rendering.film import STRIP, frames
+from tltl_runtime.stealth.rendering.film_file import write_gif
+from tltl_runtime.stealth.rendering.plan import draw_episode, state_colour
+from tltlc.core.record import replace
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
-from tltlc.record import replace
 
 STEPS = 20
 FILE = "run.episode.npz"
@@ -130,7 +130,7 @@ def test_the_notations_are_those_that_there_are() -> None:
 
 def test_messages_for_programs_are_json(recorded: Path) -> None:
     Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
-    program = "import sys; from tltlc.cli.main import main; main(sys.argv[1:])"
+    program = "import sys; from tltlc.interfaces.cli.main import main; main(sys.argv[1:])"
     arguments = [sys.executable, "-c", program, "replay", "cut.episode.npz", "--format", "json"]
     done = subprocess.run(arguments, capture_output=True, check=False, timeout=HANG_S)
     assert done.returncode == 1

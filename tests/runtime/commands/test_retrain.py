@@ -22,7 +22,7 @@ from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.retrained import Retrained, Trained
+from tltl_runtime.regression.retrain.retrained import Retrained, Trained
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -132,8 +132,8 @@ def _three(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained])
     cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")]
     Path("game.toml").write_text(head + "".join(cases), encoding="utf-8")
     waiting = iter(outcomes)
-    monkeypatch.setattr("tltl_runtime.commands.retrain._train", lambda *_: None)
-    monkeypatch.setattr("tltl_runtime.commands.retrain.retrained", lambda *_: next(waiting)())
+    monkeypatch.setattr("tltl_runtime.cli.support.retraining._train", lambda *_: None)
+    monkeypatch.setattr("tltl_runtime.cli.support.retraining.retrained", lambda *_: next(waiting)())
 
 
 def test_what_is_wrong_with_one_training_leaves_the_others(

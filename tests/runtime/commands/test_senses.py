@@ -8,7 +8,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from tltl_runtime.commands.senses import senses_options
+from tltl_runtime.cli.support.sensor_options import senses_options
 
 
 def said(*arguments: str) -> tuple[Any, str]:

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
-from tltl_runtime.commands import table1
-from tltl_runtime.held_folder import held
-from tltl_runtime.regression import paper_table, table_cells
-from tltl_runtime.regression.paper_table import VARIANTS
-from tltl_runtime.training.settings import read_settings
+from tltl_runtime.cli import table1
+from tltl_runtime.regression.table1 import paper_table, table_cells
+from tltl_runtime.regression.table1.paper_table import VARIANTS
+from tltl_runtime.support.folder_lock import held
+from tltl_runtime.training.run.settings import read_settings
 from tltlc.diagnostics.diagnostic import Diagnostic
 
 Run = Callable[..., Outcome]

@@ -22,12 +22,12 @@ from tests.docs.blocks import DOCS
 from tests.runtime.training.test_settings import GOLDEN
 from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.run.metrics import METRICS, read_metrics
+from tltl_runtime.training.run.settings import default_text, read_settings
 from tltl_runtime.training.runner import Iteration, Runner
-from tltl_runtime.training.search import Searched
-from tltl_runtime.training.settings import default_text, read_settings
-from tltlc.cli.main import main
-from tltlc.record import replace
+from tltlc.core.record import replace
+from tltlc.interfaces.cli.main import main
 
 TltlcFunction = Callable[..., Outcome]
 

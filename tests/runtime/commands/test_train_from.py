@@ -15,7 +15,7 @@ from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_path
-from tltl_runtime.training.initial import weights_hash
+from tltl_runtime.training.run.initial_policy import weights_hash
 
 TltlcFunction = Callable[..., Outcome]
 

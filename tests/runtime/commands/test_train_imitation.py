@@ -15,9 +15,9 @@ from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.commands.test_train import SMALL
 from tests.runtime.training.imitating import SOON, kept, played
 from tests.waiting import until
-from tltl_runtime.training.checkpoint import read_checkpoint
-from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.settings import read_settings
+from tltl_runtime.training.run.checkpoint import read_checkpoint
+from tltl_runtime.training.run.metrics import METRICS, read_metrics
+from tltl_runtime.training.run.settings import read_settings
 
 TltlcFunction = Callable[..., Outcome]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.training.reports import a_report
-from tltl_runtime.commands.training_text import (
+from tltl_runtime.cli.support.training_text import (
     confirmation_line,
     duration,
     found_line,
@@ -14,10 +14,10 @@ from tltl_runtime.commands.training_text import (
     search_line,
     seconds_left,
 )
-from tltl_runtime.training.report import Confirmation
-from tltl_runtime.training.search import Searched
-from tltl_runtime.training.settings import Stop, read_settings
-from tltlc.record import replace
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.run.report import Confirmation
+from tltl_runtime.training.run.settings import Stop, read_settings
+from tltlc.core.record import replace
 
 
 @pytest.fixture(scope="module")

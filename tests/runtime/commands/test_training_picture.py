@@ -10,10 +10,10 @@ from rich.console import Console
 
 from tests.runtime.training.reports import a_report
 from tests.runtime.training.runs import run_in
-from tltl_runtime.commands.training_picture import Picture
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.search import Searched
-from tltlc.record import replace
+from tltl_runtime.cli.support.training_picture import Picture
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.run.report import Report
+from tltlc.core.record import replace
 
 SEARCHED = Searched(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80), complete=True)
 

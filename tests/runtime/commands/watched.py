@@ -139,7 +139,7 @@ def tell_what_happens(place: Path) -> None:
 
 
 if __name__ == "__main__":
-    from tltlc.cli.main import main
+    from tltlc.interfaces.cli.main import main
 
     tell_what_happens(Path(sys.argv[1]))
     # As a process of its own, which handles signals.

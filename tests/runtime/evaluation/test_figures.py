@@ -7,8 +7,8 @@ import pytest
 from tltl_runtime.evaluation.figures import Ended, evaluation_of, figures_of
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.text import report_text
-from tltl_runtime.stealth.episodes.episode import End
-from tltlc.record import replace
+from tltl_runtime.stealth.recordings.episode import End
+from tltlc.core.record import replace
 
 PASSED = Played(0, 7, True, "satisfied", "success", 1.0, 0.75, 100, 15.0, 4, 4, "Keep alive throughout.")
 

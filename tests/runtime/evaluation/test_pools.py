@@ -24,8 +24,8 @@ from tltl_runtime.evaluation.play import Played, episode_seed
 from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError, spread
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.stealth.episodes.file import from_bytes
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.recordings.file import from_bytes
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 

@@ -7,9 +7,9 @@ import torch
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, new_actor
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.wrapper import TltlEnv
 from tltlc.monitor import RewardOptions
 
 SOON = """\

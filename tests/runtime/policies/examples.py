@@ -13,7 +13,7 @@ from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, new_actor
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.senses.sensors import SensorChoice
+from tltl_runtime.stealth.observation.sensors import SensorChoice
 from tltlc.monitor import RewardOptions
 
 SMALL = Network(hidden=(32, 32), channels=(4, 4))

@@ -15,8 +15,8 @@ from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.onnx import to_onnx
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policies
+from tltlc.core.source import SourceFile
 from tltlc.pipeline import read_artefact
-from tltlc.source import SourceFile
 
 onnxruntime = pytest.importorskip("onnxruntime")
 

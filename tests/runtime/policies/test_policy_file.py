@@ -22,9 +22,9 @@ from tests.runtime.policies.examples import card_of, observation_of, policy_of
 from tltl_runtime.policies.file import MAX_BYTES, check_size, from_bytes, read_policy, to_bytes, write_policy
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import NoNumbersError, Policy, new_actor
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
-from tltlc.record import replace
 
 GOLDEN = Path(__file__).parents[2] / "golden" / "policy"
 

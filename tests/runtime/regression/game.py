@@ -9,12 +9,12 @@ import pytest
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import write_baseline
-from tltl_runtime.regression.baseline_run import record_baseline
-from tltl_runtime.regression.suite import Case, Suite, baseline_path, read_suite
-from tltl_runtime.training.settings import read_settings
-from tltlc.record import replace
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.suite.suite import Case, Suite, baseline_path, read_suite
+from tltl_runtime.regression.verdict.baseline import write_baseline
+from tltl_runtime.regression.verdict.baseline_run import record_baseline
+from tltl_runtime.training.run.settings import read_settings
+from tltlc.core.record import replace
 
 EASY = """\
 import stealth
@@ -79,7 +79,7 @@ def with_few_environments(patch: pytest.MonkeyPatch) -> None:
     """Have trainings that begin with the policies of cases play in few environments, so that an iteration is short."""
     settings = read_settings()
     few = replace(settings, rollout=replace(settings.rollout, envs=4))
-    patch.setattr("tltl_runtime.regression.retrain.read_settings", lambda: few)
+    patch.setattr("tltl_runtime.regression.retrain.retrain.read_settings", lambda: few)
 
 
 def edit(name: str, old: str, new: str) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tltl_runtime.regression.account import Account, Arrival, Nearest
-from tltl_runtime.regression.baseline import Identity, Reference
-from tltl_runtime.regression.suite import Case, Suite, Thresholds, baseline_path
-from tltl_runtime.regression.way import Way
-from tltl_runtime.stealth.episodes.cause import Kind
+from tltl_runtime.regression.explain.account import Account, Arrival, Nearest
+from tltl_runtime.regression.explain.path_points import Way
+from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
+from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.stealth.level import Point
-from tltlc.record import replace
+from tltl_runtime.stealth.recordings.cause import Kind
+from tltlc.core.record import replace
 
 ROOM = """doc = "A room."
 

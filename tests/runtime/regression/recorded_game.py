@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import Played, with_baseline, write_game
-from tltl_runtime.regression.baseline import baseline_of
-from tltl_runtime.regression.run import regress
+from tltl_runtime.regression.verdict.baseline import baseline_of
+from tltl_runtime.regression.verdict.run import regress
 
 
 @pytest.fixture(name="recorded", scope="module")

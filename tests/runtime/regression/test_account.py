@@ -8,11 +8,11 @@ from math import dist
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.record_json import from_json, to_json
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.explain import findings
-from tltl_runtime.stealth.episodes.episode import Episode
-from tltlc.record import replace
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.explain import findings
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.support.record_json import from_json, to_json
+from tltlc.core.record import replace
 
 EPISODES = ("navigation", "branching", "cover_and_hide_met", "cover_and_hide_failed")
 

@@ -9,8 +9,9 @@ import pytest
 
 from tests.runtime.regression.game import EASY
 from tests.runtime.regression.made import PLAYED, made, reference, several, suite
-from tltl_runtime.regression.account import Nearest
-from tltl_runtime.regression.baseline import (
+from tltl_runtime.regression.explain.account import Nearest
+from tltl_runtime.regression.suite.suite import SHIPPED, baseline_path, read_suite
+from tltl_runtime.regression.verdict.baseline import (
     baseline_command,
     baseline_of,
     check_states,
@@ -19,11 +20,10 @@ from tltl_runtime.regression.baseline import (
     write_baseline,
     written_to,
 )
-from tltl_runtime.regression.suite import SHIPPED, baseline_path, read_suite
 from tltl_runtime.stealth.levels.made_for import shown
 from tltlc import compile_text
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 SUITE = suite()
 NEAREST = Nearest("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)

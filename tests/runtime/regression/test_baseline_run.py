@@ -12,11 +12,11 @@ import pytest
 
 from tests.runtime.regression.game import SUITE, Played, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.regression.baseline import baseline_of, read_baseline
-from tltl_runtime.regression.baseline_run import record_baseline, verdict_as_it_is, write_recorded
-from tltl_runtime.regression.suite import read_suite
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.baseline import baseline_of, read_baseline
+from tltl_runtime.regression.verdict.baseline_run import record_baseline, verdict_as_it_is, write_recorded
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 
 def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) -> None:
@@ -111,7 +111,7 @@ def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, m
     suite, path = read_suite(Path("game.toml")), Path("new.json")
     with closing(write_recorded(suite, path, 1, Played())) as stopped:
         next(stopped)
-    monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
+    monkeypatch.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "0" * 64)
     list(write_recorded(suite, path, 1, played := Played()))
     assert played.counts == {"room:v0": 50, "hopeless": 50}
 

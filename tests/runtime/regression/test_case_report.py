@@ -7,13 +7,13 @@ from pathlib import Path
 from tests.runtime.regression.game import Played, edit
 from tests.runtime.regression.made import several
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.regression.baseline import baseline_of
-from tltl_runtime.regression.case_report import report_on
-from tltl_runtime.regression.play import Recorded, Result, ready
-from tltl_runtime.regression.run import regress
-from tltl_runtime.regression.suite import read_suite
-from tltl_runtime.regression.verdict import judge
-from tltlc.record import replace
+from tltl_runtime.regression.report.case_report import report_on
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.baseline import baseline_of
+from tltl_runtime.regression.verdict.play import Recorded, Result, ready
+from tltl_runtime.regression.verdict.run import regress
+from tltl_runtime.regression.verdict.verdict import judge
+from tltlc.core.record import replace
 
 
 def test_it_tells_which_keys_of_a_file_have_changed(game: Path) -> None:

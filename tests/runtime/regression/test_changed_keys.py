@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.regression.changed_keys import changed_keys
+from tltl_runtime.regression.suite.changed_keys import changed_keys
 
 GUARD = """doc = "A guard."
 type = "enemy"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tltl_runtime.evaluation.statistics import wilson
-from tltl_runtime.regression.confidence import mean_p_value, rate_interval
+from tltl_runtime.regression.verdict.confidence import mean_p_value, rate_interval
 
 SEQUENCES = 400
 EPISODES = 150

@@ -12,8 +12,8 @@ import pytest
 
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
-from tltl_runtime.regression.dependencies import dependencies, select
-from tltl_runtime.regression.suite import SHIPPED, Suite, read_suite
+from tltl_runtime.regression.suite.dependencies import dependencies, select
+from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import pytest
 
 from tests.runtime.regression.made import ROOM, made
-from tltl_runtime.regression.account import Account, Nearest
-from tltl_runtime.regression.explain import findings
+from tltl_runtime.regression.explain.account import Account, Nearest
+from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 SPEC = """import spatial
 import stealth

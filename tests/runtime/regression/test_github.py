@@ -9,10 +9,10 @@ from urllib.parse import unquote
 import pytest
 
 from tests.runtime.regression.made import PLAYED, ROOM, reference
-from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.github import findings_as_commands
-from tltl_runtime.regression.suite import Suite, read_suite
-from tltlc.record import replace
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.github import findings_as_commands
+from tltl_runtime.regression.suite.suite import Suite, read_suite
+from tltlc.core.record import replace
 
 COMMAND = re.compile(r"::(error|warning) file=([^,:]*),title=([^,:]*)::([^\r\n]*)")
 SUITE = '[[case]]\nlevel = "levels/room.toml"\npolicy = "navigation"\nname = "the room: 100%, v0"\n'

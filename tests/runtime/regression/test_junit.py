@@ -10,11 +10,11 @@ import pytest
 
 from tests.runtime.regression.made import case, several, suite
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.junit import junit
-from tltl_runtime.regression.retrained import Retrained, Trained
-from tltl_runtime.regression.suite import Suite
-from tltlc.record import replace
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.junit import junit
+from tltl_runtime.regression.retrain.retrained import Retrained, Trained
+from tltl_runtime.regression.suite.suite import Suite
+from tltlc.core.record import replace
 
 TESTSUITE = {"name", "tests", "failures", "errors", "skipped"}
 TESTSUITE |= {"group", "time", "timestamp", "hostname", "id", "package", "file", "log", "url"}

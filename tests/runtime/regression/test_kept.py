@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests import pipes
-from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
-from tltl_runtime.regression.table_cells import Went
+from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.table1.table_cells import Went
 
 EPISODES = (Went(True, 1.0, 0.5), Went(False, 0.25, -0.75))
 KIND = tuple[Went, ...]
@@ -30,7 +30,7 @@ def test_a_pipe_keeps_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_the_code_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
     before = inputs_hash([1])
     assert before == inputs_hash([1])
-    monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
+    monkeypatch.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "0" * 64)
     assert inputs_hash([1]) != before
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.made import ROOM
-from tltl_runtime.regression.places import in_the_way, nearest_entity, place_name
+from tltl_runtime.regression.explain.places import in_the_way, nearest_entity, place_name
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.file import load_level
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 MORE = """[[region]]
 name = "dark_corner"

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.made import PLAYED, several
-from tltl_runtime.regression.reasons import edits, obstacles, reasons
-from tltl_runtime.regression.suite import Thresholds
-from tltl_runtime.regression.verdict import Judgement, judge
+from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.suite.suite import Thresholds
+from tltl_runtime.regression.verdict.verdict import Judgement, judge
+from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.task import load_task
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 DEFAULT = Thresholds()
 

@@ -14,14 +14,14 @@ from tests.docs.blocks import DOCS, blocks
 from tests.runtime.regression.made import ROOM, case, several, suite
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.policies.shipped import shipped_policies
-from tltl_runtime.regression import confidence
-from tltl_runtime.regression import suite as suite_module
-from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.confidence import rate_interval
-from tltl_runtime.regression.document import FORMAT, VERSION, document
-from tltl_runtime.regression.junit import junit
-from tltl_runtime.regression.retrained import Best, Outcome, Retrained, Trained
-from tltl_runtime.regression.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.junit import junit
+from tltl_runtime.regression.report.report_json import FORMAT, VERSION, document
+from tltl_runtime.regression.retrain.retrained import Best, Outcome, Retrained, Trained
+from tltl_runtime.regression.suite import suite as suite_module
+from tltl_runtime.regression.suite.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
+from tltl_runtime.regression.verdict import confidence
+from tltl_runtime.regression.verdict.confidence import rate_interval
 
 PAGE = (DOCS / "regression.md").read_text(encoding="utf-8")
 
@@ -117,7 +117,7 @@ def test_the_bets_are_those() -> None:
 
 
 def test_every_option_is_told() -> None:
-    from tltl_runtime.commands.regress import command
+    from tltl_runtime.cli.regress import command
 
     options = {option for parameter in command.params for option in parameter.opts if option.startswith("--")}
     told = set(re.findall(r"--[a-z]+", PAGE))

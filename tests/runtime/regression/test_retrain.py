@@ -14,10 +14,8 @@ from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import baseline_of
-from tltl_runtime.regression.play import Ready, Recorded, episodes, ready
-from tltl_runtime.regression.retrain import (
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.retrain.retrain import (
     EPISODE,
     FOLDER,
     check_places,
@@ -26,16 +24,18 @@ from tltl_runtime.regression.retrain import (
     retrained,
     retraining,
 )
-from tltl_runtime.regression.run import Done, regress
-from tltl_runtime.regression.suite import Suite, read_suite
-from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.regression.suite.suite import Suite, read_suite
+from tltl_runtime.regression.verdict.baseline import baseline_of
+from tltl_runtime.regression.verdict.play import Ready, Recorded, episodes, ready
+from tltl_runtime.regression.verdict.run import Done, regress
+from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.task import load_task
-from tltl_runtime.training.record import write_record
-from tltl_runtime.training.run import CHECKPOINT, POLICY, RECORD, RUN, Run
-from tltl_runtime.training.train import train
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.training.run.record import write_record
+from tltl_runtime.training.run.run import CHECKPOINT, POLICY, RECORD, RUN, Run
+from tltl_runtime.training.run.train import train
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 SHORT = 0.02
 """The limit of a training in minutes: less than its search and first iteration take."""
@@ -159,7 +159,7 @@ def test_of_a_lost_worker_it_is_told_what_plays_its_episode_with_the_new_policy(
         policy: Any = Deadly(ready.setup.policy, killed)
         return episodes(replace(ready, setup=replace(ready.setup, policy=policy)), pool)
 
-    monkeypatch.setattr("tltl_runtime.regression.retrain.episodes", deadly)
+    monkeypatch.setattr("tltl_runtime.regression.retrain.retrain.episodes", deadly)
     with pytest.raises(TltlError, match="TLT0850") as error:
         retrained(game, hopeless, run, 2, lambda *_: None)
     (found,) = error.value.diagnostics

@@ -23,18 +23,18 @@ from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import baseline_of
-from tltl_runtime.regression.dependencies import dependencies
-from tltl_runtime.regression.play import Ready, episodes, ready
-from tltl_runtime.regression.run import CASES, Done, _inputs, case_folder, check, owned, regress
-from tltl_runtime.regression.suite import Case, Suite, read_suite
-from tltl_runtime.stealth.episodes.file import read_episode
-from tltl_runtime.stealth.episodes.versions import versions
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.suite.dependencies import dependencies
+from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
+from tltl_runtime.regression.verdict.baseline import baseline_of
+from tltl_runtime.regression.verdict.play import Ready, episodes, ready
+from tltl_runtime.regression.verdict.run import CASES, Done, _inputs, case_folder, check, owned, regress
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.stealth.recordings.versions import versions
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.record import replace
 
 GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
 
@@ -130,9 +130,9 @@ def test_what_has_changed_is_played_again_and_nothing_else(game: Path, change: s
 def test_another_version_plays_again(game: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
     if what == "versions":
         other = {**versions(), "numpy": "0.1"}
-        monkeypatch.setattr("tltl_runtime.regression.play.versions", lambda: other)
+        monkeypatch.setattr("tltl_runtime.regression.verdict.play.versions", lambda: other)
     else:
-        monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
+        monkeypatch.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "0" * 64)
     found, played = run()
     assert list(played) == ["room:v0", "room:v1", "hopeless"]
     told = "the baseline was recorded with numpy " in " ".join(found[2].report.reasons)
@@ -177,7 +177,7 @@ def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.Mon
             edit()
         return made
 
-    monkeypatch.setattr("tltl_runtime.regression.run.ready", then)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.run.ready", then)
 
 
 def test_a_level_that_is_edited_while_it_is_played_is_reviewed_and_not_kept(
@@ -253,7 +253,7 @@ def test_what_is_wrong_with_the_workers_ends_the_run(game: Path, monkeypatch: py
         made = ready(case, seed)
         return replace(made, setup=replace(made.setup, policy=Deadly(made.setup.policy)))
 
-    monkeypatch.setattr("tltl_runtime.regression.run.ready", deadly)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.run.ready", deadly)
     with pytest.raises(TltlError) as error:
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
     (found,) = error.value.diagnostics
@@ -271,7 +271,7 @@ def test_no_verdict_rests_on_episodes_with_a_gap(game: Path, monkeypatch: pytest
         yield from (each for each in islice(results(*given, **named), 6) if each.task.index != 2)
         raise lost
 
-    monkeypatch.setattr("tltl_runtime.regression.play.results", with_gap)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.play.results", with_gap)
     told: list[int] = []
     with pytest.raises(TltlError) as error:
         told.extend(each.account.index for each in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.regression.slugs import episode_link, slugs
+from tltl_runtime.regression.suite.slugs import episode_link, slugs
 
 
 def test_names_that_can_be_read() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.regression.stages import deed, deed_of_all, near_enough, target_of, together
+from tltl_runtime.regression.explain.stages import deed, deed_of_all, near_enough, target_of, together
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 

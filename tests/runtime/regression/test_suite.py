@@ -11,7 +11,7 @@ import pytest
 from tests import pipes
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
-from tltl_runtime.regression.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
+from tltl_runtime.regression.suite.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
 from tltl_runtime.stealth.levels.file import level_names, variants
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
@@ -251,7 +251,9 @@ def test_a_suite_of_too_many_cases_is_refused(tmp_path: Path) -> None:
 
 def test_each_level_of_a_suite_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
-    monkeypatch.setattr("tltl_runtime.regression.suite.variants", lambda level: asked.append(level) or variants(level))
+    monkeypatch.setattr(
+        "tltl_runtime.regression.suite.suite.variants", lambda level: asked.append(level) or variants(level)
+    )
     cases = "".join(f'[[case]]\nlevel = "navigation"\nname = "n{number}"\n' for number in range(50))
     assert len(read(tmp_path, cases)) == 50
     assert asked == ["navigation"]

@@ -12,9 +12,9 @@ from tests.runtime.policies.examples import card_of, policy_of
 from tltl_runtime.evaluation.player import Result, Task
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression import table_cells
-from tltl_runtime.regression.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, Row, markdown
-from tltl_runtime.regression.table_cells import Went, figures, measured
+from tltl_runtime.regression.table1 import table_cells
+from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, Row, markdown
+from tltl_runtime.regression.table1.table_cells import Went, figures, measured
 from tltlc.diagnostics.diagnostic import TltlError
 
 
@@ -122,7 +122,7 @@ def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(
 
     assert (count(), count()) == (1, 1)
     with monkeypatch.context() as patched:
-        patched.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "another")
+        patched.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "another")
         assert count() == 2
     spec = tmp_path / "bold.tltl"
     spec.write_text("import stealth\nentity exit\nspec bold { limit 400 steps\n reach near(exit) }\n", encoding="utf-8")

@@ -11,9 +11,9 @@ from tests.runtime.policies.examples import card_of, policy_of
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.shipped import shipped_policies
-from tltl_runtime.regression import table_trainings
-from tltl_runtime.regression.paper_table import Model
-from tltl_runtime.regression.table_trainings import (
+from tltl_runtime.regression.table1 import table_trainings
+from tltl_runtime.regression.table1.paper_table import Model
+from tltl_runtime.regression.table1.table_trainings import (
     Limits,
     TableTraining,
     limits,
@@ -23,9 +23,9 @@ from tltl_runtime.regression.table_trainings import (
     trained,
 )
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.training.run import POLICY, RECORD, write_run
-from tltl_runtime.training.settings import read_settings
-from tltlc.record import replace
+from tltl_runtime.training.run.run import POLICY, RECORD, write_run
+from tltl_runtime.training.run.settings import read_settings
+from tltlc.core.record import replace
 
 STEPS = 10**6
 TO = ("--steps", "1000000")

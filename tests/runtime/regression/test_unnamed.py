@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.made import ROOM, reference
-from tltl_runtime.regression.baseline import Reference
-from tltl_runtime.regression.suite import Suite, read_suite
-from tltl_runtime.regression.unnamed import unnamed
+from tltl_runtime.regression.suite.suite import Suite, read_suite
+from tltl_runtime.regression.suite.unnamed_changes import unnamed
+from tltl_runtime.regression.verdict.baseline import Reference
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.runtime.regression.made import made, several
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.confidence import rate_interval
-from tltl_runtime.regression.suite import LEAST_EPISODES, Thresholds
-from tltl_runtime.regression.verdict import Judgement, beyond, judge
-from tltlc.record import replace
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
+from tltl_runtime.regression.verdict.confidence import rate_interval
+from tltl_runtime.regression.verdict.verdict import Judgement, beyond, judge
+from tltlc.core.record import replace
 
 ERROR = 0.05
 DEFAULT = Thresholds()

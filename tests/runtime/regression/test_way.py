@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.way import EVERY, places_along, way_of
-from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.regression.explain.path_points import EVERY, places_along, way_of
+from tltl_runtime.stealth.recordings.episode import Episode
 
 EPISODES = ("navigation", "branching", "cover_and_hide_met", "cover_and_hide_failed")
 

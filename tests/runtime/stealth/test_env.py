@@ -22,8 +22,8 @@ from tltl_runtime import load_task
 from tltl_runtime.stealth.env import GameEnv, make_env, spec_of
 from tltl_runtime.stealth.level import MapSensor, Sensors
 from tltl_runtime.stealth.levels.file import load_level
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")
 

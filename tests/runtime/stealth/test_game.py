@@ -61,7 +61,7 @@ def test_a_seed_reproduces_an_episode(game: Game) -> None:
 
 def put(level: Level, place: Point) -> Game:
     """A game whose player stands at a place."""
-    from tltlc.record import replace
+    from tltlc.core.record import replace
 
     return Game(replace(level, start=replace(level.start, position=place, spread=0.0)))
 

@@ -8,7 +8,7 @@ from benchmarks import safety
 from benchmarks.variants import variants_of_all
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.world.physics import WorldError
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 STEPS = 2_300
 

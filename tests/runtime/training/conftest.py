@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import Run
-from tltl_runtime.training.train import train
+from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.train import train
 
 
 @pytest.fixture(name="folder", scope="module")

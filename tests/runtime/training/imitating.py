@@ -8,11 +8,11 @@ from typing import Any
 
 from tests.runtime.training.runs import run_in
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.episodes.file import file_stem, new_path, write_episode
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.training.run import Run
-from tltlc.record import replace
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import file_stem, new_path, write_episode
+from tltl_runtime.training.run.run import Run
+from tltlc.core.record import replace
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that who does anything at all meets, after eight steps."""

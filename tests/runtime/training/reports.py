@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tltl_runtime.training.environment import Finished
-from tltl_runtime.training.report import Confirmation, Report, StopReason, Window
+from tltl_runtime.training.ppo.environment import Finished
+from tltl_runtime.training.run.report import Confirmation, Report, StopReason, Window
 from tltl_runtime.training.runner import Iteration
 
 

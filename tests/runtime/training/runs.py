@@ -13,17 +13,17 @@ from typing import Any
 
 import torch
 
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.supply.offer import params
-from tltl_runtime.task import load_task
-from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
-from tltl_runtime.training.run import CHECKPOINT, Run, identity
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.run.checkpoint import Checkpoint, read_checkpoint
+from tltl_runtime.training.run.run import CHECKPOINT, Run, identity
+from tltl_runtime.training.run.settings import read_settings
+from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
-from tltl_runtime.training.search import Searched
-from tltl_runtime.training.settings import read_settings
-from tltl_runtime.training.train import train
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 SMALL: dict[str, Any] = {
     "rollout.envs": 4,

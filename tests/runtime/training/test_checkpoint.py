@@ -9,10 +9,10 @@ import pytest
 import torch
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
-from tltl_runtime.training.run import RUN, write_run
-from tltl_runtime.training.search import Searched
-from tltlc.record import replace
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.run.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.run.run import RUN, write_run
+from tltlc.core.record import replace
 
 
 @pytest.fixture(name="checkpoint")

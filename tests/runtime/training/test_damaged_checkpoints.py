@@ -12,12 +12,12 @@ import torch
 from torch import Tensor
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training import train as training
-from tltl_runtime.training.beginning import environments
-from tltl_runtime.training.checkpoint import read_checkpoint
-from tltl_runtime.training.run import CHECKPOINT, Run
+from tltl_runtime.training.run import train as training
+from tltl_runtime.training.run.checkpoint import read_checkpoint
+from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.setup import environments
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 Content = dict[Any, Any]
 Path_ = tuple[Any, ...]

@@ -12,7 +12,7 @@ import torch
 from tests.runtime.training.imitating import ALONG, SOON, kept, played
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations
+from tltl_runtime.training.imitation.imitation_data import Demonstrated, read_demonstrations
 from tltlc.diagnostics.diagnostic import TltlError
 
 make = partial(make_env, "cover_and_hide", "v0", SOON)

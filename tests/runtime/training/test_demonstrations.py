@@ -12,9 +12,9 @@ from tests import pipes
 from tests.runtime.training.imitating import SOON, kept, played
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.training.demonstrations import (
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.training.imitation.demonstrations import (
     MOST_FAILURES,
     Demonstrations,
     Tried,

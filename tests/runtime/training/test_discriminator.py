@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from tltl_runtime.policies.network import Network, model_config
-from tltl_runtime.training.discriminator import Decisions, Discriminator
+from tltl_runtime.training.imitation.discriminator import Decisions, Discriminator
 
 SHAPES = {"entities": (3,), "map": (2, 7, 7)}
 BRANCHES = 3, 2

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import torch
 
-from tltl_runtime.training.environment import Finished, TrainingEnv
-from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.search import Way
-from tltl_runtime.training.starts import Replayed, Start
+from tltl_runtime.training.exploration.reset_distribution import Replayed, Start
+from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.search import Way
+from tltl_runtime.training.ppo.environment import Finished, TrainingEnv
 from tltl_runtime.vector import make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 

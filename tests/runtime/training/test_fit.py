@@ -12,14 +12,14 @@ import pytest
 import torch
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.checkpoint import read_checkpoint
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.run import CHECKPOINT, Run
-from tltl_runtime.training.search import Failure, Way
-from tltl_runtime.training.train import train
+from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.search import Failure, Way
+from tltl_runtime.training.run.checkpoint import read_checkpoint
+from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.train import train
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 Content = dict[str, Any]
 

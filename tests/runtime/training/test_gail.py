@@ -15,18 +15,18 @@ from tests.runtime.training.runs import checkpoint_of
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.beginning import demonstrated, environments, prepared
-from tltl_runtime.training.distributed import peers
-from tltl_runtime.training.gail import Gail
-from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.record import write_record
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import DEMONSTRATIONS, POLICY, Run, read_run
+from tltl_runtime.training.imitation.gail import Gail
+from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.run.metrics import METRICS, read_metrics
+from tltl_runtime.training.run.record import write_record
+from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.run import DEMONSTRATIONS, POLICY, Run, read_run
+from tltl_runtime.training.run.settings import rsl_config
+from tltl_runtime.training.run.setup import demonstrated, environments, prepared
+from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
-from tltl_runtime.training.settings import rsl_config
-from tltl_runtime.training.train import train
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 CLONING = {"value", "cloning", "discriminator", "discriminator_theirs", "discriminator_agents"}
 GAIL = {"value", "surrogate", "entropy", "discriminator", "discriminator_theirs", "discriminator_agents"}

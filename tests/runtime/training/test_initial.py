@@ -17,16 +17,16 @@ from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.policies.summary import summary, summary_text
-from tltl_runtime.training.checkpoint import copied
-from tltl_runtime.training.initial import initial_of, weights_hash
-from tltl_runtime.training.record import record_so_far, write_record
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import CHECKPOINT, POLICY, Run, identity, read_run
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.run.checkpoint import copied
+from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
+from tltl_runtime.training.run.record import record_so_far, write_record
+from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.run import CHECKPOINT, POLICY, Run, identity, read_run
+from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
-from tltl_runtime.training.search import Searched
-from tltl_runtime.training.train import train
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 
 def tuned(folder: Path, path: Path, **changes: object) -> Run:

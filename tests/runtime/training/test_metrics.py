@@ -12,12 +12,12 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from tests.docs.blocks import DOCS
 from tests.runtime.training.reports import a_report, an_episode
-from tltl_runtime.task import read_spec
-from tltl_runtime.training.metrics import METRICS, Metrics, read_metrics
-from tltl_runtime.training.report import Confirmation
+from tltl_runtime.spec.task import read_spec
+from tltl_runtime.training.run.metrics import METRICS, Metrics, read_metrics
+from tltl_runtime.training.run.report import Confirmation
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import Limit
+from tltlc.io.limits import Limit
 
 LEFT = {
     "label": "F(near(s2) & X F near(exit)) & G alive",
@@ -121,7 +121,7 @@ def test_a_place_that_cannot_be_written_to(tmp_path: Path, fspa: Fspa) -> None:
 
 
 def test_measurements_without_end_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.training.metrics.MEASUREMENTS", Limit(size=1 << 20))
+    monkeypatch.setattr("tltl_runtime.training.run.metrics.MEASUREMENTS", Limit(size=1 << 20))
     (tmp_path / METRICS).symlink_to("/dev/zero")
     with pytest.raises(TltlError, match="TLT0004"):
         read_metrics(tmp_path / METRICS)

@@ -10,11 +10,11 @@ import pytest
 from tests.runtime.own_cluster import needs_ray, own_cluster
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.task import load_task
-from tltl_runtime.training.initial import initial_of
-from tltl_runtime.training.run import POLICY
-from tltl_runtime.training.train import train
-from tltlc.record import replace
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.training.run.initial_policy import initial_of
+from tltl_runtime.training.run.run import POLICY
+from tltl_runtime.training.run.train import train
+from tltlc.core.record import replace
 
 SPEC = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that who does anything at all meets, after eight steps, so that there are ways to begin on."""

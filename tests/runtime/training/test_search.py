@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.search import Exploration, Failure, Search, Searched, Way
-from tltl_runtime.training.starts import Episodes, Replayed, Start
+from tltl_runtime.training.exploration.reset_distribution import Episodes, Replayed, Start
+from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.search import Exploration, Failure, Search, Searched, Way
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.vector.errors import WorkerError
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 NEAR = "import spatial\nentity s1\nspec near_s1 { level navigation  limit 300 steps  reach near(s1) }"
 FAR = "import spatial\nentity exit\nspec out { level navigation  limit 300 steps  reach near(exit) }"

@@ -14,11 +14,11 @@ import torch
 from tests.runtime.training.runs import run_in
 from tests.runtime.training.test_search import restarts_of
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.environment import TrainingEnv
+from tltl_runtime.training.exploration.search import Way
+from tltl_runtime.training.exploration.self_imitation import BATCH, Lessons, imitate
+from tltl_runtime.training.ppo.environment import TrainingEnv
+from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.runner import Runner
-from tltl_runtime.training.search import Way
-from tltl_runtime.training.self_imitation import BATCH, Lessons, imitate
-from tltl_runtime.training.settings import rsl_config
 from tltl_runtime.vector import make_vec
 
 WAY = Way(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)

@@ -9,13 +9,13 @@ from typing import get_type_hints
 import pytest
 
 from tltl_runtime.policies.network import Network
-from tltl_runtime.training.settings import Settings, default_text, read_settings, rsl_config, settings_text
-from tltl_runtime.training.settings_file import KINDS, read_values
+from tltl_runtime.training.run.settings import Settings, default_text, read_settings, rsl_config, settings_text
+from tltl_runtime.training.run.settings_file import KINDS, read_values
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
 from tltlc.monitor import RewardOptions
-from tltlc.record import replace
-from tltlc.source import SourceFile
 
 GOLDEN = Path(__file__).parents[2] / "golden" / "training"
 

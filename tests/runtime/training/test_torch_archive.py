@@ -15,9 +15,9 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.training import torch_archive
-from tltl_runtime.training.torch_archive import TorchArchiveError, read_torch
-from tltlc.limits import Limit
+from tltl_runtime.training.run import torch_archive
+from tltl_runtime.training.run.torch_archive import TorchArchiveError, read_torch
+from tltlc.io.limits import Limit
 
 
 def saved(value: object) -> bytes:

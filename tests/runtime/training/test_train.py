@@ -16,16 +16,18 @@ import torch
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import OTHER, compare
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.record_json import from_json, to_json
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.stealth.supply.offer import params
-from tltl_runtime.task import load_task
-from tltl_runtime.training import keeping
-from tltl_runtime.training.checkpoint import Checkpoint, write_checkpoint
-from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.record import write_record
-from tltl_runtime.training.report import Confirmation, Report
-from tltl_runtime.training.run import (
+from tltl_runtime.support.record_json import from_json, to_json
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.ppo.penalty_weight import dearer
+from tltl_runtime.training.run import training_files as keeping
+from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
+from tltl_runtime.training.run.metrics import METRICS, read_metrics
+from tltl_runtime.training.run.record import write_record
+from tltl_runtime.training.run.report import Confirmation, Report
+from tltl_runtime.training.run.run import (
     CHECKPOINT,
     CURVE,
     MAY_CHANGE,
@@ -38,13 +40,11 @@ from tltl_runtime.training.run import (
     read_run,
     write_run,
 )
+from tltl_runtime.training.run.settings import Settings, read_settings
+from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
-from tltl_runtime.training.search import Searched
-from tltl_runtime.training.settings import Settings, read_settings
-from tltl_runtime.training.train import train
-from tltl_runtime.training.weighing import dearer
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that who does anything at all meets, after eight steps."""
@@ -167,7 +167,7 @@ def test_a_training_that_is_broken_off_while_it_saves_saves_again(
 
     reports = train(run := run_in(folder / "broken"))
     next(reports)
-    monkeypatch.setattr("tltl_runtime.training.keeping.write_checkpoint", broken_off)
+    monkeypatch.setattr("tltl_runtime.training.run.training_files.write_checkpoint", broken_off)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 2
@@ -313,7 +313,7 @@ def test_a_checkpoint_depends_on_all_settings_but_those_that_may_change(folder: 
 @pytest.fixture
 def told_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search tells after its first step how far it is, and a limit that has passed by then breaks it off."""
-    monkeypatch.setattr("tltl_runtime.training.search._TOLD_EVERY_S", 0.0)
+    monkeypatch.setattr("tltl_runtime.training.exploration.search._TOLD_EVERY_S", 0.0)
 
 
 SEARCH = {"exploration__ways": 10, "exploration__steps": 800}
@@ -374,8 +374,8 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
 def test_a_training_at_a_standstill_searches_again_for_what_fails(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tltl_runtime.training.windows._BETWEEN", (0.0, 2.0))
-    monkeypatch.setattr("tltl_runtime.training.windows._STANDSTILL_STEPS", 256)
+    monkeypatch.setattr("tltl_runtime.training.ppo.windows._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.ppo.windows._STANDSTILL_STEPS", 256)
     told: list[Searched] = []
     run = run_in(folder / "standstill", CHANCE, exploration__ways=4, exploration__steps=2000, stop__steps=640)
     reports = list(train(run, searching=told.append))
@@ -394,8 +394,8 @@ def test_a_training_at_a_standstill_searches_again_for_what_fails(
 def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tltl_runtime.training.windows._BETWEEN", (0.0, 2.0))
-    monkeypatch.setattr("tltl_runtime.training.windows._STANDSTILL_STEPS", 256)
+    monkeypatch.setattr("tltl_runtime.training.ppo.windows._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.ppo.windows._STANDSTILL_STEPS", 256)
     changes = {"exploration__ways": 4, "exploration__steps": 2000, "checkpoint_s": 10**6}
     run, told = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[Searched]()
     reports = train(run, searching=told.append)
@@ -403,7 +403,7 @@ def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     first = len(told)
     next(reports)
     # It is killed then.
-    monkeypatch.setattr("tltl_runtime.training.keeping.Keeping.save", lambda *_: None)
+    monkeypatch.setattr("tltl_runtime.training.run.training_files.Keeping.save", lambda *_: None)
     reports.close()
     kept = checkpoint_of(run)
     assert before.searched is not None and kept.searched is not None

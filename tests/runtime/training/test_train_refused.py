@@ -14,18 +14,18 @@ import torch
 
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
-from tltl_runtime.training.checkpoint import VERSION, write_checkpoint
-from tltl_runtime.training.folder import held
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import (
+from tltl_runtime.training.run.checkpoint import VERSION, write_checkpoint
+from tltl_runtime.training.run.folder import held
+from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.run import (
     CHECKPOINT,
     RUN,
     Run,
     read_run,
 )
-from tltl_runtime.training.train import train
+from tltl_runtime.training.run.train import train
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 
 @pytest.fixture(name="copy")

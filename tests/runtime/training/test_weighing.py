@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.settings import read_settings
-from tltl_runtime.training.weighing import Weighing, dearer, weighing
-from tltlc.record import replace
+from tltl_runtime.training.ppo.penalty_weight import Weighing, dearer, weighing
+from tltl_runtime.training.run.settings import read_settings
+from tltlc.core.record import replace
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.training.environment import Finished
-from tltl_runtime.training.report import Window
-from tltl_runtime.training.windows import Standstill, Windows
+from tltl_runtime.training.ppo.environment import Finished
+from tltl_runtime.training.ppo.windows import Standstill, Windows
+from tltl_runtime.training.run.report import Window
 
 SUCCESS = Finished(True, 1.0, 40, 4, violated=False)
 FAILURE = Finished(False, 0.6, 25, 2, violated=True)

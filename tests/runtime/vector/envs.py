@@ -12,10 +12,10 @@ import numpy as np
 from gymnasium import spaces
 
 from tests.waiting import until
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.level import Box
-from tltl_runtime.wrapper import TltlEnv
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 GO, EXIT, RAISE, HANG, HOLD = range(5)
 

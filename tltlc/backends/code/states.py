@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Implicant
-from tltlc.backends.code.clauses import shorter
-from tltlc.backends.code.names import call, comment, literal, visible
+from tltlc.program.clauses import shorter
+from tltlc.program.names import call, comment, literal, visible
 
 INDENT = "    "
 

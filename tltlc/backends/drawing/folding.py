@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State
-from tltlc.record import EMPTY, record, replace
+from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
 """Inner states from which on a run is folded: five states with both ends."""

@@ -10,10 +10,10 @@ from pathlib import Path
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options
 from tltlc.backends.dot import Detail, graph
-from tltlc.backends.drawing.shown import shown
-from tltlc.backends.drawing.worded import worded
+from tltlc.backends.drawing.accessible_svg import worded
+from tltlc.backends.drawing.picture_content import shown
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interrupted import raise_if_interrupted
+from tltlc.io.child_interrupts import raise_if_interrupted
 
 CHILD = Path(__file__).with_name("child.py")
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Final
 
-from tltlc.backends.code.names import Names
+from tltlc.program.names import Names
 
 _WORDS: Final = """
     if elif else for do while match switch case default break continue pass return class class_name extends is in as

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
-from tltlc.backends.program.printer import Printer
-from tltlc.backends.program.tree import Assign, Call, Declare, Expression, Negate, Real, Type, Variable
+from tltlc.program.printer import Printer
+from tltlc.program.tree import Assign, Call, Declare, Expression, Negate, Real, Type, Variable
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1

@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import number
 from tltlc.backends.godot.printer import Gd
-from tltlc.backends.program import judge, pieces, states
-from tltlc.backends.program.arithmetic import defined
-from tltlc.backends.program.build import program
-from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import FAILING
-from tltlc.backends.program.uses import called
+from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
-from tltlc.record import record
+from tltlc.program import judge, pieces, states
+from tltlc.program.arithmetic import defined
+from tltlc.program.build import program
+from tltlc.program.template import filled
+from tltlc.program.tree import FAILING
+from tltlc.program.uses import called
 from tltlc.resolve.spec import Param, Signal
 
 ENDINGS = ("_monitor.gd", "_monitor_main.gd")

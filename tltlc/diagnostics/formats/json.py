@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
-from tltlc.source import SourceFile, Span
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:

@@ -12,9 +12,9 @@ import importlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from tltlc.core.record import record
 from tltlc.monitor.reward import RewardOptions
 from tltlc.monitor.tables import Tables
-from tltlc.record import record
 
 
 @record

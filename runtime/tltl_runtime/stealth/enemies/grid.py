@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.enemies.fields import ARRIVED, GOALS, middles, nearest_numbers, neighbours, steps_to
 from tltl_runtime.stealth.enemies.segments import Rectangle, crosses
 from tltl_runtime.stealth.level import Box, Level
-from tltlc.limits import WORK
+from tltlc.io.limits import WORK
 
 CELL: Final = 0.25
 RADIUS: Final = 0.35

@@ -7,8 +7,8 @@ from collections.abc import Collection, Mapping
 from typing import Final, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.expression import Signal, nodes
-from tltlc.expression_eval import evaluate
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import Signal, nodes
 from tltlc.resolve.spec import Atom
 
 _DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")

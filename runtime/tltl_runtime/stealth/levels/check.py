@@ -10,9 +10,9 @@ from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
 from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.stealth.signals import readers
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.record import replace
-from tltlc.source import SourceFile
 
 
 def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:

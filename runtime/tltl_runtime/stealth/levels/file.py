@@ -23,13 +23,13 @@ from tltl_runtime.stealth.levels.room import check_room
 from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.stealth.levels.ways import check_ways
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import is_file, read_source
-from tltlc.limits import LEVEL, OVERLAYS
-from tltlc.record import replace
-from tltlc.resources import bounded
-from tltlc.source import SourceFile, Span
-from tltlc.spec_file import is_plain_name
+from tltlc.io.files import is_file, read_source
+from tltlc.io.limits import LEVEL, OVERLAYS
+from tltlc.io.resources import bounded
+from tltlc.io.spec_file import is_plain_name
 
 _MOST_FAULTS: Final = 1_000
 """A level with more faults is not read to its end."""
@@ -74,7 +74,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     overlays; TLT0800 no such level or variant, or overlay to add; TLT0801 a file is no TOML; TLT0802 an unknown key;
     TLT0803 a missing key, a value of the wrong kind or out of range; TLT0804 a name that is taken or that specs cannot
     use; TLT0805 a name that stands for nothing; TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay
-    changes what is not there; and those of :func:`tltlc.files.read_source`.
+    changes what is not there; and those of :func:`tltlc.io.files.read_source`.
     """
     return _Loading(level_path(name_or_path)).level(variant)
 
@@ -187,7 +187,7 @@ class _Loading:
             raise TltlError(self.log)
 
     def _check_count(self, *groups: Sequence[object]) -> None:
-        """Raise TltlError, TLT0006, where a level has more things than :data:`tltlc.limits.LEVEL` allows."""
+        """Raise TltlError, TLT0006, where a level has more things than :data:`tltlc.io.limits.LEVEL` allows."""
         points = sum(len(getattr(each, "path", ())) + len(getattr(each, "route", ())) for each in chain(*groups))
         if sum(map(len, groups)) + points > (LEVEL.values or 0):
             title = f"the level `{self.path.stem}` holds more than {LEVEL.values:,} things"

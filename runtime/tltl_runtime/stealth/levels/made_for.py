@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.files import is_file, read_source
+from tltlc.io.files import is_file, read_source
 
 LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""

@@ -22,8 +22,8 @@ from tltl_runtime.stealth.level import (
     Unlock,
 )
 from tltl_runtime.stealth.levels.table import Table, suggestion
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.record import record
 
 _OUTER_WALL: Final = 0.2
 """How thick the walls around a level are, in metres."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import Any, Final
 
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.record import record
-from tltlc.source import SourceFile, Span
-from tltlc.toml_text import parse
+from tltlc.io.toml_text import parse
 
 _HELP: Final = 'values are written as in `at = [1.0, 2.0, 0.0]`, texts as in `asset = "corridor"`'
 _KEY: Final = r"(?:[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*')"

@@ -6,7 +6,7 @@ import warnings
 from typing import TYPE_CHECKING, Final
 
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.pictures.camera import VIEWS, View, check_size
+from tltl_runtime.stealth.rendering.camera import VIEWS, View, check_size
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from tltl_runtime.stealth.pictures.render import Renderer
+    from tltl_runtime.stealth.rendering.render import Renderer
     from tltl_runtime.stealth.snapshot import Snapshot
     from tltl_runtime.stealth.window.window import Window
 
@@ -25,7 +25,7 @@ class Screen:
     """Pictures of a level for the render mode ``rgb_array``, a window for ``human``.
 
     ``size`` is width and height in pixels.  Raises ValueError for a mode or a view that there is not, and for a size
-    that :func:`~tltl_runtime.stealth.pictures.camera.check_size` refuses.
+    that :func:`~tltl_runtime.stealth.rendering.camera.check_size` refuses.
     """
 
     def __init__(self, level: Level, mode: str | None, view: View, size: tuple[int, int]) -> None:
@@ -52,7 +52,7 @@ class Screen:
             if self._unseen:
                 return None
         if self._renderer is None:
-            from tltl_runtime.stealth.pictures.render import Renderer
+            from tltl_runtime.stealth.rendering.render import Renderer
 
             self._renderer = Renderer(self.level, *self.size)
         frame = self._renderer.frame(snapshot, self.view)

@@ -12,10 +12,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.silence import silence
-from tltl_runtime.stealth.pictures.hud import Hud, Tone
+from tltl_runtime.stealth.rendering.hud import Hud, Tone
+from tltl_runtime.support.quiet_stderr import silence
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.record import record
 
 NO_WINDOW: Final = "TLT0830"
 """The code of the error that no window can be opened."""

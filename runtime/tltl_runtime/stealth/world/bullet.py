@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-from tltl_runtime.silence import silence
+from tltl_runtime.support.quiet_stderr import silence
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 

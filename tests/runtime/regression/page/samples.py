@@ -7,15 +7,15 @@ from functools import cache
 
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.evaluation.play import Played
-from tltl_runtime.regression.account import Account, account
-from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.explain import findings
-from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
-from tltl_runtime.regression.verdict import Verdict
+from tltl_runtime.regression.explain.account import Account, account
+from tltl_runtime.regression.explain.explain import findings
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
+from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.episode import Episode
 
 
 def navigation() -> tuple[Episode, ...]:

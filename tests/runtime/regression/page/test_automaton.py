@@ -11,13 +11,13 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.page.automaton import counts_table, drawn, picture
-from tltl_runtime.regression.page.traffic import Traffic, traffic
-from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.report.page.automaton import counts_table, drawn, picture
+from tltl_runtime.regression.report.page.traffic import Traffic, traffic
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.drawing.shown import shown
+from tltlc.backends.drawing.picture_content import shown
 
 
 def accounts(episodes: tuple[Episode, ...]) -> list[Account]:
@@ -178,7 +178,7 @@ def test_an_edge_between_the_ends_of_two_runs_counts_where_it_is_drawn() -> None
 
 
 def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.regression.page.automaton._LAYOUT_LIMIT_S", 0.0)
+    monkeypatch.setattr("tltl_runtime.regression.report.page.automaton._LAYOUT_LIMIT_S", 0.0)
     made = drawn(fspa)
     assert made.svg is None
     assert made.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.runtime.regression.page import chromium, samples
-from tltl_runtime.regression.page.page import html_report
+from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.stealth.level import Box, Solid
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.page.curves import progress_curves, progress_distribution
-from tltlc.record import replace
+from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
+from tltlc.core.record import replace
 
 
 def test_a_curve_for_each_recorded_episode() -> None:

@@ -7,8 +7,8 @@ import re
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.explain import Finding
-from tltl_runtime.regression.page.episode_links import episode_links
+from tltl_runtime.regression.explain.explain import Finding
+from tltl_runtime.regression.report.page.episode_links import episode_links
 
 FAILED = dict(enumerate(samples.cover_and_hide_failed()))
 MET = dict(enumerate(samples.cover_and_hide_met()))

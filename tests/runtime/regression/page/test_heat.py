@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.page.heat import ENDS_CELL, TIME_CELL, failed_ends, time_spent
+from tltl_runtime.regression.report.page.heat import ENDS_CELL, TIME_CELL, failed_ends, time_spent
 from tltl_runtime.stealth.level import Box
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 BOUNDS = Box((0.0, 0.0, 0.0), (10.0, 4.0, 3.0))
 

@@ -6,12 +6,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tltl_runtime.regression.page.level_map import level_map, map_data, map_key
-from tltl_runtime.regression.page.map_names import is_spoken_of
-from tltl_runtime.regression.places import place_name
+from tltl_runtime.regression.explain.places import place_name
+from tltl_runtime.regression.report.page.level_map import level_map, map_data, map_key
+from tltl_runtime.regression.report.page.map_names import is_spoken_of
 from tltl_runtime.stealth.level import Box, Solid
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 @pytest.mark.parametrize("name", level_names())

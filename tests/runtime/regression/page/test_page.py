@@ -16,13 +16,13 @@ from tests.runtime.regression.made import several
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.explain import Finding
-from tltl_runtime.regression.page.contents import NotRun, ReportedCase, SuiteReport
-from tltl_runtime.regression.page.page import html_report
-from tltl_runtime.regression.retrained import Retrained, Trained
+from tltl_runtime.regression.explain.explain import Finding
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
+from tltl_runtime.regression.report.page.page import html_report
+from tltl_runtime.regression.retrain.retrained import Retrained, Trained
 from tltl_runtime.stealth.level import Box
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 EVIL = "</script><b onclick='x'>`$title`&amp;<!--"
 

@@ -11,8 +11,8 @@ import pytest
 
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
-from tltl_runtime.regression.page.recorded import recorded
-from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.regression.report.page.recorded import recorded
+from tltl_runtime.stealth.recordings.episode import Episode
 
 
 def unrun(packed: list[list[Any]]) -> list[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.runtime.regression.page import samples
-from tltl_runtime.regression.page.traffic import traffic
+from tltl_runtime.regression.report.page.traffic import traffic
 
 
 def test_every_episode_is_counted_where_it_was() -> None:

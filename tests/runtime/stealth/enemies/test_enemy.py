@@ -13,7 +13,7 @@ from tests.runtime.stealth.enemy_levels import GUARD, bounds, box, level, low, p
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, Enemies, PlayerView
 from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Barrier, Box, Enemy, Level, Solid
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 DT = 0.15
 FAR = PlayerView((5.0, 40.0, 0.0))

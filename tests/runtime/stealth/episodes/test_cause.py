@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.cause import _blows, cause
-from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.cause import _blows, cause
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 def careless(level: str, seed: int, spec: Path | None = None) -> Episode:

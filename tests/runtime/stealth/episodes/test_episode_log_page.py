@@ -14,9 +14,9 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.arrays import ARRAYS, Array
-from tltl_runtime.stealth.episodes.file import FORMAT, VERSION, Meta, Names, to_bytes
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array
+from tltl_runtime.stealth.recordings.file import FORMAT, VERSION, Meta, Names, to_bytes
 from tltlc.monitor import RewardOptions
 
 PAGE = DOCS / "episode-log.md"

@@ -18,18 +18,18 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.arrays import ARRAYS
-from tltl_runtime.stealth.episodes.check import check, check_replay, resimulate
-from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, read_episode, to_bytes, write_episode
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.arrays import ARRAYS
+from tltl_runtime.stealth.recordings.check import check, check_replay, resimulate
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import SUFFIX, from_bytes, read_episode, to_bytes, write_episode
+from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
-from tltlc.record import replace
 
 Change = Callable[[dict[str, Any], dict[str, Any]], None]
 GOLDEN = Path(__file__).parents[3] / "golden" / "episode"
@@ -304,7 +304,7 @@ def test_what_is_no_episode_is_refused(episode: Episode, make: Callable[[Episode
 
 
 def test_a_bomb_is_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.stealth.episodes.file.MAX_BYTES", 1 << 20)
+    monkeypatch.setattr("tltl_runtime.stealth.recordings.file.MAX_BYTES", 1 << 20)
     assert "it holds more than 1 MiB" in refused(bomb(4 << 20))
     assert "it is larger than 1 MiB" in refused(bytes(2 << 20))
 
@@ -319,14 +319,14 @@ def test_a_small_file_that_holds_a_large_text_is_not_parsed(
     assert len(data) < 1 << 20
     parsed = []
     monkeypatch.setattr(json, "loads", lambda text, **_: parsed.append(len(text)) or {})
-    monkeypatch.setattr("tltl_runtime.stealth.episodes.file._read_meta", file_read_meta(episode, array))
+    monkeypatch.setattr("tltl_runtime.stealth.recordings.file._read_meta", file_read_meta(episode, array))
     assert f"the array `{array}` holds more than" in refused(data)
     assert not parsed
 
 
 def file_read_meta(episode: Episode, array: str) -> Any:
     """What reads ``meta``; a stand-in where the other array is the subject."""
-    from tltl_runtime.stealth.episodes import file
+    from tltl_runtime.stealth.recordings import file
 
     return file._read_meta if array == "meta" else lambda members, name: file._meta(episode)
 
@@ -414,7 +414,7 @@ MESSAGES: dict[str, Callable[[Episode], str]] = {
 
 @pytest.mark.parametrize("name", MESSAGES)
 def test_message(episode: Episode, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.stealth.episodes.check.versions", lambda: {**episode.versions, "numpy": "2.0"})
+    monkeypatch.setattr("tltl_runtime.stealth.recordings.check.versions", lambda: {**episode.versions, "numpy": "2.0"})
     found, expected = MESSAGES[name](episode), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
         expected.write_text(found, encoding="utf-8")

@@ -7,9 +7,9 @@ from contextlib import closing
 import pytest
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.outcome import outcome
 from tltl_runtime.stealth.expert.expert import Expert
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.outcome import outcome
 
 
 @pytest.mark.parametrize(("level", "careful"), [("navigation", True), ("cover_and_hide", False)])

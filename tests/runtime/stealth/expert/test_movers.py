@@ -7,7 +7,7 @@ import pytest
 from tltl_runtime.stealth.expert.movers import Clocks, reach_of
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 @pytest.mark.parametrize("unseen", [1, 7])

@@ -14,7 +14,7 @@ from tltl_runtime.stealth.expert.walker import Walker
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Level, Solid, Start
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 GOAL = (8.2, 7.2, 0.0)
 

@@ -13,9 +13,9 @@ from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.levels.file import load_level, read_level
 from tltl_runtime.stealth.levels.table import Table
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.record import replace
-from tltlc.source import SourceFile, Span
 
 ROOM = """\
 doc = "a room"

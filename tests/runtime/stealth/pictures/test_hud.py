@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.cause import Cause
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.pictures.hud import beginning, ending, hud
-from tltl_runtime.stealth.pictures.interpolation import between
+from tltl_runtime.stealth.recordings.cause import Cause
+from tltl_runtime.stealth.rendering.hud import beginning, ending, hud
+from tltl_runtime.stealth.rendering.interpolation import between
 from tltlc import compile_text
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tltl_runtime.stealth.capabilities.reach import reachable
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.stealth.pictures.plan import draw_level, patrol
-from tltl_runtime.stealth.supply.reach import reachable
+from tltl_runtime.stealth.rendering.plan import draw_level, patrol
 
 
 def pixels(png: bytes) -> np.ndarray:

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from tests.runtime.stealth.enemy_levels import bounds, box, level, low, solids, wall
 from tltl_runtime.stealth.level import Barrier, MapSensor, Point, Solid, Switch
 from tltl_runtime.stealth.levels.parts import CELL_TYPES
-from tltl_runtime.stealth.senses.semantic_map import SemanticMap
-from tltl_runtime.stealth.senses.voxels import Voxels
+from tltl_runtime.stealth.observation.semantic_map import SemanticMap
+from tltl_runtime.stealth.observation.voxels import Voxels
 
 SENSOR = MapSensor(CELL_TYPES, 0.5, 11)
 IDS = {name: 1 + index for index, name in enumerate(CELL_TYPES)}

@@ -8,9 +8,9 @@ import pytest
 
 from tltl_runtime.stealth.level import MapSensor, Sensors
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.senses.sensors import DEFAULT_MAP, chosen
+from tltl_runtime.stealth.observation.sensors import DEFAULT_MAP, chosen
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import replace
 
 LEVEL = load_level("navigation")
 OWN = LEVEL.sensors

@@ -7,19 +7,19 @@ from contextlib import closing
 import numpy as np
 import pytest
 
-from tltl_runtime.regression.reasons import is_infeasible
+from tltl_runtime.regression.explain.reasons import is_infeasible
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+from tltl_runtime.stealth.capabilities.reach import Reach, highest_lift, reachable
+from tltl_runtime.stealth.capabilities.space import Budget, SpaceGrid, distances, flood
 from tltl_runtime.stealth.level import Barrier, Box, Exit, Level, Mover, Point, Sensors, Solid, Start, Switch, Unlock
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.parts import enclosure
-from tltl_runtime.stealth.supply.feasible import reach_warnings
-from tltl_runtime.stealth.supply.reach import Reach, highest_lift, reachable
-from tltl_runtime.stealth.supply.space import Budget, SpaceGrid, distances, flood
 from tltl_runtime.stealth.world.physics import World
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltl_runtime.task import load_task
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.limits import WORK
-from tltlc.record import replace
+from tltlc.io.limits import WORK
 
 BOUNDS = Box((0.0, 0.0, -0.5), (12.0, 5.0, 4.0))
 SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]
@@ -226,11 +226,11 @@ def test_a_level_that_takes_too_long_is_refused(monkeypatch: pytest.MonkeyPatch)
     (found,) = reach_warnings(level, fspa)
     assert found.code == "TLT0814"
     assert "the way ends at `box_0`" in (found.help or "")
-    monkeypatch.setattr("tltl_runtime.stealth.supply.feasible.WORK", {"cells of reachable space": 1000})
+    monkeypatch.setattr("tltl_runtime.stealth.capabilities.feasible.WORK", {"cells of reachable space": 1000})
     (found,) = reach_warnings(level, fspa)
     # Only the search for what is in the way has too little.
     assert (found.code, found.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
-    monkeypatch.setattr("tltl_runtime.stealth.supply.reach.WORK", {"cells of reachable space": 1000})
+    monkeypatch.setattr("tltl_runtime.stealth.capabilities.reach.WORK", {"cells of reachable space": 1000})
     with pytest.raises(TltlError, match="TLT0006: it takes too long to find out what can be reached in `room:v0`"):
         reachable(level)
     # Whoever plays is warned, and plays.

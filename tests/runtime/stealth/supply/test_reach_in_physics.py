@@ -7,11 +7,11 @@ from contextlib import closing
 import pytest
 
 from benchmarks.reach import Search, search
+from tltl_runtime.stealth.capabilities.reach import reachable
 from tltl_runtime.stealth.level import Start
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.supply.reach import reachable
 from tltl_runtime.stealth.world.physics import World
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 BEHIND_THE_HURDLE = 16.0
 BLOCK_2 = 11.6

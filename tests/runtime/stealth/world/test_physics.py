@@ -17,7 +17,7 @@ from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.physics import World, WorldError
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 from tltl_runtime.stealth.world.way import Way
-from tltlc.record import replace
+from tltlc.core.record import replace
 
 EAST, WEST, NORTH, STAY, JUMP, CROUCH = (
     (1, 0, 0, 0, 0),

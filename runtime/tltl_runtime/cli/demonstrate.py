@@ -1,0 +1,99 @@
+"""``tltlc demonstrate``: the scripted expert plays a level, and its episodes are recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tltl_runtime.cli.support.film import FILMS, Film, write_film
+from tltl_runtime.cli.support.level_faults import level_faults
+from tltl_runtime.cli.support.notation import notation_option
+from tltl_runtime.cli.support.options import output_folder, seed_option
+from tltl_runtime.stealth.levels.place import level_place
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.report import Report
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.recordings.episode import Episode
+    from tltl_runtime.stealth.recordings.summary import Notation
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc demonstrate cover_and_hide
+  tltlc demonstrate branching:v1 --episodes 20 -o branching_runs
+  tltlc demonstrate my_level.toml --spec my_plan.tltl:careful --film gif
+"""
+)
+@click.argument("level", metavar="LEVEL[:VARIANT]")
+@click.option(
+    "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
+)
+@click.option("--episodes", metavar="N", type=WholeRange(min=1), default=1, show_default=True)
+@seed_option("Of the first episode; those of the next follow.")
+@output_folder("The folder for recordings and plans, made where it is missing.", default=Path("demonstrations"))
+@click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Make a film of each episode, too.")
+@notation_option
+@click.option("--careless", is_flag=True, help="Play as if nobody could see.")
+@level_faults()
+def command(
+    level: str,
+    spec: str | None,
+    episodes: int,
+    seed: int,
+    folder: Path,
+    film: str | None,
+    notation: Notation,
+    careless: bool,
+) -> int:
+    """Have the scripted expert play a level.
+
+    Writes for each episode the recording LEVEL-VARIANT-SEED.episode.npz and the plan of its way as a .png, and says
+    why those failed that did.  What is there stays: another episode of the same name becomes LEVEL-VARIANT-SEED-2 and
+    so on.  The exit status is 1 where an episode does not succeed.
+    """
+    from tltl_runtime.cli.support.episode_text import episode_line
+    from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+    from tltl_runtime.stealth.env import make_env
+    from tltl_runtime.stealth.recording import RecordEpisode
+    from tltl_runtime.training.imitation.demonstrations import expert_episodes
+
+    with Report() as report:
+        file, variant = level_place(level)
+        env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
+        played = succeeded = 0
+        try:
+            report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
+            for episode in expert_episodes(env, range(seed, seed + episodes), careful=not careless):
+                path = _write(folder, episode, film, notation)
+                played, succeeded = played + 1, succeeded + episode.success
+                click.echo(episode_line(episode, str(path)))
+        except KeyboardInterrupt:
+            click.echo(f"stopped: {played} of {episodes} episodes were recorded", err=True)
+            raise
+        finally:
+            env.close()
+        if episodes > 1:
+            click.echo(f"{succeeded} of {episodes} succeeded")
+        return exits.CLEAN if succeeded == episodes else exits.FINDINGS
+    return report.status
+
+
+def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
+    """Write the recording and the pictures of an episode; the path of the recording."""
+    from tltl_runtime.stealth.recordings.file import SUFFIX, file_stem, new_path, to_bytes
+    from tltl_runtime.stealth.rendering.plan import draw_episode
+    from tltlc.io.writing import write_files
+
+    recording = to_bytes(episode)
+    path = new_path(folder, file_stem(episode), recording, [".png", *([f".{film}"] if film else [])])
+    name = path.name.removesuffix(SUFFIX)
+    write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation), path.name: recording})
+    if film:
+        span = (0.0, episode.snapshots[-1].time)
+        write_film(folder / f"{name}.{film}", episode, span, Film(notation=notation))
+    return path

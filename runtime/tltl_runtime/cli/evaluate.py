@@ -1,0 +1,198 @@
+"""``tltlc evaluate``: a trained policy plays episodes, and its figures are reported."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import closing, nullcontext
+from pathlib import Path
+from shlex import join
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.level_faults import level_faults
+from tltl_runtime.cli.support.options import output_folder, seed_option
+from tltl_runtime.cli.support.worker_options import WorkersType
+from tltl_runtime.cli.support.writable_paths import check_writable
+from tltl_runtime.support.number_text import listed
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.paths import OutputPath, is_stdout
+from tltlc.interfaces.cli.report import Report
+
+if TYPE_CHECKING:
+    from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
+    from tltl_runtime.evaluation.player import Recorded, Result
+
+
+_MOST_NAMED: Final = 6
+"""Of the files that were removed, as many are named."""
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc evaluate --level cover_and_hide
+  tltlc evaluate training/my_level-v0-careful-0 --episodes 500 --seed 7 --workers 0
+  tltlc evaluate --level branching:v1 --json - > branching.json
+  tltlc evaluate --level branching:v1 --out evaluation --record all
+"""
+)
+@click.argument("policy", metavar="[POLICY]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--level", metavar="LEVEL[:VARIANT]", help="Where; by default where the policy was trained.  VARIANT: v0."
+)
+@click.option("--episodes", metavar="N", type=WholeRange(1, 10**6), default=100, show_default=True)
+@seed_option("Of the evaluation: episode i of seed N always plays the same.")
+@click.option(
+    "--first", metavar="I", type=WholeRange(min=0), default=0, show_default=True, help="Begin with episode I."
+)
+@click.option("--spec", metavar="SPEC[:NAME]", help="What is to be done; by default what the policy was trained for.")
+@click.option(
+    "--workers",
+    metavar="N|ray",
+    type=WorkersType(),
+    default=1,
+    show_default=True,
+    help="Processes that play (0: one a core), or those of a Ray cluster.",
+)
+@click.option(
+    "--json", "json_file", metavar="FILE", type=OutputPath("file", stdout=True, checked=True),
+    help="Write the report as JSON, too; `-` prints it in place of the text.",
+)  # fmt: skip
+@output_folder("Write recordings, their plans, a picture of all ways and the report to this folder.")
+@click.option(
+    "--record",
+    "recorded",
+    type=click.Choice(("failures", "all", "none")),
+    help="Of which episodes --out has the recordings (default: failures).",
+)
+@level_faults()
+def command(
+    policy: Path | None,
+    level: str | None,
+    episodes: int,
+    seed: int,
+    first: int,
+    spec: str | None,
+    workers: Any,
+    json_file: Path | None,
+    folder: Path | None,
+    recorded: Recorded | None,
+) -> int:
+    """Have a trained policy play, and report how often it meets the spec.
+
+    POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it;
+    without one that of --level plays.
+    Every episode is played twice, with actions sampled as in training and with the likeliest ones.  The exit status
+    is 0 whatever the pass rate; after Ctrl-C the report is on what was played.
+    """
+    if policy is None and level is None:
+        raise click.UsageError("name a POLICY or a --level, or both")
+    if recorded and not folder:
+        raise click.UsageError("--record needs the folder for the recordings: --out DIR")
+    with Report() as report, learning_for("`tltlc evaluate`"):
+        from tltl_runtime.cli.support.level_argument import check_named, check_no_toml
+
+        check_no_toml(spec)
+        check_named(policy, level)
+        from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
+        from tltl_runtime.cli.support.policy_path import check_known, policy_place
+        from tltl_runtime.evaluation.evaluate import results, set_up
+        from tltl_runtime.evaluation.player import Task
+        from tltl_runtime.policies.file import MAX_BYTES, from_bytes
+        from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+        from tltl_runtime.stealth.levels.file import load_level
+        from tltlc.core.record import replace
+        from tltlc.io.files import read_bytes
+
+        path, name, variant = policy_place(policy, level, "tltlc evaluate")
+        # A training that goes on may write another one there meanwhile.
+        data = read_bytes(path, str(path), MAX_BYTES)
+        trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
+        sha256 = hashlib.sha256(data).hexdigest()
+        if name is None:
+            check_known(trained.card.level, path, "tltlc evaluate")
+        setup = set_up(trained, name, variant, spec, seed, kept)
+        # A level's own spec is mostly called like it.
+        of = dict.fromkeys((trained.card.level, trained.card.fspa.name))
+        setup = replace(setup, player=f"policy {' '.join(of)} {sha256[:8]}")
+        report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
+        again = _command(policy, level, spec, seed)
+        files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
+        # The folder, which is there by now, may be that of the report, too.
+        check_writable({"--json": None if is_stdout(json_file) else json_file})
+        tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
+        try:
+            with closing(results(setup, tasks, workers, _waiting)) as playing:
+                for result in _counted(playing, len(tasks)):
+                    files.add(result)
+        finally:
+            _tell(files, json_file, folder, episodes)
+    return report.status
+
+
+def _command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
+    """What plays episodes of the same evaluation again, to be pasted."""
+    words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
+    words += [word for name, given in (("--level", level), ("--spec", spec)) if given for word in (name, given)]
+    return join([*words, "--seed", str(seed)])
+
+
+def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
+    """The results; standard error says how far they are, with a bar on a terminal, else with a line each tenth."""
+    from tltl_runtime.evaluation.player import CHOICES
+
+    played, passed = Counter[bool](), Counter[bool]()
+    with _bar(count) as bar:
+        for number, result in enumerate(playing, 1):
+            yield result
+            sampled = result.task.sampled
+            played[sampled] += 1
+            passed[sampled] += result.played.success
+            so_far = [f"{passed[each]} of {played[each]} {name}" for each, name in CHOICES.items() if played[each]]
+            said = f"passed: {', '.join(so_far)}"
+            if bar is not None:
+                bar.update(bar.task_ids[0], completed=number, description=said)
+            elif number * 10 // count > (number - 1) * 10 // count:
+                click.echo(f"{number / count:.0%} played; {said}", err=True)
+
+
+def _waiting(left: float) -> None:
+    click.echo(f"waiting for a worker to start on the Ray cluster, for {left:.0f} s at the most", err=True)
+
+
+def _bar(count: int) -> Any:
+    if not sys.stderr.isatty():
+        return nullcontext()
+    from rich.console import Console
+    from rich.progress import Progress
+
+    bar = Progress(console=Console(stderr=True), transient=True)
+    bar.add_task("starting", total=count)
+    return bar
+
+
+def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, wanted: int) -> None:
+    """Report on what was played, which is not all of the ``wanted`` episodes of each kind where it was broken off."""
+    played = files.played
+    if not any(played.values()):
+        return
+    complete = all(count == wanted for count in played.values())
+    if not complete:
+        counts = " and ".join(f"{count} of {wanted} {name}" for name, count in played.items())
+        click.echo(f"stopped: {counts} episodes were played", err=True)
+    text = json.dumps(files.document(complete), indent=2, ensure_ascii=False) + "\n"
+    if not is_stdout(json_file):
+        click.echo(files.text(), nl=False)
+    else:
+        click.echo(text, nl=False)
+    wrote = files.write(text)
+    if removed := files.removed:
+        click.echo(f"removed from {folder}, of an earlier evaluation: {listed(removed, _MOST_NAMED)}", err=True)
+    if wrote:
+        click.echo(f"wrote {wrote}", err=True)

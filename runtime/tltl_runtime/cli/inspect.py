@@ -1,0 +1,75 @@
+"""``tltlc inspect``: what a policy was trained for, and the policy for other engines."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tltl_runtime.cli.support.input_files import read_each
+from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.options import output_file, summary_format
+from tltlc.interfaces.cli.report import Report
+
+if TYPE_CHECKING:
+    from tltl_runtime.policies.policy import Policy
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc inspect training/cover_and_hide-v0-cover_and_hide-0
+  tltlc inspect bots/*.safetensors --format json
+  tltlc inspect bot.safetensors -o bot.onnx      the policy for another engine
+"""
+)
+@click.argument("files", metavar="POLICY...", nargs=-1, required=True)
+@output_file("OUT.onnx", "Write the policy as an ONNX model, and no summary.")
+@summary_format
+def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # noqa: A002
+    """Show what policies were trained for, what they sense and choose, and how their training went.
+
+    A POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it.
+    """
+    if path is not None and path.suffix.lower() != ".onnx":
+        raise click.UsageError(f"-o writes a .onnx, not `{path}`")
+    if path is not None and len(files) > 1:
+        raise click.UsageError("-o takes one POLICY")
+    summaries: list[dict[str, Any]] = []
+    with Report(format, results=True) as report, learning_for("`tltlc inspect`"):
+        from tltl_runtime.policies.summary import summary, summary_text
+
+        for name, (policy, so_far, ended) in read_each(files, _read, report):
+            said = {"file": name, **summary(policy), **so_far}
+            if path is not None:
+                _export(policy, path)
+                report.say(f"wrote {path}")
+            elif format == "text":
+                print(f"{name}\n{summary_text(said)}{ended}")
+            summaries.append(said)
+        if format == "json" and path is None:
+            print(json.dumps(summaries, indent=2, ensure_ascii=False))
+    return report.status
+
+
+def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
+    """A policy; and of one in the folder of a training that has no record yet, how that goes, as JSON and in words."""
+    from tltl_runtime.cli.support.policy_path import policy_file, progress
+    from tltl_runtime.policies.file import read_policy
+    from tltl_runtime.training.run.record import record_so_far
+    from tltl_runtime.training.run.run import RUN
+
+    path = Path(name)
+    policy = read_policy(policy_file(path))
+    if policy.card.training or not (path / RUN).exists():
+        return policy, {}, ""
+    return policy, {"training": record_so_far(path)}, f"  ended    not yet: {progress(path)}\n"
+
+
+def _export(policy: Policy, path: Path) -> None:
+    from tltl_runtime.policies.onnx import to_onnx
+    from tltlc.io.writing import write_file
+
+    write_file(path, to_onnx(policy))

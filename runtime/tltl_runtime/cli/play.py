@@ -1,0 +1,68 @@
+"""``tltlc play``: a level in a window, played with the keyboard and judged by a spec while it is recorded."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import click
+
+from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
+from tltl_runtime.cli.support.level_faults import level_faults
+from tltl_runtime.cli.support.recording_files import RecordingFiles
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.levels.place import level_place
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.file import SUFFIX
+from tltl_runtime.stealth.rendering.camera import View
+from tltl_runtime.stealth.rendering.hud import KEYS
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.paths import OutputPath
+
+
+@click.command(
+    epilog=f"""\b
+Keys:
+  {KEYS[0]}
+  {KEYS[1]}
+
+\b
+Examples:
+  tltlc play cover_and_hide
+  tltlc play branching:v1 --seed 7 -o mine.episode.npz
+  tltlc play my_level.toml --spec my_plan.tltl:careful --view top_down
+"""
+)
+@click.argument("level", metavar="LEVEL[:VARIANT]")
+@click.option(
+    "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
+)
+@click.option("--seed", type=WholeRange(min=0), help="Of the first episode; by default another one each time.")
+@click.option(
+    "--output",
+    "--out",
+    "-o",
+    "out",
+    metavar="PLACE",
+    type=OutputPath("place"),
+    help=f"Where to record: NAME{SUFFIX}, or a folder, made where it is missing.  Older recordings stay.",
+)
+@keyboard_options
+@level_faults()
+def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: View, crouch: str) -> None:
+    """Play a level with the keyboard, in real time, in a window.
+
+    The spec judges while you play: the screen shows what it still asks for.  Each episode is recorded to a file,
+    those that you stop, too.  `tltlc replay FILE` shows a recording.
+    """
+    _play(*level_place(level), spec, seed, out, view, crouch)
+
+
+def _play(
+    path: str, variant: str | None, spec: str | None, seed: int | None, out: Path | None, view: View, crouch: str
+) -> None:
+    env = RecordEpisode(make_env(path, variant or "v0", spec), "keyboard")
+    try:
+        play_at_keyboard(env, partial(RecordingFiles, out), seed=seed, view=view, crouch=crouch)
+    finally:
+        env.close()

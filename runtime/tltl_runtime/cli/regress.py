@@ -1,0 +1,144 @@
+"""``tltlc regress``: which levels still play as designed, and where and why not."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final
+
+import click
+
+from tltl_runtime.cli.support.changed_option import ChangedCommand
+from tltl_runtime.cli.support.closed_output import on_without_readers
+from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.options import Function, output_folder
+from tltl_runtime.cli.support.suite_argument import check_there
+from tltl_runtime.cli.support.worker_options import all_cores_option
+from tltl_runtime.cli.support.writable_paths import is_output
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.interfaces.cli.numbers import FiniteRange
+from tltlc.interfaces.cli.paths import OutputPath
+from tltlc.interfaces.cli.report import Report
+from tltlc.io.files import is_file, read_source
+from tltlc.io.limits import TOML
+
+_MINUTES: Final = 10.0
+"""Of a training with --retrain, where nothing else is said."""
+_REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
+
+
+def _report(name: str, about: str) -> Callable[[Function], Function]:
+    about = f"{about}; `-` prints it in place of the text."
+    return click.option(f"--{name}", metavar="FILE", type=OutputPath("file", stdout=True, checked=True), help=about)
+
+
+@click.command(
+    cls=ChangedCommand,
+    epilog="""\b
+Examples:
+  tltlc regress
+  tltlc regress suite.toml --html report.html
+  tltlc regress suite.toml --json - > report.json
+  tltlc regress suite.toml --changed assets/guard.toml
+  tltlc regress suite.toml --retrain --minutes 20
+  tltlc regress suite.toml --junit report.xml --github --changed $(git diff --no-renames --name-only main)
+""",
+)
+@click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--changed",
+    metavar="ASSET…",
+    multiple=True,
+    help="Only the cases that depend on one of these files; it takes every word up to the next option.",
+)
+@_report("json", "Write the report as JSON, too")
+@_report("junit", "Write it as JUnit XML, too")
+@_report("html", "Write the page here, too")
+@click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
+@click.option(
+    "--baseline",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="What they are judged against (default: SUITE.baseline.json, beside the suite).",
+)
+@click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")
+@click.option(
+    "--retrain",
+    is_flag=True,
+    help="Train for the cases that do not pass, to see whether their levels are feasible after all.",
+)
+@click.option(
+    "--minutes",
+    metavar="M",
+    type=FiniteRange(min=0, min_open=True, max=1_000_000),
+    help=f"Of each training, at the most (default: {_MINUTES:g}).",
+)
+@all_cores_option
+@output_folder("The folder for the page and for what was played (default: regression/SUITE).")
+def command(
+    suite: Path | None,
+    changed: tuple[str, ...],
+    github: bool,
+    baseline: Path | None,
+    fresh: bool,
+    retrain: bool,
+    minutes: float | None,
+    workers: Any,
+    folder: Path | None,
+    **files: Path | None,
+) -> int:
+    """Have trained policies play the cases of a suite, and report which levels still play as designed.
+
+    SUITE is a TOML file; without one, the levels that come with tltlc are played in all of their variants.  A case of
+    which nothing has changed since it was played is not played again.  The exit status is 0 where all cases pass, and
+    1 where one is to be reviewed or fails; what --retrain finds changes neither.
+    """
+    printed = {name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_output(path)}
+    if printed and len(users := [*["--github"] * github, *printed.values()]) > 1:
+        *_, last = (_REPORTS[name] for name in printed)
+        way_out = f"write {last} to a file" if len(users) == 2 else "write the reports to files"
+        both = "both" if len(users) == 2 else "all"
+        raise click.UsageError(f"{', '.join(users[:-1])} and {users[-1]} {both} need standard output: {way_out}")
+    if minutes is not None and not retrain:
+        raise click.UsageError("--minutes are those of --retrain: give it, too")
+    if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
+        raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
+    with Report() as report, learning_for("`tltlc regress`"), on_without_readers():
+        check_there(suite)
+        from tltl_runtime.cli.support.regression_run import Wanted, run
+
+        wanted = Wanted(
+            suite=suite,
+            changed=tuple(filter(None, changed)) if changed else None,
+            folder=folder or _default_folder(suite),
+            files={f"--{name}": path for name, path in files.items() if path is not None},
+            github=github,
+            fresh=fresh,
+            workers=workers,
+            baseline=baseline,
+            minutes=(minutes or _MINUTES) if retrain else None,
+        )
+        return run(wanted)
+    return report.status
+
+
+def _is_suite(word: str) -> bool:
+    """Whether a word is the file of a suite."""
+    if not word.endswith(".toml") or not is_file(word):
+        return False
+    try:
+        return "\n[[case]]" in "\n" + read_source(word, max_bytes=TOML.size).text
+    except TltlError:
+        return False
+
+
+def _default_folder(suite: Path | None) -> Path:
+    """The suite's place as seen from here, without its ending: "regression/levels/game" for `levels/game.toml`."""
+    if suite is None:
+        return Path("regression", "shipped")
+    try:
+        path = Path(os.path.relpath(suite))
+    except ValueError:  # Windows: on another drive
+        path = Path(suite.name)
+    return Path("regression", *(part for part in path.parent.parts if part != os.pardir), path.stem)

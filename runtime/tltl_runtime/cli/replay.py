@@ -1,0 +1,193 @@
+"""``tltlc replay``: what recorded episodes hold, whether they are true, and pictures and films of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from tltl_runtime.cli.support.film import FILMS, Film, write_film
+from tltl_runtime.cli.support.input_files import read_each
+from tltl_runtime.cli.support.notation import notation_option
+from tltl_runtime.cli.support.options import output_file, summary_format
+from tltlc.interfaces.cli.numbers import FiniteRange
+from tltlc.interfaces.cli.report import Report
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.recordings.episode import Episode
+    from tltl_runtime.stealth.recordings.summary import Notation
+    from tltl_runtime.stealth.rendering.film import View
+
+_VIEWS: Final = ("third_person", "top_down", "overview", "plan")
+_ENDINGS: Final = (".png", *FILMS, ".csv")
+_ONLY_FOR: Final = {
+    "view": FILMS,
+    "speed": FILMS,
+    "rate": FILMS,
+    "size": (".png", *FILMS),
+    "start": (*FILMS, ".csv"),
+    "stop": (*FILMS, ".csv"),
+}
+"""The endings of what each option is for."""
+
+_SIZES: Final = (160, 4096)
+"""The least and the greatest width and height, in pixels."""
+
+
+def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    width, cross, height = text.lower().partition("x")
+    low, high = _SIZES
+    if cross and width.isdecimal() and height.isdecimal() and low <= int(width) <= high and low <= int(height) <= high:
+        return int(width), int(height)
+    raise click.BadParameter(f"write WIDTHxHEIGHT, each from {low} to {high}, e.g. 640x480")
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc replay run.episode.npz                          how it went
+  tltlc replay runs/*.episode.npz --check               whether the recordings are true
+  tltlc replay run.episode.npz -o run.png               the way, coloured by the automaton's state
+  tltlc replay run.episode.npz -o run.mp4 --view top_down --speed 2 --fps 20
+  tltlc replay run.episode.npz -o run.gif --view plan --from 4 --to 9.5
+  tltlc replay run.episode.npz -o run.csv               then: tltlc monitor SPEC run.csv
+"""
+)
+@click.argument("files", metavar="FILE...", nargs=-1, required=True)
+@output_file("OUT", "Write a plan (.png), a film (.gif, .mp4) or the signals (.csv), and no summary.")
+@click.option("--view", type=click.Choice(_VIEWS), help="Of a film (default: third_person).")
+@click.option(
+    "--speed",
+    type=FiniteRange(0.05, 100.0),
+    help="Of a film (default: 1): 2 is twice as fast as the game.",
+)
+@click.option(
+    "--fps",
+    "rate",
+    type=FiniteRange(1.0, 60.0),
+    help="Pictures a second (default: one for each decision).",
+)
+@click.option("--size", metavar="WxH", callback=_size, help="Of a film (default: 640x480) or a plan, in pixels.")
+@click.option(
+    "--from",
+    "start",
+    metavar="SECONDS",
+    type=FiniteRange(min=0.0),
+    help="Begin a film or the signals here.",
+)
+@click.option(
+    "--to",
+    "stop",
+    metavar="SECONDS",
+    type=FiniteRange(min=0.0),
+    help="End a film or the signals here.",
+)
+@notation_option
+@click.option("--check", "checked", is_flag=True, help="Judge the episode again, and play it again.")
+@summary_format
+@click.pass_context
+def command(
+    context: click.Context,
+    files: tuple[str, ...],
+    path: Path | None,
+    view: View | None,
+    speed: float | None,
+    rate: float | None,
+    size: tuple[int, int] | None,
+    start: float | None,
+    stop: float | None,
+    notation: Notation,
+    checked: bool,
+    format: str,  # noqa: A002
+) -> int:
+    """Show recorded episodes: a summary, the plan of the way, a film, the signals.
+
+    --check says whether the atoms, states and rewards of the recording follow from its signals by the spec, and
+    whether the level, played again from the seed with the same actions, gives the same episode.
+    """
+    _check_usage(context, files, path, size)
+    from tltl_runtime.stealth.recordings.check import check, check_replay
+    from tltl_runtime.stealth.recordings.file import read_episode
+    from tltl_runtime.stealth.recordings.summary import judged_with, summary, summary_text
+
+    film = Film(view or "third_person", speed or 1.0, rate, size or (640, 480), notation)
+    summaries: list[dict[str, Any]] = []
+    with Report(format, results=True) as report:
+        for name, episode in read_each(files, read_episode, report):
+            said = {"file": name, **summary(episode, notation)}
+            if checked:
+                judged, played = check(episode), check_replay(episode)
+                report.add((*judged, *played))
+                said |= {"follows_from_spec": not judged, "plays_again": not played}
+            if path is not None:
+                _write(path, episode, _span(episode, start, stop), film, size)
+                report.say(f"wrote {path}")
+                if path.suffix.lower() == ".csv":
+                    report.say(f"judge it with: {judged_with(episode, str(path))}")
+            elif format == "text":
+                print(f"{name}\n{summary_text(said)}{_checked_text(said)}")
+            summaries.append(said)
+        if format == "json" and path is None:
+            print(json.dumps(summaries, indent=2, ensure_ascii=False))
+    return report.status
+
+
+def _check_usage(
+    context: click.Context, files: tuple[str, ...], path: Path | None, size: tuple[int, int] | None
+) -> None:
+    """Refuse what would be ignored."""
+    ending = None if path is None else path.suffix.lower()
+    if ending is not None and ending not in _ENDINGS:
+        raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
+    for option in context.command.params:
+        kinds = _ONLY_FOR.get(option.name or "", ())
+        if kinds and context.params[option.name or ""] is not None and ending not in kinds:
+            raise click.UsageError(f"{option.opts[0]} is for what -o writes to a {_listed(kinds)}")
+    if path is not None and len(files) > 1:
+        raise click.UsageError("-o takes one FILE")
+    if ending == ".mp4" and size and (size[0] % 2 or size[1] % 2):
+        raise click.UsageError("the width and the height of an .mp4 are even numbers")
+
+
+def _listed(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} or {last}"
+
+
+def _checked_text(said: dict[str, Any]) -> str:
+    if "plays_again" not in said:
+        return ""
+    follows = "follows" if said["follows_from_spec"] else "does NOT follow"
+    same = "the same" if said["plays_again"] else "ANOTHER"
+    return f"\n  checked  the judgement {follows} from the signals; played again it is {same} episode\n"
+
+
+def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
+    """From where to where a film or a trace goes, in seconds."""
+    end = episode.snapshots[-1].time
+    first, last = start or 0.0, end if stop is None else stop
+    if first > min(last, end):
+        raise click.UsageError(f"there is nothing from {first:g} s to {last:g} s: the episode ends at {end:.2f} s")
+    return first, min(last, end)
+
+
+def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
+    """Write what the ending of the path asks for; ``size`` is that of a plan, None for the natural one."""
+    from tltlc.io.writing import write_file
+
+    ending = path.suffix.lower()
+    if ending == ".csv":
+        from tltl_runtime.stealth.recordings.summary import trace_csv
+
+        write_file(path, trace_csv(episode, *span))
+    elif ending == ".png":
+        from tltl_runtime.stealth.rendering.plan import draw_episode
+
+        write_file(path, draw_episode(episode, size, film.notation))
+    else:
+        write_film(path, episode, span, film)

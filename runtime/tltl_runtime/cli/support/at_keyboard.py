@@ -1,0 +1,68 @@
+"""A person plays a level in a window, for the commands that record this."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import click
+
+from tltlc.interfaces.cli.report import show
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.keyboard import Recordings
+    from tltl_runtime.stealth.recording import RecordEpisode
+    from tltl_runtime.stealth.rendering.camera import View
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_CROUCHES: Final = ("hold", "toggle")
+_SIZE: Final = (640, 400)
+
+
+def keyboard_options(function: Function) -> Function:
+    """``--view`` and ``--crouch``, which the command takes as ``view`` and ``crouch``."""
+    from tltl_runtime.stealth.rendering.camera import VIEWS
+
+    crouch = click.option(
+        "--crouch", type=click.Choice(_CROUCHES), default="hold", show_default=True, help="What C does."
+    )
+    view = click.option("--view", type=click.Choice(VIEWS), default="third_person", show_default=True)
+    return view(crouch(function))
+
+
+def play_at_keyboard(
+    env: RecordEpisode,
+    recordings: Callable[[str], Recordings],
+    *,
+    seed: int | None,
+    view: View,
+    crouch: str,
+    enough: Callable[[], bool] = lambda: False,
+) -> None:
+    """Open a window and play episodes of ``env`` until the player stops, or it is ``enough`` after one.
+
+    ``recordings`` makes of the name LEVEL-VARIANT what takes the episodes; ``seed`` is the first episode's.  What
+    nobody can do in the level is said on standard error before there is a window.
+
+    Raises:
+        TltlError: TLT0830, no window can be opened; TLT0730, without pygame.
+    """
+    from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+    from tltl_runtime.stealth.keyboard import KeyboardPlayer
+    from tltl_runtime.stealth.rendering.render import Renderer
+    from tltl_runtime.stealth.window.window import Window
+
+    level = env.get_wrapper_attr("level")
+    taking = recordings(f"{level.name}-{level.variant}")
+    # A spec that asks for what the level does not have is told before there is a window.
+    env.reset()
+    show(reach_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
+    window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
+    renderer = Renderer(level, *_SIZE)
+    try:
+        KeyboardPlayer(env, window, renderer, view, taking, enough).play(seed)
+    finally:
+        renderer.close()
+        window.close()

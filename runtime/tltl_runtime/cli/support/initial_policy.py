@@ -1,0 +1,110 @@
+"""What `tltlc train --from POLICY` begins with, and what is then up to the policy: spec, senses, network, place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from tltl_runtime.cli.support.policy_path import check_known, policy_file, policy_place
+from tltl_runtime.cli.support.sensor_options import option_of
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.fit import check_policy
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.level import Level, Sensors
+from tltl_runtime.stealth.observation.sensors import chosen
+from tltl_runtime.training.run.initial_policy import weights_hash
+from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.settings import Settings
+from tltl_runtime.training.run.settings_file import read_values
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record, replace
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import read_source
+
+_COMMAND = "tltlc train --from"
+
+
+@record
+class Beginning:
+    """A policy to begin with, and its file."""
+
+    policy: Policy
+    path: Path
+
+    @property
+    def card(self) -> Card:
+        """What the policy was trained for."""
+        return self.policy.card
+
+
+def beginning(named: Path) -> Beginning:
+    """The policy that ``--from`` names as `tltlc evaluate` names one; raises TltlError for one that is none."""
+    path = policy_file(named)
+    return Beginning(read_policy(path), path)
+
+
+def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
+    """The level and the variant that a policy was trained on; raises TltlError where they are not known."""
+    path, name, variant = policy_place(named, None, _COMMAND)
+    if name is None:
+        check_known(begun.card.level, path, _COMMAND)
+        name, variant = begun.card.level, begun.card.variant
+    return name, variant or "v0"
+
+
+def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> Settings:
+    """The settings with the policy's network.
+
+    Raises:
+        TltlError: TLT0941, the file ``config`` asks for another one.
+        UsageError: the settings are for imitation.
+    """
+    if settings.imitates:
+        message = "--from is for the method `automaton`: an agent that imitates begins with what it is shown"
+        raise click.UsageError(message, click.get_current_context())
+    network = begun.card.network
+    asked = {} if config is None else read_values(read_source(config)).get("network", {})
+    if replace(network, **asked) != network:
+        title = f"`{begun.path}` has another network than `[network]` in `{config}` asks for"
+        raise TltlError([Diagnostic("TLT0941", title, help=f"leave `[network]` out of `{config}`, or --from")])
+    return replace(settings, network=network)
+
+
+def check_beginning(begun: Beginning, level: Level, fspa: Fspa, asked: Mapping[str, Any]) -> Sensors:
+    """What the agent senses, which is what the policy does; ``asked`` is what options say of it.
+
+    Raises:
+        TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, other senses are asked for.
+    """
+    check_policy(begun.card, level, fspa)
+    titles = list(_other_senses(begun, level, asked))
+    if titles:
+        help_ = "leave the option out, or train without --from"
+        raise TltlError([Diagnostic("TLT0941", title, help=help_) for title in titles])
+    return begun.card.sensors
+
+
+def is_another(run: Run, named: Path) -> str | None:
+    """In what a training differs from one that ``--from`` such a policy would be, a sentence; None where in nothing."""
+    where = f"the training in `{run.folder}` begins with"
+    if run.initial is None:
+        return f"{where} weights that are drawn, not with the policy `{named}`"
+    same = weights_hash(read_policy(policy_file(named))) == run.initial.weights
+    return None if same else f"{where} another policy than `{named}`"
+
+
+def moved(run: Run, named: Path) -> Run:
+    """The training with its policy where it is now."""
+    assert run.initial is not None
+    return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
+
+
+def _other_senses(begun: Beginning, level: Level, asked: Mapping[str, Any]) -> Iterator[str]:
+    own, sensors = begun.card.sensors, chosen(level, asked) if asked else begun.card.sensors
+    for key in asked:
+        if getattr(sensors, key) != getattr(own, key):
+            yield f"`{begun.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"

@@ -1,0 +1,57 @@
+"""What ``tltlc new --level`` writes: a level with all that it is made of, for a designer to change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.stealth.levels.file import level_names, level_path, load_level, variants
+from tltl_runtime.stealth.levels.made_for import LEVELS
+from tltl_runtime.stealth.levels.table import suggestion
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import read_source
+
+_STARTER: Final = Path(__file__).parents[2] / "starter" / "vault.toml"
+"""A small level to begin with, that of docs/levels.md."""
+
+NAMES: Final = (_STARTER.stem, *level_names())
+"""What can be copied."""
+
+
+def files(name: str) -> dict[str, str]:
+    """The texts of a level, its assets, overlays and spec, by the names that they have beside it, and a README.
+
+    The level's own file is the first.  ``name`` is one of :data:`NAMES` or a ``.toml`` file.  Errors: those of
+    :func:`load_level`.
+    """
+    if name not in NAMES and not name.endswith(".toml"):
+        title = f"there is no level `{name}` to copy"
+        raise TltlError([Diagnostic("TLT0800", title, help=suggestion(name, NAMES))])
+    path = _STARTER if name == _STARTER.stem else level_path(name)
+    levels = [load_level(str(path), variant) for variant in variants(str(path))]
+    names = dict.fromkeys(name for level in levels for name, _ in level.files)
+    found = {name: next(place / name for place in (path.parent, LEVELS) if (place / name).is_file()) for name in names}
+    spec = Path(levels[0].spec.rpartition(":")[0])
+    if spec.name:
+        found[spec.name] = spec
+    texts = {name: read_source(file, name).text for name, file in found.items()}
+    return {**texts, "README.md": _README.format(level=path.name, spec=spec.name or "SPEC.tltl")}
+
+
+_README: Final = """\
+# A level of the stealth game
+
+`{level}` says what stands where, and `{spec}` what a player has to do. `assets/` has what several levels may
+share, and `overlays/` the small changes that make the variants of the level. All of them are texts to be changed;
+`docs/levels.md` of tltlc describes every key.
+
+    tltlc check --level {level}                     is it right, and can anybody do it?
+    tltlc check --level {level}:v0 --plan plan.png  what does it look like?
+    tltlc play {level}                              play it yourself
+    tltlc demonstrate {level}                       watch the scripted expert
+    tltlc train {spec} --out bot                    have an agent learn it (extra `rl`)
+    tltlc evaluate bot                              and see how often it succeeds, and where not
+    tltlc test {spec}                               does the spec mean what we meant?
+
+The file of a level is its name, as in `level NAME` in the spec: who renames one renames both.
+"""

@@ -1,0 +1,145 @@
+"""What ``tltlc check --level`` says: of each level and variant, whether it has what the specs speak of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+from gymnasium import spaces
+
+from tltl_runtime.cli.support.sensor_options import senses_options
+from tltl_runtime.stealth.capabilities.capabilities import check_supply, given_params, used_entities
+from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
+from tltl_runtime.stealth.capabilities.reach import Reach, reachable
+from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.file import level_names, read_level, variants
+from tltl_runtime.stealth.levels.made_for import shown
+from tltl_runtime.stealth.levels.place import level_place
+from tltl_runtime.stealth.observation.observation import Senses
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.cli.exits import CLEAN, status_of
+from tltlc.interfaces.cli.inputs import Input, open_input
+from tltlc.interfaces.cli.paths import OutputPath
+from tltlc.interfaces.cli.report import Report
+from tltlc.interfaces.cli.settings import Settings
+from tltlc.io.writing import write_file
+
+
+@click.command()
+@senses_options
+@click.option(
+    "--plan",
+    metavar="FILE.png",
+    type=OutputPath("file"),
+    help="Draw the level from above, red where nobody can stand (for one level and variant).",
+)
+def command(
+    levels: tuple[str, ...],
+    inputs: Sequence[Input],
+    settings: Settings,
+    report: Report,
+    sensors: Mapping[str, Any],
+    plan: Path | None,
+) -> None:
+    """Hold levels against compiled specs, or where there are none against the spec that each is made for."""
+    if plan is not None and plan.suffix.lower() != ".png":
+        raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
+    check = _Check(inputs, settings, report, sensors)
+    seen: list[tuple[Level, Reach]] = []
+    for path, variant in map(level_place, levels):
+        for name in level_names() if path == "all" else (path,):
+            try:
+                seen += [check(name, each) for each in ((variant,) if variant else variants(name))]
+            except TltlError as error:
+                report.add(error.diagnostics)
+    if plan is not None and seen:
+        _draw(plan, seen)
+
+
+class _Check:
+    """What there is to be said of levels; what holds of several variants is said once."""
+
+    def __init__(self, inputs: Sequence[Input], settings: Settings, report: Report, sensors: Mapping[str, Any]) -> None:
+        self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
+        self._said: set[object] = set()
+
+    def __call__(self, path: str, variant: str) -> tuple[Level, Reach]:
+        """Report all that is to be said of one variant of a level."""
+        level, remarks = read_level(path, variant)
+        senses, reach = Senses(level, self._sensors), reachable(level)
+        warnings = [*remarks, *check_height(level, reach)]
+        self._add(warnings)
+        inputs = self._inputs or self._own(level)
+        several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
+        for opened in inputs:
+            for fspa, places in _specs(opened):
+                found = check_supply(level, fspa, places)
+                if status_of(found) == CLEAN:
+                    found += check_reach(level, reach, fspa, places)
+                self._add(found)
+                if not found:
+                    receiver = f" to `{fspa.name}`" if several else ""
+                    remark = "" if warnings or opened.diagnostics else " (nothing to report)"
+                    self._say(f"{level.name}:{variant} supplies {_supplied(level, fspa)}{receiver}{remark}")
+        self._say(f"{level.name}: the agent senses {_sensed(senses)}")
+        return level, reach
+
+    def _own(self, level: Level) -> list[Input]:
+        """The spec that a level is made for, compiled."""
+        if not level.spec:
+            way_out = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
+            self._say(f"{level.name}: made for no spec; {way_out}")
+            return []
+        opened = open_input(shown(Path(level.spec)), self._settings)
+        self._add(opened.diagnostics)
+        return [opened]
+
+    def _add(self, diagnostics: Iterable[Diagnostic]) -> None:
+        new = [diagnostic for diagnostic in diagnostics if diagnostic not in self._said]
+        self._said.update(new)
+        self._report.add(new)
+
+    def _say(self, line: str) -> None:
+        if line not in self._said:
+            self._said.add(line)
+            self._report.say(line)
+
+
+def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
+    if len(seen) != 1:
+        wanted = "one level and variant, e.g. `--level navigation:v2`"
+        raise click.UsageError(f"--plan is for {wanted}; there are {len(seen)}", click.get_current_context())
+    from tltl_runtime.stealth.rendering.plan import draw_level
+
+    level, reach = seen[0]
+    write_file(path, draw_level(level, reach), "name another place with --plan")
+
+
+def _specs(opened: Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
+    specs = {spec.name: spec for spec in opened.program.specs} if opened.program else {}
+    for fspa in opened.automata:
+        yield fspa, SpecPlaces(specs.get(fspa.name))
+
+
+def _supplied(level: Level, fspa: Fspa) -> str:
+    """The entities, the signals that are of none, and the params that a spec gets from a level."""
+    names = list(used_entities(level, fspa))
+    names += [signal.name for signal in fspa.signals if "(" not in signal.name]
+    names += [f"{name} = {value:.4g} m" for name, value in given_params(level, fspa).items()]
+    return ", ".join(names) or "all that it needs, which is nothing,"
+
+
+def _sensed(senses: Senses) -> str:
+    """The parts of the observation that are of the level, with their sizes."""
+    own = senses.sensors
+    names = {"entities": own.entities, "variables": own.variables, "map": own.map.types if own.map else ()}
+    shown = [
+        f"{key} {' x '.join(map(str, space.shape))} ({', '.join(names[key])})"
+        for key, space in senses.space.spaces.items()
+        if isinstance(space, spaces.Box)
+    ]
+    return "; ".join(shown) or "nothing of the level"

@@ -1,0 +1,49 @@
+"""Options that several commands have alike, but for what they say of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+import click
+
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.paths import OutputPath
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_OUTPUT: Final = ("--output", "--out", "-o")
+
+
+def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
+    """``-o DIR``, which the command takes as ``folder``."""
+    return click.option(
+        *_OUTPUT,
+        "folder",
+        metavar="DIR",
+        type=OutputPath("folder", checked=True),
+        default=default,
+        show_default=default is not None,
+        help=about,
+    )
+
+
+def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
+    """``-o FILE``, which the command takes as ``path``."""
+    return click.option(*_OUTPUT, "path", metavar=metavar, type=OutputPath("file", checked=True), help=about)
+
+
+def seed_option(about: str) -> Callable[[Function], Function]:
+    """``--seed N``, by default 0."""
+    kind = WholeRange(min=0)
+    return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=about)
+
+
+summary_format = click.option(
+    "--format",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="Of the summary, and of messages.",
+)

@@ -1,0 +1,90 @@
+"""Where a person's recordings are written, so that none is lost and none takes the place of another."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+from tempfile import gettempdir
+
+import click
+
+from tltl_runtime.stealth.recordings.cause import cause
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import SUFFIX, new_path, write_episode
+from tltl_runtime.support.number_text import share
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import reason
+
+
+class RecordingFiles:
+    """New files for episodes: ``out`` is a folder for files called ``name``, or ``NAME.episode.npz``, or nothing said.
+
+    Raises:
+        UsageError: ``out`` is of another form.
+        TltlError: TLT0005, nothing can be written there; of ``save`` too.
+    """
+
+    def __init__(self, out: Path | None, name: str) -> None:
+        self._folder, self._name = Path(), name
+        self._unfinished: Path | None = None
+        if out is not None and out.name.endswith(SUFFIX):
+            self._folder, self._name = out.parent, out.name.removesuffix(SUFFIX)
+        elif out is not None:
+            if out.suffix and not out.is_dir():
+                raise click.UsageError(
+                    f"--output is a folder or a name with {SUFFIX}, not `{out}`", click.get_current_context(silent=True)
+                )
+            self._folder = out
+        why = _refusal(self._folder, make=self._folder == out)
+        if why:
+            title = f"cannot record to `{self._folder}`: {why}"
+            raise TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])
+
+    def keep(self, episode: Episode) -> None:
+        """Write an episode that goes on, to be there if the process is killed; ``save`` takes it away again."""
+        if self._unfinished is None:
+            self._unfinished = new_path(self._folder, f"{self._name}.unfinished")
+        with suppress(TltlError):
+            write_episode(self._unfinished, episode)
+
+    def save(self, episode: Episode) -> str:
+        """Write an episode, where it must be to the folder for temporary files, and return its name."""
+        path = new_path(self._folder, self._name)
+        try:
+            write_episode(path, episode)
+        except TltlError as error:
+            path = write_elsewhere(episode, self._name, error)
+        if self._unfinished is not None:
+            self._unfinished.unlink(missing_ok=True)
+            self._unfinished = None
+        click.echo(f"{path}: {_judged(episode)}")
+        return str(path)
+
+
+def write_elsewhere(episode: Episode, name: str, refused: TltlError) -> Path:
+    """Write an episode to the folder for temporary files, since its own place has ``refused`` it, which is told.
+
+    Raises:
+        TltlError: TLT0005, this folder refuses it, too.
+    """
+    click.echo(f"{refused}", err=True)
+    path = new_path(Path(gettempdir()), name)
+    write_episode(path, episode)
+    return path
+
+
+def _refusal(folder: Path, make: bool) -> str:
+    """Why nothing can be written to a folder, which is made where that is asked for; empty where it can."""
+    try:
+        if make:
+            folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        return reason(error)
+    if not folder.is_dir():
+        return "there is no such folder"
+    return "" if os.access(folder, os.W_OK) else "permission denied"
+
+
+def _judged(episode: Episode) -> str:
+    return f"{cause(episode).text}; {episode.verdict}, progress {share(episode.progress[-1])}, seed {episode.seed}"

@@ -1,0 +1,63 @@
+"""How far a suite is while its cases are played: on standard error, a bar on a terminal, else a line now and then."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, Final
+
+import click
+
+from tltl_runtime.cli.support.printable import plain
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.suite.suite import Case
+
+_EACH: Final = 25
+"""Episodes from one line to the next."""
+
+
+class RegressionDisplay:
+    """Is told of every episode, as runs of suites tell it; as a context, leaves nothing on a terminal.
+
+    ``most`` is put before the number of episodes, such as ``at most``.
+    """
+
+    def __init__(self, most: str = "") -> None:
+        self._most = f"{most} " if most else ""
+        self._met = 0
+        self._bar: Any = None
+        self._name = ""
+
+    def __call__(self, case: Case, count: int, last: Account) -> None:
+        """Episode number ``count`` of a case, from 1 on, is over."""
+        self._met = last.success + (self._met if count > 1 else 0)
+        if sys.stderr.isatty():
+            self._draw(case, count)
+        elif count % _EACH == 0 or count == case.episodes:
+            said = f"{count} of {self._most}{case.episodes} episodes, {self._met} met the spec"
+            click.echo(f"{plain(case.name)}: {said}", err=True)
+
+    def over(self) -> None:
+        """The case is over: its bar makes room for other lines."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+
+    def _draw(self, case: Case, count: int) -> None:
+        if self._bar is None:
+            from rich.console import Console
+            from rich.markup import escape
+            from rich.progress import Progress
+
+            self._bar = Progress(console=Console(stderr=True), transient=True)
+            self._name = escape(plain(case.name))
+            self._bar.add_task(self._name, total=case.episodes)
+            self._bar.start()
+        self._bar.update(
+            self._bar.task_ids[0], completed=count, description=f"{self._name}: {self._met} of {count} met"
+        )
+
+    def __enter__(self) -> RegressionDisplay:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.over()

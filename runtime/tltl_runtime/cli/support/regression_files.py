@@ -1,0 +1,187 @@
+"""What a run of a suite leaves beside its cases: the page, and the reports for programs."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Final, cast, get_args
+
+from tltl_runtime.regression.report.junit import junit
+from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
+from tltl_runtime.regression.report.page.page import html_report
+from tltl_runtime.regression.report.report_json import document
+from tltl_runtime.regression.suite.level_texts import designed
+from tltl_runtime.regression.suite.suite import SHIPPED, Suite
+from tltl_runtime.regression.verdict.baseline import Reference
+from tltl_runtime.regression.verdict.play import Ready
+from tltl_runtime.regression.verdict.run import CASES, Done, case_folder
+from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.support.number_text import listed
+from tltl_runtime.training.run.versions import versions
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.io.json_text import load
+from tltlc.io.limits import REPORT
+from tltlc.io.writing import write_file, write_files
+
+PAGE: Final = "report.html"
+"""The page in the folder of a run."""
+
+_REPORT: Final = "case.json"
+"""In the folder of a case, what became of it."""
+
+_NOTE: Final = "Its variants v1 and v2 were changed on purpose: reviews and fails are what they are to show."
+"""On the page of the suite that comes with the package."""
+
+_MOST_NAMED: Final = 8
+"""Of the files that were named, as many are told."""
+
+_NO_UTF8: Final = re.compile("[\ud800-\udfff]")
+"""What names of files have in place of bytes that are no UTF-8, and no text of UTF-8 can hold."""
+
+
+@record
+class Outcome:
+    """What a run of a suite came to, in its ``folder``; ``left_out`` are the names of cases that depend on none of the
+    ``changed`` files, ``missing`` of those that were not judged before the run was stopped.
+
+    ``complete`` says whether all cases were judged, and trained for, that this was asked for.
+    """
+
+    suite: Suite
+    folder: Path
+    cases: tuple[Done, ...]
+    complete: bool
+    left_out: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    changed: tuple[str, ...] = ()
+
+
+def json_text(outcome: Outcome) -> str:
+    """The report for programs."""
+    reports = [done.report for done in outcome.cases]
+    found = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
+    return _encodable(json.dumps(found, indent=2, ensure_ascii=False)) + "\n"
+
+
+def _junit_text(outcome: Outcome) -> str:
+    return junit(outcome.suite, [done.report for done in outcome.cases], outcome.missing)
+
+
+def _page_text(outcome: Outcome) -> str:
+    """The page; raises what drawing it raises."""
+    suite = outcome.suite
+    is_shipped = suite.path == SHIPPED
+    contents = SuiteReport(
+        suite="shipped" if is_shipped else suite.path.stem,
+        seed=suite.seed,
+        error=suite.error,
+        versions=versions(),
+        cases=tuple(_reported(done, suite, outcome.folder) for done in outcome.cases),
+        complete=outcome.complete,
+        not_run=tuple(_not_run(outcome)),
+        note=_NOTE if is_shipped else "",
+    )
+    return _encodable(html_report(contents))
+
+
+def _not_run(outcome: Outcome) -> Iterator[NotRun]:
+    """The cases that were not judged, in the suite's order."""
+    depends = "--changed names no file"
+    if outcome.changed:
+        names = listed([f"`{each}`" for each in outcome.changed], _MOST_NAMED)
+        depends = f"it depends on none of the files that --changed names: {names}"
+    why = {
+        **dict.fromkeys(outcome.missing, "the run was stopped before; the same command goes on"),
+        **dict.fromkeys(outcome.left_out, depends),
+    }
+    for case in outcome.suite.cases:
+        if case.name in why:
+            yield NotRun(case.name, why[case.name], _earlier(outcome, case.name))
+
+
+def _earlier(outcome: Outcome, name: str) -> Verdict | None:
+    """What an earlier run in the folder said of a case, if that is there."""
+    path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
+    with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+        verdict = load(path, REPORT)["content"]["verdict"]
+        if verdict in get_args(Verdict):
+            return cast(Verdict, verdict)
+    return None
+
+
+def _encodable(text: str) -> str:
+    return _NO_UTF8.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
+REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {
+    "--json": json_text,
+    "--junit": _junit_text,
+    "--html": _page_text,
+}
+"""What the files are that can be asked for, by their options; the page, which takes longest, at the end."""
+
+
+def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
+    """Write the reports that are asked for, whose ``files`` are named by their options, and the page into the folder of
+    the run, unless the run was stopped before any case and none is asked for.  Where there is a page to look at, or
+    None.
+
+    Raises:
+        TltlError: TLT0005, a file cannot be written; what drawing the page raises.
+    """
+    texts: dict[str, str] = {}
+    for option, text_of in REPORTS.items():
+        if option in files:
+            texts[option] = text_of(outcome)
+            write_file(files[option], texts[option], f"name another place with {option}")
+    if not outcome.cases and outcome.missing and "--html" not in files:
+        return None
+    page = texts.get("--html") or _page_text(outcome)
+    write_files(outcome.folder, {PAGE: page}, "name another folder with --out")
+    return files.get("--html", outcome.folder / PAGE)
+
+
+def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
+    """A case with what the page draws of it."""
+    if done.ready is None or done.reference is None:
+        return ReportedCase(done.report)
+    episodes = _episodes(done, case_folder(suite, done.report.name, folder / CASES))
+    return ReportedCase(
+        report=done.report,
+        level=done.ready.level,
+        fspa=done.ready.setup.fspa,
+        episodes=episodes,
+        before=done.reference.accounts,
+        designed=_designed(done.ready, done.reference),
+        curve=_curve(done, folder),
+    )
+
+
+def _designed(ready: Ready, reference: Reference) -> Level | None:
+    """The level that the baseline was recorded on, which is made again where it is another one than that of now."""
+    return ready.level if ready.played.files == reference.played.files else designed(reference)
+
+
+def _curve(done: Done, folder: Path) -> bytes:
+    """The picture of the case's training, empty where there is none, or it was removed since."""
+    if done.report.retrained is None:
+        return b""
+    with suppress(OSError):
+        return (folder / done.report.retrained.policy).with_name("curve.png").read_bytes()
+    return b""
+
+
+def _episodes(done: Done, folder: Path) -> dict[int, Episode]:
+    """The recorded episodes by their index; one that was damaged since is left out."""
+    found: dict[int, Episode] = {}
+    for index, name in done.report.recordings:
+        with suppress(TltlError):
+            found[index] = read_episode(folder / name)
+    return found

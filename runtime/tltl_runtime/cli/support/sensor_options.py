@@ -1,0 +1,125 @@
+"""The options that say what the agent senses, for every command that makes an environment of a level."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from shlex import quote
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.level import Sensors
+
+    _Type = click.ParamType[Any]
+else:
+    # Only newer versions of click have a type there.
+    _Type = click.ParamType
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def senses_options(command: Function) -> Function:
+    """Add ``--entities --variables --map`` and their opposites; the command takes ``sensors``.
+
+    ``sensors`` is a mapping as :func:`tltl_runtime.stealth.observation.sensors.chosen` takes it, empty where nothing is
+    said: the level's own senses.
+    """
+
+    @wraps(command)
+    def with_sensors(
+        *args: Any,
+        entities: list[str] | None,
+        no_entities: bool,
+        variables: list[str] | None,
+        no_variables: bool,
+        map_: dict[str, Any] | None,
+        no_map: bool,
+        **rest: Any,
+    ) -> Any:
+        sensors: dict[str, Any] = {}
+        for key, given, none, nothing in (
+            ("entities", entities, no_entities, []),
+            ("variables", variables, no_variables, []),
+            ("map", map_, no_map, None),
+        ):
+            if none and given is not None:
+                raise click.UsageError(f"--{key} and --no-{key} exclude each other", click.get_current_context())
+            if none or given is not None:
+                sensors[key] = nothing if none else given
+        return command(*args, sensors=sensors, **rest)
+
+    for option in reversed(_OPTIONS):
+        with_sensors = option(with_sensors)
+    return with_sensors  # type: ignore[return-value]
+
+
+def option_of(key: str, sensors: Sensors) -> str:
+    """The option, as a shell takes it, that says of ``entities``, ``variables`` or ``map`` what these sensors have."""
+    if key == "map" and sensors.map is not None:
+        said = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
+    else:
+        said = ",".join(getattr(sensors, key) or ())
+    return f"--{key} {quote(said)}" if said else f"--no-{key}"
+
+
+class _Names(_Type):
+    """``a,b``: names, at least one."""
+
+    name = "names"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, list):
+            return value
+        names = [name.strip() for name in value.split(",")]
+        if not all(names):
+            self.fail(f"`{value}` is not of the form A,B", param, ctx)
+        return names
+
+
+class _Map(_Type):
+    """``cell=0.5,extent=15,types=wall,low``: keys with values, in any order, ``types`` with several."""
+
+    name = "map"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, dict):
+            return value
+        found: dict[str, list[str]] = {}
+        for piece in value.split(","):
+            key, equals, item = (part.strip() for part in piece.rpartition("="))
+            if equals and key in found:
+                self.fail(f"`{key}` is given twice", param, ctx)
+            if not item or not (equals or found):
+                self.fail(f"`{value}` is not of the form cell=0.5,extent=15,types=wall,low", param, ctx)
+            found.setdefault(key if equals else list(found)[-1], []).append(item)
+        return {key: items if key == "types" else self._number(key, items, param, ctx) for key, items in found.items()}
+
+    def _number(self, key: str, items: list[str], param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """A number where it is one; a key that there is not is left to the level, which knows what there is."""
+        kind = {"cell": float, "extent": int}.get(key, str)
+        try:
+            (item,) = items
+            return kind(item)
+        except ValueError:
+            what = "a whole number" if kind is int else "a number"
+            self.fail(f"`{key}` is {what}, not `{','.join(items)}`", param, ctx)
+
+
+_OPTIONS = (
+    click.option("--entities", metavar="A,B", type=_Names(), help="The agent senses where these are, e.g. `s1,exit`."),
+    click.option("--no-entities", is_flag=True, help="It senses the place of none."),
+    click.option(
+        "--variables", metavar="A,B", type=_Names(), help="It senses these signals, e.g. `health,distance(exit)`."
+    ),
+    click.option("--no-variables", is_flag=True, help="It senses none."),
+    click.option(
+        "--map",
+        "map_",
+        metavar="KEY=VALUE,…",
+        type=_Map(),
+        help="It senses a map around itself: `cell=0.5,extent=15,types=wall,low`; what is left out is as in the level.",
+    ),
+    click.option("--no-map", is_flag=True, help="It senses no map."),
+)

@@ -1,0 +1,116 @@
+"""What ``tltlc train`` shows while it trains: on a terminal a picture that is kept up to date, elsewhere lines."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final, Protocol
+
+from rich.console import Console
+from rich.live import Live
+
+from tltl_runtime.cli.support.training_picture import Picture
+from tltl_runtime.cli.support.training_text import (
+    SEARCH_IS_LOST,
+    SEARCHED_AGAIN,
+    found_line,
+    imitated_line,
+    line,
+    recording_line,
+    search_end,
+    search_line,
+)
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.imitation.demonstrations import Tried
+from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.run import CHECKPOINT, Run
+
+_SECONDS_BETWEEN_LINES: Final = 10.0
+
+
+class Display(Protocol):
+    """What shows a training."""
+
+    def searched(self, searched: Searched) -> None:
+        """Show how far the search is that comes first."""
+
+    def recorded(self, tried: Tried) -> None:
+        """Show how far the recording of demonstrations is that comes first."""
+
+    def trained(self, report: Report) -> None:
+        """Show how far the training is."""
+
+
+@contextmanager
+def display(run: Run, again: str) -> Iterator[Display]:
+    """Within, all that is given to what this yields is shown on standard error; ``again`` goes on after a stop.
+
+    Of the processes that torchrun started, the first one speaks.
+    """
+    if peers().rank > 0:
+        yield _Nothing()
+        return
+    console = Console(stderr=True, highlight=False)
+    if not console.is_terminal or console.is_dumb_terminal:
+        yield _Lines(run, again)
+        return
+    picture = Picture(run, console)
+    with Live(get_renderable=picture.drawn, console=console, refresh_per_second=2) as live:
+        live.refresh()
+        yield picture
+
+
+class _Nothing:
+    def searched(self, searched: Searched) -> None:
+        pass
+
+    def recorded(self, tried: Tried) -> None:
+        pass
+
+    def trained(self, report: Report) -> None:
+        pass
+
+
+class _Lines:
+    """A line at the first report, every ten seconds, and at the last."""
+
+    def __init__(self, run: Run, again: str) -> None:
+        self._run, self._again = run, again
+        self._next = 0.0
+        self._has_searched = self._has_trained = False
+
+    def searched(self, searched: Searched) -> None:
+        if not self._has_searched and self._has_trained:
+            self._print(SEARCHED_AGAIN, always=True)
+        elif not self._has_searched:
+            begins = self._run.initial and not (self._run.folder / CHECKPOINT).exists()
+            how = "the policy plays, and then chance" if begins else "by chance"
+            ends = search_end(self._run.settings.exploration)
+            self._print(f"ways to meet the spec are searched first: {how}. {ends}", always=True)
+            self._print(SEARCH_IS_LOST, always=True)
+            self._next = 0.0
+        self._has_searched = True
+        self._print(search_line(searched), always=self._has_trained and searched.complete)
+
+    def recorded(self, tried: Tried) -> None:
+        wanted = self._run.settings.imitation.demonstrations
+        self._print(recording_line(tried, wanted), always=tried.path is None or tried.kept == wanted)
+
+    def trained(self, report: Report) -> None:
+        first, self._has_trained, self._has_searched = not self._has_trained, True, False
+        if first and report.imitated:
+            self._print(imitated_line(report.imitated), always=True)
+        if first and report.searched:
+            self._print(found_line(report.searched), always=True)
+        if first:
+            self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {self._again}", always=True)
+        self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
+
+    def _print(self, text: str, *, always: bool = False) -> None:
+        now = time.monotonic()
+        if now >= self._next or always:
+            self._next = now + _SECONDS_BETWEEN_LINES
+            print(text, file=sys.stderr, flush=True)

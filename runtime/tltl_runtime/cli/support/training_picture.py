@@ -1,0 +1,198 @@
+"""The picture of a training that goes on, for which a terminal of 80 x 24 characters has room."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Final
+
+from rich.console import Console, Group, RenderableType
+from rich.panel import Panel
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from tltl_runtime.cli.support.training_text import (
+    SEARCH_IS_LOST,
+    confirmation_line,
+    found_line,
+    imitated_line,
+    rate,
+    recording_line,
+    search_end,
+    search_line,
+    seconds_left,
+)
+from tltl_runtime.support.number_text import duration, number, percent, share
+from tltl_runtime.training.exploration.search import Searched
+from tltl_runtime.training.imitation.demonstrations import Tried
+from tltl_runtime.training.run.report import Report, Window
+from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.settings import Stop
+from tltlc.automaton.fspa import State
+
+_WIDTH: Final = 100
+"""Of the picture in characters, where there is so much room."""
+_MARGIN: Final = 4
+"""Characters at its right that stay free: there the terminal writes its `^C`, and the next picture covers it."""
+_MOST_STATES: Final = 8
+_SPACED: Final = 17
+"""Lines within the border from which on empty ones among them set the parts apart."""
+_NAME: Final = 12
+_BAR: Final = 24, 10
+"""Width of a bar in characters, and in a picture narrower than ``_WIDTH``."""
+
+
+class Picture:
+    """The last report as a picture; its clock goes on between reports."""
+
+    def __init__(self, run: Run, console: Console) -> None:
+        self._run, self._console = run, console
+        self._last: Report | None = None
+        self._searched: Searched | None = None
+        self._recorded: Tried | None = None
+        self._confirmation = ""
+        self._at = time.monotonic()
+        self._checkpoint: float | None = None
+        self._resumed = (run.folder / CHECKPOINT).exists()
+
+    def searched(self, searched: Searched) -> None:
+        """Take up how far the search is."""
+        self._searched = searched
+
+    def recorded(self, tried: Tried) -> None:
+        """Take up how far the recording of demonstrations is."""
+        self._recorded = tried
+
+    def trained(self, report: Report) -> None:
+        """Take up how far the training is."""
+        self._last, self._at, self._searched = report, time.monotonic(), None
+        if report.confirmation:
+            self._confirmation = confirmation_line(report.iteration.number, report.confirmation)
+        if report.checkpointed:
+            self._checkpoint = self._at
+
+    def drawn(self) -> RenderableType:
+        """The picture now, as wide and as high as the terminal is now."""
+        run, (columns, lines) = self._run, self._console.size
+        width = min(_WIDTH, columns - _MARGIN)
+        title = f"{run.fspa.name} on {Path(run.level).stem} {run.variant}, seed {run.seed}"
+        bar = _BAR[width < _WIDTH]
+        return Panel(
+            # The border is of two lines, and one below it stays free.
+            self._before(bar) if self._last is None else self._body(self._last, bar, lines - 3),
+            title=Text(title, "bold", overflow="ellipsis"),
+            subtitle=Text(_tail(str(run.folder), width - 6), "dim"),
+            width=width,
+            title_align="left",
+        )
+
+    def _before(self, bar: int) -> RenderableType:
+        """What there is to see before the first iteration."""
+        exploration, searched = self._run.settings.exploration, self._searched
+        if tried := self._recorded:
+            return Text(recording_line(tried, self._run.settings.imitation.demonstrations))
+        if searched is None:
+            return Text("playing the first steps …")
+        found = len(searched.lengths)
+        table = _grid(bar)
+        wanted = f"of at least {exploration.ways}"
+        table.add_row("ways found", _bar(found / exploration.ways, "green", bar), f"{found:4}", wanted)
+        part = min(1.0, searched.steps / exploration.steps)
+        most = f"of {exploration.steps:,} steps at the most"
+        table.add_row("searched", _bar(part, "blue", bar), f"{percent(part):>4}", most)
+        return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
+
+    def _body(self, report: Report, bar: int, room: int) -> RenderableType:
+        """What there is to see after an iteration, in ``room`` lines: where there are few, of fewer states."""
+        now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
+        space = [Text()] if room >= _SPACED else []
+        since = 0.0 if report.stop else now - self._at
+        said = [self._confirmation] if self._confirmation else []
+        said += [search_line(self._searched)] if self._searched else []
+        others = [*_figures(report, stop, since), *said, self._kept(now, report)]
+        # Of an episode that violated the spec it is told where it was before.
+        states = tuple(state for state in run.fspa.states if state.verdict != "violated")
+        count = max(1, min(_MOST_STATES, room - len(others) - 2 * len(space) - 4))
+        return Group(
+            _success(report, stop, bar),
+            *space,
+            Text(_ended(window, count, len(states)), "dim", no_wrap=True, overflow="ellipsis"),
+            _states(window, states, count, bar),
+            *space,
+            *(Text(each, no_wrap=True, overflow="ellipsis") for each in others),
+        )
+
+    def _kept(self, now: float, report: Report) -> str:
+        if self._checkpoint is not None:
+            kept = f"last checkpoint {duration(now - self._checkpoint)} ago"
+        else:
+            kept = "resumed from its checkpoint" if self._resumed else "no checkpoint yet"
+        return kept if report.stop else f"{kept}; Ctrl-C writes one to go on from"
+
+
+def _success(report: Report, stop: Stop, bar: int) -> Table:
+    """How often the spec is met, and how much of the rule is fulfilled by which training stops."""
+    window, row, wanted = report.window, report.unbroken, stop.windows * stop.episodes
+    table = _grid(bar)
+    rate_of = f"of {window.count} episodes"
+    table.add_row("spec met", _bar(window.pass_rate, "green", bar), f"{percent(window.pass_rate):>4}", rate_of)
+    ends = f"of {wanted}, then the policy is confirmed"
+    table.add_row("met in a row", _bar(row / wanted, "green", bar), f"{row:4}", ends)
+    table.add_row("progress", _bar(window.progress, "blue", bar), share(window.progress))
+    return table
+
+
+def _ended(window: Window, shown: int, states: int) -> str:
+    if not window.count:
+        return "no episode has ended yet"
+    of_states = f" ({shown} of {states} states)" if shown < states else ""
+    return f"where the last {window.count} episodes ended{of_states}"
+
+
+def _states(window: Window, states: tuple[State, ...], count: int, bar: int) -> Table:
+    """The ``count`` states in which most of the last episodes ended, and what remained to be satisfied there."""
+    shown = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
+    table = _grid(bar)
+    for state in sorted(shown, key=lambda state: state.id):
+        ended, violated = window.states.get(state.id, 0.0), window.violated.get(state.id, 0.0)
+        colour = "red" if violated > ended / 2 else "green" if state.accepting else "cyan"
+        label = Text(state.label.english, "" if ended else "dim")
+        if violated:
+            label = Text.assemble((f"{percent(violated)} violated: ", "red"), label)
+        table.add_row(f"state {state.id}", _bar(ended, colour, bar), f"{percent(ended):>4}", label)
+    return table
+
+
+def _figures(report: Report, stop: Stop, since: float) -> list[str]:
+    """Lines of numbers, ``since`` seconds after the report."""
+    window, iteration = report.window, report.iteration
+    best = "" if report.best_pass_rate is None else f"; best so far: met in {percent(report.best_pass_rate)}"
+    learning = iteration.learn_s / ((iteration.learn_s + iteration.collect_s) or 1.0)
+    speed = f", {rate(report):,.0f} a second ({learning:.0%} learning)" if iteration.steps else ""
+    left = max(0.0, seconds_left(report, stop) - since)
+    end = "ended" if report.stop else f"at most {duration(left)} left"
+    return [
+        f"reward {number(window.reward, 2)}, {window.steps:.0f} steps an episode{best}",
+        f"{report.steps:,} of at most {stop.steps:,} steps{speed}",
+        f"{duration(report.seconds + since)} so far, {end}",
+        *([found_line(report.searched)] if report.searched else ()),
+        *([imitated_line(report.imitated)] if report.imitated else ()),
+    ]
+
+
+def _grid(bar: int) -> Table:
+    table = Table.grid(padding=(0, 2, 0, 0), expand=True)
+    for width in (_NAME, bar, 5):
+        table.add_column(width=width, min_width=width, no_wrap=True)
+    table.add_column(ratio=1, no_wrap=True, overflow="ellipsis")
+    return table
+
+
+def _bar(share: float, colour: str, width: int) -> ProgressBar:
+    return ProgressBar(1.0, share, width, complete_style=colour, finished_style=colour)
+
+
+def _tail(text: str, width: int) -> str:
+    """The end of a text that is too long: of a path it says most."""
+    return text if len(text) <= width else f"…{text[1 - width :]}"

@@ -1,0 +1,285 @@
+"""What ``tltlc train`` is to train: a new training by its options, or one that is resumed and agrees with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from shlex import quote
+from typing import Any, Literal, TypeVar
+
+import click
+
+from tltl_runtime.cli.support.initial_policy import (
+    Beginning,
+    as_its_policy,
+    beginning,
+    check_beginning,
+    is_another,
+    moved,
+    own_place,
+)
+from tltl_runtime.cli.support.level_argument import check_spelling, check_there, names_level, own_level
+from tltl_runtime.cli.support.sensor_options import option_of
+from tltl_runtime.cli.support.training_text import minutes
+from tltl_runtime.evaluation.evaluate import check_limit
+from tltl_runtime.policies.fit import differences
+from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.spec.task import load_task, read_spec
+from tltl_runtime.stealth.capabilities.vocabulary import params
+from tltl_runtime.stealth.env import check_fit, spec_of
+from tltl_runtime.stealth.levels.file import level_path, load_level
+from tltl_runtime.stealth.levels.place import absolute_variant, level_place
+from tltl_runtime.stealth.observation.sensors import chosen
+from tltl_runtime.support.number_text import duration
+from tltl_runtime.support.record_json import to_json
+from tltl_runtime.training.imitation.demonstrations import recordings
+from tltl_runtime.training.imitation.imitation_data import nothing_to_imitate
+from tltl_runtime.training.ppo.distributed import peers
+from tltl_runtime.training.run.checkpoint import read_checkpoint
+from tltl_runtime.training.run.choices import Method
+from tltl_runtime.training.run.initial_policy import initial_of
+from tltl_runtime.training.run.run import (
+    CHECKPOINT,
+    MAY_CHANGE,
+    RUN,
+    Run,
+    leaves,
+    read_level_hash,
+    read_run,
+    resume_command,
+)
+from tltl_runtime.training.run.settings import Settings, read_settings
+from tltl_runtime.training.run.settings_file import read_values
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record, replace
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import read_source, reading_error
+from tltlc.io.spec_file import split
+
+T = TypeVar("T")
+
+
+@record
+class Asked:
+    """What the options of ``tltlc train`` say; None, or nothing sensed, where one says nothing."""
+
+    spec: str | None
+    level: str | None
+    seed: int | None
+    config: Path | None
+    steps: int | None
+    minutes: float | None
+    workers: int | Literal["ray"] | None
+    device: str | None
+    sensors: Mapping[str, Any]
+    method: Method | None = None
+    demonstrations: Path | None = None
+    policy: Path | None = None
+
+
+def new_run(asked: Asked, folder: Path | None) -> Run:
+    """A new training, by default in a folder that is called like it.
+
+    Raises TltlError for all that is wrong with its spec, level, senses and settings, and for a policy to begin with
+    that does not fit these, TLT0873 for a folder that has files of something else.
+    """
+    if asked.spec is not None and names_level(asked.spec):
+        if asked.level is not None:
+            raise _usage(f"`{asked.spec}` is a level, and so is `{asked.level}`: name a spec, or one of them alone")
+        asked = replace(asked, level=asked.spec, spec=None)
+    elif asked.spec is not None:
+        check_spelling(split(asked.spec)[0])
+    begun = begins_with(asked)
+    path, variant = _place(asked, begun)
+    settings = new_settings(asked, begun)
+    _check_demonstrations(asked.demonstrations, settings)
+    level = load_level(path, variant)
+    offered = params(level)
+    spec: str | Fspa = asked.spec or (begun.card.fspa if begun else spec_of(level))
+    # The policy's own spec has its params, but for those that the level offers.
+    known = begun.card.params if begun and asked.spec is None else {}
+    own = {name: value for name, value in known.items() if name not in offered}
+    task = load_task(spec, own, offered=offered)
+    check_fit(level, task.fspa, spec)
+    check_limit(task.fspa)
+    seed = asked.seed or 0
+    sensors = (
+        chosen(level, asked.sensors or None)
+        if begun is None
+        else check_beginning(begun, level, task.fspa, asked.sensors)
+    )
+    suffix = f"-{settings.method}" if settings.imitates else "-tuned" if begun else ""
+    folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}{suffix}"
+    _check_folder(folder)
+    return Run(
+        folder=folder,
+        fspa=task.fspa,
+        params=task.params,
+        level=path,
+        variant=variant,
+        sensors=sensors,
+        settings=settings,
+        seed=seed,
+        demonstrations=str(asked.demonstrations) if asked.demonstrations else None,
+        initial=initial_of(begun.path, begun.policy) if begun else None,
+    )
+
+
+def begins_with(asked: Asked) -> Beginning | None:
+    """The policy that a new training is to begin with, None where there is none; errors as of :func:`beginning`."""
+    return None if asked.policy is None else beginning(asked.policy)
+
+
+def new_settings(asked: Asked, begun: Beginning | None) -> Settings:
+    """The settings that a new training would have; errors as of :func:`read_settings` and :func:`as_its_policy`."""
+    settings = _with_limits(read_settings(asked.config), asked)
+    settings = replace(settings, method=_or(asked.method, settings.method))
+    return settings if begun is None else as_its_policy(settings, begun, asked.config)
+
+
+def resumed_run(asked: Asked, folder: Path) -> Run:
+    """The training in ``folder``, with those settings that are asked for and may change; all others stay, and so does
+    the level, the demonstrations and the policy to begin with, whose files may lie elsewhere now.
+
+    Raises TltlError for a folder that cannot be read, TLT0001 for a level that is not where it was, TLT0870 where
+    anything else is asked for than it was begun with.
+    """
+    run = _at_its_level(read_run(folder), asked)
+    settings = run.settings if asked.config is None else _with_file(run.settings, asked.config)
+    different = list(_differences(run, asked, settings))
+    if different:
+        help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
+        raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in different])
+    if asked.demonstrations is not None:
+        _check_demonstrations(asked.demonstrations, settings)
+        run = replace(run, demonstrations=str(asked.demonstrations))
+    if asked.policy is not None:
+        run = moved(run, asked.policy)
+    return replace(run, settings=_with_limits(settings, asked))
+
+
+def check_limits(run: Run) -> None:
+    """TLT0862 where a training that is resumed gets a limit that it has passed: it would end at once."""
+    stop, before = run.settings.stop, read_run(run.folder).settings.stop
+    checkpoint = None if stop == before else read_checkpoint(run.folder / CHECKPOINT)
+    if checkpoint is None:
+        return
+    passed: list[tuple[str, str]] = []
+    if stop.steps != before.steps and stop.steps <= checkpoint.steps:
+        passed.append((f"done {checkpoint.steps:,} steps", f"{stop.steps:,} steps"))
+    if stop.minutes != before.minutes and stop.is_late(checkpoint.seconds):
+        passed.append((f"gone on for {duration(checkpoint.seconds)}", minutes(stop.minutes)))
+    if passed:
+        help_, where = "give a limit greater than that, or leave it out", f"the training in `{run.folder}`"
+        titles = [f"{where} has {done}, and a limit of {limit} would end it at once" for done, limit in passed]
+        raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
+
+
+def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
+    """Level and variant of a new training: what is asked for, else that of the spec, else that of the policy."""
+    if asked.level is not None:
+        path, variant = level_place(asked.level)
+        return path, variant or "v0"
+    if asked.spec is not None:
+        return own_level(asked.spec), "v0"
+    if begun is not None and asked.policy is not None:
+        return own_place(asked.policy, begun)
+    raise _usage("say what to train for: a spec, a level, or both")
+
+
+def _at_its_level(run: Run, asked: Asked) -> Run:
+    """The training with the file of its level where it is now."""
+    if asked.level is None:
+        check_there(run.level, run.variant, resume_command(run.folder))
+        return run
+    path, variant = level_place(asked.level)
+    if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
+        return run
+    return replace(run, level=path, variant=variant or "v0")
+
+
+def _check_folder(folder: Path) -> None:
+    """TLT0873 where there are files of something else: whoever cleans up after a training would lose them."""
+    if peers().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
+        return
+    try:
+        names = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
+    except OSError as error:
+        raise reading_error(str(folder), error) from None
+    if names:
+        title = f"`{folder}` is no training, and has other files: `{names[0]}`{' and more' * (len(names) > 1)}"
+        help_ = f"name a folder of its own, e.g. `--out {quote(str(folder / 'training'))}`"
+        raise TltlError([Diagnostic("TLT0873", title, help=help_)])
+
+
+def _check_demonstrations(folder: Path | None, settings: Settings) -> None:
+    """UsageError where demonstrations are named that nobody would imitate; TLT0921 where there are none."""
+    if folder is None:
+        return
+    if not settings.imitates:
+        raise _usage("--demonstrations are for --method imitation")
+    if not recordings(folder):
+        raise nothing_to_imitate(folder, [])
+
+
+def _usage(message: str) -> click.UsageError:
+    return click.UsageError(message, click.get_current_context())
+
+
+def _with_file(settings: Settings, path: Path) -> Settings:
+    """The settings with what a file says; errors as of :func:`read_settings`."""
+    for table, values in read_values(read_source(path)).items():
+        changed = {table: replace(getattr(settings, table), **values)} if table else values
+        settings = replace(settings, **changed)
+    return settings
+
+
+def _with_limits(settings: Settings, asked: Asked) -> Settings:
+    """The settings with what the options say of when to stop and of the machine."""
+    stop, rollout = settings.stop, settings.rollout
+    if asked.workers == "ray":
+        rollout = replace(rollout, pool="ray")
+    elif asked.workers is not None:
+        rollout = replace(rollout, pool="processes", workers=asked.workers)
+    return replace(
+        settings,
+        stop=replace(stop, steps=_or(asked.steps, stop.steps), minutes=_or(asked.minutes, stop.minutes)),
+        rollout=rollout,
+        device=_or(asked.device, settings.device),
+    )
+
+
+def _or(asked: T | None, known: T) -> T:
+    return known if asked is None else asked
+
+
+def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
+    """In what a training differs from what is asked for, a sentence each."""
+    where = f"the training in `{run.folder}`"
+    if asked.level is not None:
+        path, variant = level_place(asked.level)
+        ours = level_path(run.level).resolve(), absolute_variant(run.variant)
+        if (level_path(path).resolve(), absolute_variant(variant or "v0")) != ours:
+            yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
+    if asked.spec is not None:
+        fspa, _ = read_spec(asked.spec)
+        if spec_hash(fspa) != spec_hash(run.fspa) and fspa.name == run.fspa.name:
+            what = differences(run.fspa, fspa)
+            yield f"{where} is for another spec `{fspa.name}` than that of `{asked.spec}`: {what}"
+        elif spec_hash(fspa) != spec_hash(run.fspa):
+            yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
+    if asked.seed is not None and asked.seed != run.seed:
+        yield f"{where} has the seed {run.seed}, not {asked.seed}"
+    if asked.method is not None and asked.method != run.settings.method:
+        yield f"{where} is by the method `{run.settings.method}`, not by `{asked.method}`"
+    if asked.policy is not None and (other := is_another(run, asked.policy)):
+        yield other
+    sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
+    # What no option speaks of stays the training's own, whatever the level senses.
+    for key in asked.sensors:
+        if getattr(sensors, key) != getattr(run.sensors, key):
+            yield f"{where} senses as `{option_of(key, run.sensors)}` says, not as `{option_of(key, sensors)}`"
+    wanted = dict(leaves(to_json(settings)))
+    for path, value in leaves(to_json(run.settings)):
+        if path not in MAY_CHANGE and value != wanted[path]:
+            yield f"{where} has another `{path}` than `{asked.config}`"

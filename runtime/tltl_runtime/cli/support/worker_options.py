@@ -1,0 +1,43 @@
+"""The options that say who plays: processes, or a Ray cluster."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    _Type = click.ParamType[Any]
+else:
+    # Only newer versions of click have a type there.
+    _Type = click.ParamType
+
+
+class WorkersType(_Type):
+    """How many processes play, 0 for as many as there are cores, or ``ray``."""
+
+    name = "workers"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number, or ``ray``."""
+        if value == "ray" or isinstance(value, int):
+            return value
+        from tltl_runtime.training.run.settings_file import KINDS
+
+        kind = KINDS["rollout"]["workers"]
+        try:
+            number = kind.read(int(value))
+        except ValueError:
+            number = None
+        if number is None:
+            self.fail(f"`{value}` is neither `ray` nor {kind}", param, ctx)
+        return number
+
+
+all_cores_option = click.option(
+    "--workers",
+    metavar="N|ray",
+    type=WorkersType(),
+    default=0,
+    help="Processes that play (default: one a core), or those of a Ray cluster.",
+)

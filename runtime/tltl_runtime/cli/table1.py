@@ -1,0 +1,164 @@
+"""``tltlc table1``: the paper's Table I with our levels, our expert and our trainings."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from shlex import join
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tltl_runtime.cli.support.closed_output import on_without_readers
+from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.options import output_folder
+from tltl_runtime.cli.support.worker_options import all_cores_option
+from tltl_runtime.cli.support.writable_paths import check_no_training
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.numbers import FiniteRange
+from tltlc.interfaces.cli.report import Report
+from tltlc.io.child_interrupts import raise_if_interrupted
+
+if TYPE_CHECKING:
+    from tltl_runtime.regression.table1.paper_table import Model
+    from tltl_runtime.regression.table1.table_trainings import Trained
+
+_ELSEWHERE = "name another place with --out"
+_SAVING_S = 20.0
+"""Seconds in which a training that is asked to end has written its checkpoint."""
+
+
+@record
+class _Wanted:
+    """What was asked for."""
+
+    folder: Path
+    shipped: bool
+    minutes: float | None
+    workers: Any
+
+    @property
+    def again(self) -> str:
+        """The command that goes on."""
+        words = ["tltlc", "table1", "--out", str(self.folder), *["--shipped"] * self.shipped]
+        words += [] if self.minutes is None else ["--minutes", f"{self.minutes:g}"]
+        return join([*words, "--workers", str(self.workers)] if self.workers else words)
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc table1 --shipped
+  tltlc table1 --out table1 --minutes 60
+"""
+)
+@output_folder("The folder for trainings, episodes and the table.", default=Path("table1"))
+@click.option("--shipped", is_flag=True, help="Take the policies that come with the levels, and train imitation alone.")
+@click.option(
+    "--minutes",
+    metavar="M",
+    type=FiniteRange(min=0, max=1_000_000),
+    help="Of each training, at the most; 0: no limit but that of steps (default: 60; with --shipped as many as the "
+    "policies were given that come with the levels).",
+)
+@all_cores_option
+def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) -> int:
+    """Train and play what the paper's Table I is of, and print our table beside it.
+
+    On each of the three levels: the scripted expert in place of the human, an agent that learns by imitation of it, and
+    one that learns from its spec.  Each plays 100 episodes in each variant.  What is done stays in the folder: called
+    again, the command goes on.  What has changed since, be it a level, a spec, a setting or the code that plays, is
+    trained or played anew.
+    """
+    with Report() as report, learning_for("`tltlc table1`"), on_without_readers():
+        from tltl_runtime.support.folder_lock import held
+        from tltlc.io.writing import write_files
+
+        title = f"another run of `tltlc table1` is at work in `{folder}`"
+        busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
+        check_no_training(folder)
+        with held(folder, busy, _ELSEWHERE):
+            wanted = _Wanted(folder, shipped, minutes, workers)
+            try:
+                text = _table(wanted)
+            except KeyboardInterrupt:
+                click.echo(f"stopped: what is over is kept in `{folder}`; to go on: {wanted.again}", err=True)
+                raise
+            click.echo(text, nl=False)
+            write_files(folder, {"table1.md": text}, _ELSEWHERE)
+        return exits.CLEAN
+    return report.status
+
+
+def _table(wanted: _Wanted) -> str:
+    """The table over the paper's number of episodes, and over all of them, cell by cell."""
+    from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, Row, markdown
+    from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, figures, measured
+    from tltl_runtime.training.run.versions import versions
+
+    seeds = []
+    rows: dict[int, dict[tuple[str, Model], Row]] = {RUNS: {}, EPISODES: {}}
+    for level in LEVELS:
+        for model in MODELS:
+            made = _trained(wanted, level, model)
+            policy, hours, cloned = (made.policy, made.hours, made.cloned) if made else (None, None, None)
+            seeds += [f"{level} {model} {made.seed}"] if made else []
+            found = {}
+            for variant in VARIANTS:
+                click.echo(f"{level}:{variant}, {model}", err=True)
+                found[variant] = measured(wanted.folder, model, level, variant, policy, wanted.workers)
+            for runs, table in rows.items():
+                shown = {name: figures(cell, runs) for name, cell in found.items()}
+                table[level, model] = Row(shown, hours, cloned)
+    tables = [
+        f"{runs} episodes each of ours, {RUNS} of the paper's:\n\n{markdown(table)}" for runs, table in rows.items()
+    ]
+    made_by = ", ".join(f"{name} {version}" for name, version in versions().items())
+    how = f"Episodes of seed {SEED}, with sampled actions. Seeds of trainings: {', '.join(seeds)}. Made by {made_by}.\n"
+    return "\n".join((*tables, how))
+
+
+def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
+    """The training of a model, which goes on now if it is not over; None of the expert."""
+    from tltl_runtime.policies.file import read_policy
+    from tltl_runtime.policies.shipped import shipped_policies
+    from tltl_runtime.regression.table1 import table_trainings
+    from tltl_runtime.regression.table1.table_trainings import Trained, table_training, train_arguments, trained
+
+    if model == "expert":
+        return None
+    limits = table_trainings.limits(wanted.minutes)
+    if wanted.shipped:
+        path = shipped_policies()[level]
+        card = read_policy(path).card
+        if model == "ours":
+            return Trained(path, card.training["seed"], float(card.training["seconds"]) / 3600, None)
+        limits = table_trainings.limits_as_of(card, wanted.minutes)
+    training = table_training(wanted.folder, level, model, limits)
+    made = trained(training)
+    if made is None:
+        _train(train_arguments(training))
+        made = trained(training)
+    if made is None:
+        title = f"the training in `{training.folder}` did not end"
+        raise TltlError([Diagnostic("TLT0930", title, help="run the command again")])
+    return made
+
+
+def _train(arguments: list[str]) -> None:
+    """Train as ``tltlc train`` does, which shows how it goes; Ctrl-C reaches it, too."""
+    with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
+        try:
+            training.wait()
+        except BaseException:
+            # It may have heard Ctrl-C itself, and saves what it has learned; a second request would break that off.
+            try:
+                training.wait(_SAVING_S)
+            except subprocess.TimeoutExpired:
+                training.terminate()
+                training.wait()
+            raise
+    raise_if_interrupted(training.returncode)

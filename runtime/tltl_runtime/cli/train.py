@@ -1,0 +1,248 @@
+"""``tltlc train``: an agent learns to meet a spec in a level."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING, Any, get_args
+
+import click
+
+from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.options import output_folder
+from tltl_runtime.cli.support.sensor_options import senses_options
+from tltl_runtime.cli.support.worker_options import WorkersType
+from tltl_runtime.support.number_text import duration, share
+from tltl_runtime.training.run.choices import Method
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.report import Report
+
+if TYPE_CHECKING:
+    from tltl_runtime.training.run.report import Report as Trained
+    from tltl_runtime.training.run.run import Run
+
+
+def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
+    """Refuses what a file of settings may not say, either."""
+
+    def checked(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
+        from tltl_runtime.training.run.settings_file import KINDS
+
+        kind = KINDS[table][key]
+        if value is not None and kind.read(value) is None:
+            raise click.BadParameter(f"`{value}` is not {kind}", param=parameter)
+        return value
+
+    return checked
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc train cover_and_hide.tltl
+  tltlc train plans.tltl:careful --level my_level.toml:v1 --seed 3 --out runs/careful
+  tltlc train --resume runs/careful --steps 8000000
+  tltlc train --print-config > settings.toml
+  tltlc train plans.tltl --config settings.toml
+  tltlc train cover_and_hide --method imitation --demonstrations mine
+  tltlc train --from training/vault-v0-careful-0 --level vault.toml:v1
+
+\b
+Watching, from another terminal:
+  tensorboard --logdir training
+"""
+)
+@click.argument("spec", metavar="[SPEC[:NAME]]", required=False)
+@click.option(
+    "--level", metavar="LEVEL[:VARIANT]", help="Where; by default the level that the spec names.  VARIANT: v0."
+)
+@output_folder(
+    "The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED, by imitation "
+    "with -imitation behind it, with --from -tuned)."
+)
+@click.option("--seed", metavar="N", type=WholeRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
+@click.option(
+    "--resume",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Go on with the training in this folder, from its last checkpoint.",
+)
+@click.option(
+    "--config",
+    metavar="FILE.toml",
+    type=click.Path(path_type=Path),
+    help="Settings in place of the defaults; --print-config shows all of them.",
+)
+@click.option(
+    "--method",
+    type=click.Choice(get_args(Method)),
+    help="What the agent learns from: rewards of the spec's automaton (default), or demonstrations.",
+)
+@click.option(
+    "--demonstrations",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="What is imitated, as `tltlc record` made it (default: the expert's, recorded first).",
+)
+@click.option(
+    "--from",
+    "policy",
+    metavar="POLICY",
+    type=click.Path(path_type=Path),
+    help="Begin with the weights of this policy, named as for `tltlc evaluate`, by default for its spec and level.",
+)
+@click.option(
+    "--steps",
+    metavar="N",
+    type=WholeRange(),
+    callback=_setting("stop", "steps"),
+    help="End after so many steps of all environments.",
+)
+@click.option(
+    "--minutes",
+    metavar="M",
+    type=float,
+    callback=_setting("stop", "minutes"),
+    help="End after so many minutes of training (0: no limit).",
+)
+@click.option(
+    "--workers",
+    metavar="N|ray",
+    type=WorkersType(),
+    help="Processes that play (0: one a core), or those of a Ray cluster.",
+)
+@click.option("--device", metavar="cpu|cuda|cuda:N", callback=_setting("", "device"), help="Where the network learns.")
+@senses_options
+@click.option("--print-config", is_flag=True, help="Print the settings, as a file for --config, and exit.")
+def command(
+    spec: str | None,
+    folder: Path | None,
+    resume: Path | None,
+    sensors: Mapping[str, Any],
+    print_config: bool,
+    **options: Any,
+) -> int:
+    """Train an agent until it meets a spec.
+
+    SPEC is the spec by which it is judged and rewarded; where it is left out, that for which --level is made.
+    The training ends when the spec was met in 100 episodes in a row, and by the policy as it then is in 300 fresh ones;
+    or at a limit.  The folder then holds the policy of the agent (policy.safetensors), the record of the training
+    (record.json, curve.png) and what was measured (metrics.jsonl, and event files for TensorBoard).  Ctrl-C keeps what
+    was learned, for --resume.
+
+    The exit status is 0 where the spec was met, and 1 where a limit ended the training before.
+    """
+    if resume is not None and folder is not None:
+        raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
+    with Report() as report, learning_for("`tltlc train`"):
+        from tltl_runtime.cli.support.level_argument import check_no_toml
+
+        check_no_toml(spec, settings="--config")
+        from tltl_runtime.cli.support.training_run import (
+            Asked,
+            begins_with,
+            check_limits,
+            new_run,
+            new_settings,
+            resumed_run,
+        )
+        from tltl_runtime.training.ppo.distributed import peers
+        from tltl_runtime.training.run.run import resume_command
+        from tltl_runtime.training.run.settings import settings_text
+
+        asked = Asked(spec=spec, sensors=sensors, **options)
+        if print_config:
+            settings = (
+                new_settings(asked, begins_with(asked)) if resume is None else resumed_run(asked, resume).settings
+            )
+            click.echo(settings_text(settings), nl=False)
+            return exits.CLEAN
+        run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
+        again, first = resume_command(run.folder), peers().rank == 0
+        if resume is not None:
+            from tltl_runtime.training.run.record import ended_as
+
+            if record := ended_as(run):
+                if first:
+                    click.echo(_over(run, record, again))
+                return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
+            check_limits(run)
+        if first:
+            for line in _begins(run, resume=resume is not None):
+                click.echo(line, err=True)
+        # What comes now takes seconds, these imports among it.
+        from tltl_runtime.cli.support.training_progress import stopped_line, train_shown
+        from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+        from tltl_runtime.stealth.levels.file import load_level
+        from tltl_runtime.training.run.record import write_record
+
+        if first:
+            report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
+        try:
+            last = train_shown(run, resume=resume is not None, again=again)
+        except KeyboardInterrupt:
+            if first and (stopped := stopped_line(run, again)):
+                click.echo(stopped, err=True)
+            raise
+        if not first:
+            # torchrun ends all processes as soon as one fails, and the first has a record to write.
+            return exits.CLEAN
+        write_record(run, last)
+        for line in _ended(run, last, again):
+            click.echo(line)
+        return exits.CLEAN if last.stop == "met" else exits.FINDINGS
+    return report.status
+
+
+def _begins(run: Run, *, resume: bool) -> Iterator[str]:
+    """What is trained and where; what becomes of the files of a training that is resumed without its checkpoint."""
+    from tltl_runtime.training.run.metrics import METRICS
+    from tltl_runtime.training.run.run import CHECKPOINT, POLICY, RECORD
+
+    place = f"{Path(run.level).stem} {run.variant}"
+    how = f" by {run.settings.method}" if run.settings.imitates else ""
+    yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
+    if run.initial and not (run.folder / CHECKPOINT).exists():
+        alone = f"; its critic is new, and learns alone in the first {run.settings.ppo.warm_up} iterations"
+        yield f"it begins with the weights of {run.initial.path}{alone if run.settings.ppo.warm_up else ''}"
+    files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
+    if not resume or not files or (run.folder / CHECKPOINT).exists():
+        return
+    fates = {
+        METRICS: "what was measured is lost",
+        RECORD: "so is its record",
+        POLICY: f"{POLICY} stays until there is a new one",
+    }
+    fate = ", and ".join(fates[name] for name in files)
+    ways = "; Ctrl-C before the end of its search leaves these files as they are" if run.settings.searches else ""
+    yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
+
+
+def _ended(run: Run, last: Trained, again: str) -> Iterator[str]:
+    """How a training ended, what there is now, and what comes next, by the command ``again`` perhaps."""
+    window, folder = last.window, quote(str(run.folder))
+    ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
+    met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
+    took = f"after {last.steps:,} steps, {duration(last.seconds)}"
+    yield f"{ended} {took}: {met if window.count else 'no episode has ended'}"
+    yield f"{folder}: policy.safetensors, record.json, curve.png"
+    yield f"to evaluate it: tltlc evaluate {folder}"
+    if last.stop != "met":
+        yield f"to go on, with a higher limit: {again} --{last.stop} N"
+
+
+def _over(run: Run, record: Mapping[str, Any], again: str) -> str:
+    """What there is to say of a training that is resumed, by the command ``again``, and has ended."""
+    from tltl_runtime.cli.support.training_text import minutes
+
+    over, stop = f"the training in `{run.folder}` is over", run.settings.stop
+    if record["end"] == "met":
+        return f"{over}, and stays as it is: the spec was met after {record['steps']:,} steps"
+    if record["end"] == "steps":
+        took, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
+    else:
+        took, limit = duration(record["seconds"]), minutes(stop.minutes)
+    on = f"{again} --{record['end']} N"
+    return f"{over}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {on}"

@@ -1,0 +1,1 @@
+"""Explanations: what an agent does differently from its baseline."""

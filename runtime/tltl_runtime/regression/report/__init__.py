@@ -1,0 +1,1 @@
+"""Reports: JSON, JUnit, GitHub annotations and the HTML page."""

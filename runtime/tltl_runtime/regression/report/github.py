@@ -1,0 +1,54 @@
+"""The findings on a suite as workflow commands of GitHub Actions, which shows them beside the changed files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.suite.dependencies import dependencies
+from tltl_runtime.regression.suite.suite import Case, Suite
+from tltl_runtime.stealth.levels.file import level_path
+from tltlc.diagnostics.formats.github import workflow_command
+from tltlc.io.files import is_file
+
+_COMMANDS: Final = {"fail": "error", "review": "warning"}
+
+
+def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
+    """An ``::error`` for each case that fails, a ``::warning`` for each to be reviewed.
+
+    The file is the one with the fault for which a level does not load, with its line; else one that has changed since
+    the baseline, else the suite; its path is relative to ``root``, the top of the checkout, where it lies inside.
+    """
+    cases = {case.name: case for case in suite.cases}
+    for report in reports:
+        if report.verdict in _COMMANDS:
+            path, line = report.fault_at or (_blamed(suite, cases[report.name], report), None)
+            place = {"file": _inside(Path(path), root), **({"line": str(line)} if line else {})}
+            title = f"{report.name}: {report.verdict}"
+            text = "\n".join(report.reasons)
+            yield workflow_command(_COMMANDS[report.verdict], text, {**place, "title": title})
+
+
+def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
+    if report.played is None:
+        return level_path(case.level)
+    before = dict(report.reference.files) if report.reference else {}
+    # An overlay says more than the level, which comes first.
+    changed = [name for name, sha256 in reversed(report.played.files) if before.get(name) != sha256]
+    there = dependencies(suite, case)
+    for name in changed:
+        parts = Path(name).parts
+        for path in there:
+            if path.parts[-len(parts) :] == parts and is_file(path):
+                return path
+    return suite.path
+
+
+def _inside(path: Path, root: Path) -> str:
+    try:
+        return path.resolve().relative_to(root.resolve()).as_posix()
+    except ValueError:
+        return path.as_posix()

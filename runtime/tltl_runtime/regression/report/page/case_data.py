@@ -1,0 +1,65 @@
+"""What the page's scripts draw of a case, as JSON data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.report.page.contents import ReportedCase
+from tltl_runtime.regression.report.page.heat import Heat, failed_ends, time_spent
+from tltl_runtime.regression.report.page.level_map import map_data
+from tltl_runtime.regression.report.page.packing import across, down, runs
+from tltl_runtime.regression.report.page.recorded import recorded
+from tltl_runtime.stealth.level import Box
+
+_FINE_CM: Final = 5
+"""Of the ways, of which there are many; a step of a decision is one letter then."""
+
+
+def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
+    """All that is drawn of a case onto its map and its automaton; None where it has none."""
+    level, fspa = case.level, case.fspa
+    if level is None or fspa is None:
+        return None
+    return {
+        "slug": slug,
+        "map": map_data(level),
+        "states": [state.label.english for state in fspa.states],
+        "now": _all_of(level.bounds, case.report.accounts),
+        "before": _all_of((case.designed or level).bounds, case.before),
+        "episodes": [recorded(index, case.episodes[index]) for index in sorted(case.episodes)],
+    }
+
+
+def _all_of(bounds: Box, accounts: Sequence[Account]) -> dict[str, Any]:
+    return {
+        "ways": [_way(bounds, each) for each in accounts],
+        "time": _heat(time_spent(bounds, accounts)),
+        "failed": _heat(failed_ends(bounds, accounts)),
+    }
+
+
+def _way(bounds: Box, account: Account) -> dict[str, Any]:
+    """Where an episode went, on the map, and how it ended."""
+    place = account.place
+    return {
+        "index": account.index,
+        "unit": _FINE_CM,
+        "end": account.end,
+        "cause": account.cause,
+        "by": list(account.by),
+        "x": across(bounds, [x for x, *_ in account.way], _FINE_CM),
+        "y": down(bounds, [y for _, y, *_ in account.way], _FINE_CM),
+        "state": runs(state for *_, state, _ in account.way),
+        "place": [across(bounds, place[:1]), down(bounds, place[1:2])],
+    }
+
+
+def _heat(heat: Heat) -> dict[str, Any]:
+    return {
+        "cell": round(100 * heat.cell),
+        "columns": heat.columns,
+        "cells": [number for pair in heat.values for number in pair],
+        "most": max((value for _, value in heat.values), default=0),
+    }

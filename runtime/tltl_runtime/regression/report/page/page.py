@@ -1,0 +1,66 @@
+"""The report on a suite as one HTML file that loads nothing."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from pathlib import Path
+from string import Template
+from typing import Any, Final
+
+from tltl_runtime.regression.report.page.automaton import Drawn, drawn
+from tltl_runtime.regression.report.page.case_data import case_data
+from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
+from tltl_runtime.regression.report.page.contents import SuiteReport
+from tltl_runtime.regression.report.page.markup import as_script, element, joined
+from tltl_runtime.regression.report.page.style import colours
+from tltl_runtime.regression.report.page.summary import summary
+from tltl_runtime.regression.suite.slugs import slugs
+from tltl_runtime.stealth.rendering.plan import state_colour
+from tltlc.automaton.fspa import Fspa
+
+_FOLDER: Final = Path(__file__).parent
+_SCRIPTS: Final = ("packing.js", "level_map.js", "player.js", "report.js")
+
+
+def html_report(suite: SuiteReport) -> str:
+    """The page: verdicts, and for each case its automaton, its map, its curves and a player of recorded episodes.
+
+    Equal reports give equal pages, provided that the layout of the automata is done in time.
+    """
+    names = slugs([*(case.report.name for case in suite.cases), *(each.name for each in suite.not_run)])
+    pairs = list(zip(suite.cases, names, strict=False))
+    not_run = zip(suite.not_run, names[len(pairs) :], strict=True)
+    # Variants of a level share their spec: each is laid out once.
+    automata = {case.fspa: None for case in suite.cases}
+    pictures: dict[Fspa | None, Drawn] = {fspa: drawn(fspa) for fspa in automata if fspa is not None}
+    script = "\n".join(_asset(name) for name in _SCRIPTS)
+    return Template(_asset("report.html")).substitute(
+        title=element("title", f"{suite.suite}: regression report"),
+        policy=f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{_digest(script)}'",
+        style=f"{colours()}\n{_asset('report.css')}",
+        summary=summary(suite, names),
+        sections=joined(
+            (
+                *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
+                *(not_run_section(case, slug) for case, slug in not_run),
+            )
+        ),
+        data=as_script(_data([case_data(case, slug) for case, slug in pairs])),
+        script=script,
+    )
+
+
+def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:
+    there = [case for case in cases if case is not None]
+    states = max((len(case["states"]) for case in there), default=0)
+    return {"colours": [state_colour(state) for state in range(states)], "cases": there}
+
+
+def _asset(name: str) -> str:
+    return (_FOLDER / name).read_text(encoding="utf-8").strip()
+
+
+def _digest(script: str) -> str:
+    """What the page's own policy knows its script by, so that no other one runs; line feeds are around it."""
+    return base64.b64encode(hashlib.sha256(f"\n{script}\n".encode()).digest()).decode()

@@ -1,0 +1,22 @@
+"""The colours of the page's maps, which are those of all pictures of levels."""
+
+from __future__ import annotations
+
+from tltl_runtime.stealth.rendering.film import MODES
+from tltl_runtime.stealth.rendering.plan import BARRIERS, ENDS, EXIT, INK, MOVER, ROUTE, SOLIDS, SWITCH
+
+
+def colours() -> str:
+    """A rule of CSS that names them."""
+    named = {
+        **SOLIDS,
+        **{f"barrier-{kind}": colour for kind, colour in BARRIERS.items()},
+        **{f"end-{end}": colour for end, (_, colour) in ENDS.items()},
+        **{f"mode-{mode}": colour for mode, colour in MODES.items()},
+        "switch": SWITCH,
+        "exit": EXIT,
+        "mover": MOVER,
+        "route": ROUTE,
+        "ink": INK,
+    }
+    return f":root {{ {' '.join(f'--map-{name}: {colour};' for name, colour in named.items())} }}"

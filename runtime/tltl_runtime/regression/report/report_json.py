@@ -1,0 +1,73 @@
+"""The report on a suite for programs, as JSON data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltl_runtime.evaluation.figures import Figures
+from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.suite.suite import Suite
+from tltl_runtime.support.record_json import to_json
+
+FORMAT: Final = "tltl-regression"
+VERSION: Final = 1
+
+_OF_EPISODES: Final = (
+    "index",
+    "seed",
+    "success",
+    "end",
+    "progress",
+    "reward",
+    "steps",
+    "unmet",
+    "nearest",
+    "cause",
+    "by",
+    "place",
+)
+
+
+def document(
+    suite: Suite, reports: Sequence[CaseReport], *, complete: bool, left_out: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The report on a suite.
+
+    ``complete`` says whether all of its cases were judged, and trained for, that were asked for; ``left_out`` are the
+    names of those that were not, since they depend on nothing that was named as changed.
+    """
+    verdicts = [report.verdict for report in reports]
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "suite": suite.path.name,
+        "seed": suite.seed,
+        "error": suite.error,
+        "complete": complete,
+        "left_out": list(left_out),
+        "verdicts": {verdict: verdicts.count(verdict) for verdict in ("pass", "review", "fail")},
+        "cases": [_case(report) for report in reports],
+    }
+
+
+def _case(report: CaseReport) -> dict[str, Any]:
+    figures, played = report.figures, report.played
+    return {
+        "name": report.name,
+        "level": report.level,
+        "variant": report.variant,
+        "spec": played.spec if played else None,
+        "verdict": report.verdict,
+        "certain": report.certain,
+        **(to_json(figures) if figures else dict.fromkeys(Figures.__match_args__)),
+        "rate_interval": list(report.rate_interval),
+        "baseline": to_json(report.baseline),
+        "changes": to_json(report.changes),
+        "headline": report.headline,
+        "reasons": list(report.reasons),
+        "explanation": to_json(report.explanation),
+        "played": to_json(played),
+        "retrained": to_json(report.retrained),
+        "accounts": [{name: to_json(getattr(each, name)) for name in _OF_EPISODES} for each in report.accounts],
+    }

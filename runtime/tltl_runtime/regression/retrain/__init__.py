@@ -1,0 +1,1 @@
+"""Training on the levels that no longer pass."""

@@ -1,0 +1,1 @@
+"""Suites: the file format, what cases depend on, and the cache of results."""

@@ -1,0 +1,96 @@
+"""What a case names: whether policies and specs are there, wherever they are played, and what else may be meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import suppress
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.shipped import shipped_policies
+from tltl_runtime.spec.task import read_spec
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.io.files import exists, is_dir, may_be_file, read_bytes
+from tltlc.io.limits import TOML
+
+_NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
+
+
+def policy_file(path: Path) -> Path:
+    """The policy of a case: a file, or that in the folder of a training."""
+    if not is_dir(path):
+        return path
+    from tltl_runtime.training.run.run import POLICY
+
+    return path / POLICY
+
+
+def policy_faults(path: Path, label: Label) -> list[Diagnostic]:
+    """Why there is no policy to play, at the ``label``: TLT0872, none is in the folder; and as of ``read_policy``."""
+    file = policy_file(path)
+    if file != path and not exists(file):
+        return _at(label, [_no_policy(path)])
+    try:
+        read_policy(file)
+    except TltlError as error:
+        return _at(label, error.diagnostics)
+    return []
+
+
+def spec_faults(spec: str, label: Label) -> list[Diagnostic]:
+    """At the ``label`` TLT0720, the file has no spec of that name, or TLT0721, none is named where it has not just one.
+
+    What else is wrong with the file may come of a change, and is told where it is played.
+    """
+    try:
+        read_spec(spec)
+    except TltlError as error:
+        return _at(label, [each for each in error.diagnostics if each.code in _NO_SUCH_SPEC])
+    return []
+
+
+def level_like(name: str, folder: Path) -> str | None:
+    """A way out for a name in a suite of this ``folder`` that no level has: a file, or a level of the package."""
+    beside: list[str] = []
+    # The system may allow no such name.
+    with suppress(OSError, ValueError):
+        files = sorted(filter(_is_level, (folder / name).parent.glob("*.toml")))
+        beside = [(Path(name).parent / path.name).as_posix() for path in files]
+    close = get_close_matches(name, (*beside, *level_names()), n=1)
+    return f"did you mean `{close[0]}`?" if close else None
+
+
+def _is_level(path: Path) -> bool:
+    """Whether a file seems to be a level; pipes and devices are not read."""
+    if not may_be_file(path):
+        return False
+    try:
+        return b"[bounds]" in read_bytes(path, str(path), TOML.size)
+    except TltlError:
+        return False
+
+
+def policy_for_its_spec(level: str) -> str | None:
+    """The level of the package whose policy may play this one, a copy perhaps: both are made for specs of one name."""
+    with suppress(TltlError):
+        made_for = {Path(load_level(name).spec).name: name for name in shipped_policies()}
+        return made_for.get(Path(load_level(level, variants(level)[0]).spec).name)
+    return None
+
+
+def _at(label: Label, found: Iterable[Diagnostic]) -> list[Diagnostic]:
+    return [replace(each, labels=(label, *each.labels)) for each in found]
+
+
+def _no_policy(folder: Path) -> Diagnostic:
+    from tltl_runtime.training.run.run import RUN, named_trainings, resume_command
+
+    if exists(folder / RUN):
+        help_ = f"`{resume_command(folder)}` goes on until it has one; one that is going on has it soon"
+        return Diagnostic("TLT0872", f"the training in `{folder}` has no policy yet", help=help_)
+    help_ = named_trainings(folder) or "name a .safetensors file, or the folder that `tltlc train` named when it ended"
+    return Diagnostic("TLT0872", f"there is neither a training nor a policy in `{folder}`", help=help_)

@@ -1,0 +1,41 @@
+"""What a run keeps for the next one: some content, beside the hash of all that it depends on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tltl_runtime.support.record_json import from_json, to_json
+from tltl_runtime.support.source_hash import sources_hash
+from tltlc.io.files import may_be_file
+from tltlc.io.json_text import load
+from tltlc.io.limits import REPORT
+
+T = TypeVar("T")
+
+
+def inputs_hash(parts: Sequence[Any]) -> str:
+    """SHA-256, in hexadecimal, of JSON data and of the code that makes something of it."""
+    return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
+
+
+def kept_text(inputs: str, content: object) -> str:
+    """The text of a file that keeps some content, which depends on what has the hash ``inputs``."""
+    return json.dumps({"identity": inputs, "content": to_json(content)}, ensure_ascii=False) + "\n"
+
+
+def read_kept(kind: type[T], path: Path, inputs: str) -> T | None:
+    """The content of such a file, as :func:`~tltl_runtime.support.record_json.from_json` reads it; None where it
+    depends on
+    something else, cannot be read or is not there, and so has to be made again.
+    """
+    if not may_be_file(path):
+        return None
+    try:
+        document = load(path, REPORT)
+        return from_json(kind, document["content"], "content") if document["identity"] == inputs else None
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None

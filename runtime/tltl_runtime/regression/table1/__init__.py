@@ -1,0 +1,1 @@
+"""Table I of the paper, measured with our levels."""

@@ -1,0 +1,132 @@
+"""Table I of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, and our own beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Final, Literal
+
+from tltl_runtime.evaluation.statistics import Spread, wilson
+from tltlc.core.record import record
+
+Model = Literal["expert", "imitation", "ours"]
+
+MODELS: Final[tuple[Model, ...]] = ("expert", "imitation", "ours")
+LEVELS: Final = ("navigation", "cover_and_hide", "branching")
+"""Cases 1 to 3 of the paper."""
+VARIANTS: Final = ("v0", "v1", "v2")
+RUNS: Final = 25
+"""As many simulations the paper's figures are of."""
+
+
+@record
+class CellFigures:
+    """Of one model on one variant: the pass rate over ``runs`` episodes, progress and reward as mean and deviation."""
+
+    runs: int
+    pass_rate: float
+    progress: Spread
+    reward: Spread
+
+
+@record
+class Row:
+    """Of one model on one level: the figures of each variant, and the hours that its training took, None of none.
+
+    ``cloned`` is the share of its steps with behavioural cloning alone, None of a model that does not imitate.
+    """
+
+    figures: Mapping[str, CellFigures]
+    hours: float | None
+    cloned: float | None = None
+
+
+def _row(hours: float | None, *figures: tuple[float, float, float, float, float], cloned: float | None = None) -> Row:
+    """The paper's figures of v0, v1, v2: pass rate, mean and deviation of progress, of reward."""
+    made = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
+    return Row(dict(zip(VARIANTS, made, strict=True)), hours, cloned)
+
+
+PAPER: Final[Mapping[tuple[str, Model], Row]] = {
+    ("navigation", "expert"): _row(
+        None, (1.00, 1.00, 0.00, 0.63, 0.01), (1.00, 1.00, 0.00, 0.65, 0.02), (0.00, 0.50, 0.01, -0.50, 0.01)
+    ),
+    ("navigation", "imitation"): _row(
+        20.0,
+        (0.92, 0.98, 0.05, 0.50, 0.19),
+        (0.32, 0.79, 0.22, -0.09, 0.37),
+        (0.00, 0.47, 0.07, -0.53, 0.08),
+        cloned=0.05,
+    ),
+    ("navigation", "ours"): _row(
+        3.5, (1.00, 1.00, 0.00, 0.64, 0.01), (0.90, 0.93, 0.21, 0.39, 0.37), (0.00, 0.49, 0.05, -0.51, 0.05)
+    ),
+    ("cover_and_hide", "expert"): _row(
+        None, (1.00, 1.00, 0.00, 0.73, 0.01), (1.00, 1.00, 0.00, 0.74, 0.01), (0.80, 0.93, 0.14, 0.41, 0.40)
+    ),
+    ("cover_and_hide", "imitation"): _row(
+        20.0,
+        (0.05, 0.74, 0.27, -0.25, 0.27),
+        (0.00, 0.49, 0.26, -0.50, 0.27),
+        (0.00, 0.41, 0.22, -0.58, 0.22),
+        cloned=0.05,
+    ),
+    ("cover_and_hide", "ours"): _row(
+        2.7, (1.00, 1.00, 0.00, 0.74, 0.03), (0.50, 0.85, 0.20, 0.21, 0.55), (0.20, 0.70, 0.25, -0.14, 0.51)
+    ),
+    ("branching", "expert"): _row(
+        None, (1.00, 1.00, 0.00, 0.76, 0.01), (1.00, 1.00, 0.00, 0.73, 0.02), (1.00, 1.00, 0.00, 0.74, 0.08)
+    ),
+    ("branching", "imitation"): _row(
+        20.0,
+        (0.40, 0.82, 0.37, 0.01, 0.51),
+        (0.24, 0.80, 0.36, -0.11, 0.45),
+        (0.10, 0.71, 0.24, -0.24, 0.33),
+        cloned=0.05,
+    ),
+    ("branching", "ours"): _row(
+        6.8, (1.00, 1.00, 0.00, 0.66, 0.01), (0.93, 0.96, 0.17, 0.64, 0.36), (0.47, 0.89, 0.23, 0.27, 0.46)
+    ),
+}
+"""The rows of the paper, whose experts are humans."""
+
+
+def markdown(rows: Mapping[tuple[str, Model], Row]) -> str:
+    """The table as Markdown: a row of ours, the paper's below it; what is not there yet is left out."""
+    return "\n".join(_lines(rows)) + "\n"
+
+
+def _lines(rows: Mapping[tuple[str, Model], Row]) -> Iterator[str]:
+    yield f"| level | model | pass {' / '.join(VARIANTS)} | progress | reward | time |"
+    yield "|---|---|---|---|---|---|"
+    for level in LEVELS:
+        for model in MODELS:
+            if (level, model) in rows:
+                yield _line(level, model, rows[level, model])
+                paper = PAPER[level, model]
+                name = "human" if model == "expert" else model
+                yield _line("", f"*the paper: {name}*", paper)
+
+
+def _line(level: str, model: str, row: Row) -> str:
+    there = [row.figures[variant] for variant in VARIANTS if variant in row.figures]
+    passed = " / ".join(_rate(each) for each in there)
+    spreads = (
+        " / ".join(f"{spread.mean:.2f} ± {spread.std:.2f}" for spread in each)
+        for each in ([figures.progress for figures in there], [figures.reward for figures in there])
+    )
+    return f"| {level} | {model} | {passed} | {' | '.join(spreads)} | {_time(row)} |"
+
+
+def _rate(figures: CellFigures) -> str:
+    """A rate, with its interval where there are more runs than in the paper."""
+    if figures.runs <= RUNS:
+        return f"{figures.pass_rate:.2f}"
+    low, high = wilson(round(figures.pass_rate * figures.runs), figures.runs)
+    return f"{figures.pass_rate:.2f} ({low:.2f}–{high:.2f})"
+
+
+def _time(row: Row) -> str:
+    if row.hours is None:
+        return "–"
+    time = f"{row.hours:.1f} h" if row.hours >= 1 else f"{row.hours * 60:.0f} min"
+    return time if row.cloned is None else f"{time}, {100 * row.cloned:.1f} % cloned"

@@ -1,0 +1,130 @@
+"""The cells of our Table I: a model plays 100 episodes of a level in a variant; what was played is kept in a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
+from tltl_runtime.evaluation.play import Played, episode_seed
+from tltl_runtime.evaluation.player import Result, Task
+from tltl_runtime.evaluation.statistics import spread_of
+from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.table1.paper_table import CellFigures, Model
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.stealth.capabilities.vocabulary import params
+from tltl_runtime.stealth.env import make_env, spec_of
+from tltl_runtime.stealth.expert.expert import Expert, play_episode
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.outcome import outcome
+from tltl_runtime.training.run.versions import versions
+from tltlc.core.record import record
+from tltlc.io.writing import write_file
+
+EPISODES: Final = 100
+SEED: Final = 25_000
+"""Of the evaluations; no training begins an episode with one of theirs but by chance."""
+
+
+@record
+class Went:
+    """How an episode went."""
+
+    success: bool
+    progress: float
+    reward: float
+
+
+def figures(episodes: Sequence[Went], runs: int) -> CellFigures:
+    """The figures of a cell over the first ``runs`` of its episodes."""
+    first = episodes[:runs]
+    return CellFigures(
+        runs=len(first),
+        pass_rate=sum(each.success for each in first) / len(first),
+        progress=spread_of([each.progress for each in first]),
+        reward=spread_of([each.reward for each in first]),
+    )
+
+
+def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> tuple[Went, ...]:
+    """The episodes of a cell that ``folder`` has, or that are played now and kept there.
+
+    The expert plays where there is no ``policy``.  Whoever plays is judged by the spec that the level is made for now.
+
+    Raises:
+        TltlError: what playing raises, TLT0843 for a policy of another spec; TLT0005.
+    """
+    path = folder / f"{level}-{variant}-{model}.json"
+    inputs = _inputs(level, variant, policy)
+    if (kept := read_kept(tuple[Went, ...], path, inputs)) is not None:
+        return kept
+    episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
+    write_file(path, kept_text(inputs, episodes), over_inputs=True)
+    return episodes
+
+
+def _inputs(level: str, variant: str, policy: Path | None) -> str:
+    """The identity of all that a cell depends on."""
+    place = load_level(level, variant)
+    spec = load_task(spec_of(place), offered=params(place)).fspa
+    played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
+    return inputs_hash([level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
+
+
+def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:
+    spec = spec_of(load_level(level, variant))
+    for each in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
+        yield Went(each.success, each.progress, each.reward)
+
+
+def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
+    """The careful expert's episodes, which are those of the policies, so that all play the same; on this machine."""
+    tasks = [Task(index) for index in range(EPISODES)]
+    workers = 0 if pool == "ray" else pool
+
+    def alone(task: Task) -> str:
+        return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
+
+    for each in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
+        yield Went(each.played.success, each.played.progress, each.played.reward)
+
+
+class _ExpertPlayer:
+    """Has the careful expert play, as :class:`~tltl_runtime.evaluation.player.Player` has a policy."""
+
+    def __init__(self, level: str, variant: str) -> None:
+        self._env = RecordEpisode(make_env(level, variant))
+        self._expert = Expert(self._env)
+
+    def play(self, task: Task) -> Result:
+        """Play one episode."""
+        seed = episode_seed(SEED, task.index)
+        info = play_episode(self._env, self._expert, seed)
+        episode = self._env.episode
+        went, unmet = outcome(episode), info["unmet"]
+        return Result(
+            task,
+            Played(
+                index=task.index,
+                seed=seed,
+                success=went.success,
+                verdict=went.verdict,
+                end=went.end,
+                progress=went.progress,
+                reward=went.reward,
+                steps=went.steps,
+                seconds=went.seconds,
+                state=info["state"],
+                unmet=unmet,
+                label=episode.fspa.states[unmet].label.english,
+            ),
+        )
+
+    def close(self) -> None:
+        """Free the game."""
+        self._env.close()

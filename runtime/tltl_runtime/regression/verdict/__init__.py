@@ -1,0 +1,1 @@
+"""Baselines, play, and the statistics of verdicts."""

@@ -1,0 +1,7 @@
+"""Many copies of one automaton at once, as torch tensors; tested equal to :mod:`tltlc.monitor`."""
+
+from __future__ import annotations
+
+from tltl_runtime.spec.batch.monitor import BatchMonitor, BatchStep
+
+__all__ = ["BatchMonitor", "BatchStep"]

@@ -1,0 +1,72 @@
+"""Expressions over columns of samples: straight-line torch code, each subexpression computed once.
+
+The code computes what :func:`tltlc.expression.evaluate.evaluate` does, for all environments.  Where that raises an
+error, the value here is arbitrary and the environment is marked as failed; a case that an environment does not
+take cannot fail there.  On a CPU in float64 the values are equal to the last bit, the sign of zeros aside, but for
+``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3, which torch rounds otherwise than the C library (by less than
+1e-12, relatively).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from tltl_runtime.spec.batch.writer import Writer
+from tltlc.expression.tree import Expression
+
+
+class Program:
+    """The expressions as one function of columns: shape [signals, N] to values [expressions, N] and failures.
+
+    ``source`` is the Python text of the function.
+    """
+
+    def __init__(
+        self,
+        expressions: Sequence[Expression],
+        signals: Sequence[str],
+        params: Mapping[str, float],
+        device: torch.device,
+        dtype: torch.dtype,
+    ) -> None:
+        writer = Writer(signals, params)
+        terms = [writer.number(expression) for expression in expressions]
+        values = [term.name if term.constant is None else writer.filled(term.constant) for term in terms]
+        failures = [term.fails for term in terms]
+        self.source = "\n".join(
+            [
+                "def values(columns):",
+                *(f"    {line}" for line in _released(writer.lines, {*values, *map(str, failures)})),
+                f"    return ({', '.join([*values, ''])}), ({', '.join([*map(str, failures), ''])})",
+            ]
+        )
+        names = ("abs", "clamp", "exp", "isfinite", "isinf", "pow", "sqrt", "tanh", "where")
+        space: dict[str, Any] = {name: getattr(torch, name) for name in names}
+        for name, constant in writer.constants.items():
+            space[name] = torch.tensor(constant, dtype=dtype, device=device)
+        exec(compile(self.source, "<expressions>", "exec"), space)
+        self._function: Callable[[Tensor], tuple[tuple[Tensor, ...], tuple[Tensor | None, ...]]] = space["values"]
+
+    def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
+        """The values, shape [expressions, N], and per expression the mask [N] of where it fails, None for nowhere."""
+        values, failures = self._function(columns)
+        if not values:
+            return columns.new_empty((0, columns.shape[1])), ()
+        return torch.stack(values), failures
+
+
+def _released(lines: Sequence[str], kept: Collection[str]) -> list[str]:
+    """The lines with each tensor deleted after its last use: its memory is in the cache when the next takes it."""
+    seen: set[str] = set()
+    result: list[str] = []
+    for line in reversed(lines):
+        names = {name for name in re.findall(r"\bt\d+\b", line) if name not in kept} - seen
+        result += [f"del {', '.join(sorted(names))}"] if names else []
+        result.append(line)
+        seen |= names
+    return result[::-1]

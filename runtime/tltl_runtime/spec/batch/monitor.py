@@ -1,0 +1,204 @@
+"""N copies of an automaton that run on samples side by side, on a CPU or a GPU."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import torch
+from numpy.typing import ArrayLike
+from torch import Tensor
+
+from tltl_runtime.spec.batch.guards import PrimeSets, Transitions
+from tltl_runtime.spec.batch.rewards import VERDICTS, EdgeMode, Outcomes, PotentialMode, SparseMode
+from tltl_runtime.spec.batch.samples import BatchSamples
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor import RewardOptions
+from tltlc.monitor.arguments import automaton, reward_options
+
+_VIOLATED = VERDICTS.index("violated")
+
+
+class BatchStep:
+    """What one sample did in each of N environments; every tensor has shape [N] and is never changed later.
+
+    ``state`` int64; ``done`` bool: an episode ends here, or ended before; ``success`` bool: it ended in success,
+    now or before; ``progress`` the best so far, in [0, 1]; ``reward`` of the step, 0 past the end of the episode;
+    ``edge`` int64: the number of the edge taken; ``values`` [atoms, N]: those of the atoms, in [-1, 1].
+    What else there is to know is computed when it is asked for.
+    """
+
+    def __init__(
+        self,
+        monitor: BatchMonitor,
+        edge: Tensor,
+        values: Tensor,
+        state: Tensor,
+        done: Tensor,
+        success: Tensor,
+        progress: Tensor,
+        reward: Tensor,
+    ) -> None:
+        self._monitor = monitor
+        self.edge, self.values, self.state, self.done = edge, values, state, done
+        self.success, self.progress, self.reward = success, progress, reward
+
+    @cached_property
+    def accepting(self) -> Tensor:
+        """Whether the prefix so far is accepted, bool."""
+        return self._monitor.accepting_states.index_select(0, self.state)
+
+    @cached_property
+    def truncated(self) -> Tensor:
+        """Whether an episode ends here by the spec's limit, neither in success nor in a violation, bool."""
+        return self.done & ~self.success & (self.verdict != _VIOLATED)
+
+    @cached_property
+    def verdict(self) -> Tensor:
+        """The verdict of the prefix so far, int64: an index into ``VERDICTS``."""
+        return self._monitor.state_verdicts.index_select(0, self.state)
+
+    @cached_property
+    def robustness(self) -> Tensor:
+        """The robustness of the edge taken, in [-1, 1]."""
+        return self._monitor.guards.of(self.edge, self.values) + 0.0
+
+    @cached_property
+    def limiting(self) -> Tensor:
+        """The atom that bounds the nearest edge that would have improved, int64; -1 as None in the scalar monitor."""
+        return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
+
+
+class BatchMonitor:
+    """Runs ``count`` copies of an automaton; the environments may be in different states and episodes.
+
+    Equal to as many :class:`tltlc.monitor.Monitor`: on a CPU in float64 to the last bit (the sign of zeros aside)
+    where torch computes an operation as C does, else to within 1e-12 (``exp``, ``tanh``, ``sqrt``, powers other
+    than 2 and 3, the discounted penalty).  An atom so near to 0, or to a border between cases, may be true in one and
+    false in the other; in float32 that is within 1e-6.  Atoms are computed in float64 where a number of the spec, such
+    as the end of a range, is too large or too small for ``dtype``.
+    As there, an environment that has finished goes on with its automaton, with reward 0, until it is reset.
+
+    ``state`` int64 [N], ``steps`` and ``progress`` [N] speak of the last step; ``clamped`` counts values out of range,
+    by the names of signals and atoms.  ``signal_names`` is the order of signals in a tensor.
+
+    To check samples is to wait for the device a few times a step.  With ``checked=False`` a step waits for nothing:
+    values out of range are clamped and not counted, what is not a number makes its atoms false and may come out in
+    progress and reward, and where exclusive atoms hold at once some edge of the state is taken.
+
+    Raises:
+        MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+        TypeError: ``fspa`` is no automaton, or ``reward`` no options.
+        ValueError: ``count`` is below 1.
+    """
+
+    def __init__(
+        self,
+        fspa: Fspa,
+        count: int,
+        *,
+        reward: RewardOptions | None = None,
+        params: Mapping[str, float] | None = None,
+        device: torch.device | str = "cpu",
+        dtype: torch.dtype = torch.float64,
+        checked: bool = True,
+    ) -> None:
+        self.fspa, options = automaton(fspa), reward_options(reward)
+        self.count, self.device, self.dtype = count, torch.device(device), dtype
+        self._checked = checked
+        if count < 1:
+            raise ValueError(f"at least one environment is needed, not {count}")
+        self._samples = BatchSamples(fspa, count, params, self.device, dtype, checked)
+        self.signal_names, self.clamped = self._samples.names, self._samples.clamped
+        self._transitions = Transitions(fspa, self.device, checked)
+        self._targets = torch.tensor([edge.target for edge in fspa.edges], dtype=torch.int64, device=self.device)
+        self.outcomes = Outcomes(fspa, options, self.device, dtype)
+        self.guards = PrimeSets([edge.guard.primes for edge in fspa.edges], len(fspa.atoms), self.device, -1.0)
+        self.accepting_states = torch.tensor([state.accepting for state in fspa.states], device=self.device)
+        self.state_verdicts = torch.tensor(
+            [VERDICTS.index(state.verdict) for state in fspa.states], dtype=torch.int64, device=self.device
+        )
+        self._edge_mode = EdgeMode(fspa, self.device) if options.mode == "edge" else None
+        self._potential = PotentialMode(fspa, options, self.device, dtype) if options.mode == "potential" else None
+        self._sparse = SparseMode(fspa, self.device, dtype) if options.mode == "sparse" else None
+        self.reset()
+
+    def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
+        """Take the environments of a mask (bool [N], None: all) back to the state before the first sample."""
+        fresh = self._start()
+        if mask is not None:
+            chosen = torch.as_tensor(mask, device=self.device)
+            if chosen.shape != (self.count,) or chosen.dtype != torch.bool:
+                wanted = f"{self.count} bools are needed, one for each environment"
+                raise ValueError(f"{wanted}, not {tuple(chosen.shape)} of {chosen.dtype}")
+            fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
+        self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
+
+    def step(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> BatchStep:
+        """Take one sample of each environment: an array [N] per name of a signal, or one [N, signals].
+
+        Tensors, NumPy arrays and lists will do; numbers are in SI units, bools count as 0 and 1.  The order in one
+        array is ``signal_names``; names that no atom uses are ignored.
+
+        Raises:
+            MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
+                TLT0614 exclusive atoms that hold at once.  No environment moves.
+            ValueError: an array of another shape.
+        """
+        return self._take(self._samples.atom_values(signals))
+
+    def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
+        """Take one sample that is given as the values of the atoms, shape [N, atoms], each in [-1, 1].
+
+        Raises:
+            MonitorError: TLT0614 exclusive atoms that hold at once.  No environment moves.
+            ValueError: a value is not in [-1, 1], or another shape.
+        """
+        given = torch.as_tensor(values)
+        fits = given.shape == (self.count, len(self.fspa.atoms))
+        if not fits or (self._checked and not bool((given.abs() <= 1.0).all())):
+            raise ValueError(f"values in [-1, 1] of shape {(self.count, len(self.fspa.atoms))} are needed")
+        return self._take(given.to(self.device, self.dtype).t().contiguous())
+
+    def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
+        """The states as rows with a single 1, shape [N, states]."""
+        rows = torch.zeros((self.count, len(self.fspa.states)), dtype=dtype, device=self.device)
+        return rows.scatter_(1, self.state[:, None], 1.0)
+
+    def _take(self, values: Tensor) -> BatchStep:
+        edge = self._transitions.edge(self.state, values > 0.0)
+        source, state = self.state, self._targets.index_select(0, edge)
+        steps = self.steps + 1.0
+        progress = torch.maximum(self.progress, self.outcomes.progress(edge, values, steps))
+        ends = self.outcomes.done(edge, steps)
+        succeeds = ends & self.outcomes.accepting(edge)
+        memory = self._memory
+        if self._edge_mode is not None:
+            reward = self._edge_mode.reward(source, values)
+        elif self._potential is not None:
+            reward, memory = self._potential.reward(memory, state, values, ends, succeeds)
+        elif self._sparse is not None:
+            reward, memory = self._sparse.reward(memory, state, values, ends)
+        else:
+            reward = self.outcomes.reward(edge, progress - self.progress, steps)
+        reward = reward.masked_fill_(self._done, 0.0)
+
+        success = self._success | (succeeds & ~self._done)
+        done = self._done | ends
+        self.state, self.steps, self.progress, self._done, self._success, self._memory = (
+            state, steps, progress, done, success, memory,
+        )  # fmt: skip
+        return BatchStep(self, edge, values, state, done, success, progress, reward)
+
+    def _episode(self) -> tuple[Tensor, ...]:
+        return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
+
+    def _start(self) -> tuple[Tensor, ...]:
+        """State, steps, progress, done, success and the mode's memory before the first sample."""
+        numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
+        flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)
+        if self._potential is not None:
+            memory = self._potential.start(self.count)
+        else:
+            memory = self._sparse.start(self.count) if self._sparse is not None else numbers
+        return (numbers.to(torch.int64), numbers, numbers, flags, flags, memory)

@@ -1,0 +1,224 @@
+"""Straight-line torch code for expressions over columns of samples, line by line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from operator import add, ge, gt, le, lt, mul
+from typing import Final, cast
+
+from tltlc.core.record import record
+from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS, evaluate
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+
+_COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
+_FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
+
+
+@record
+class Term:
+    """The name of a tensor, or a constant (a number, or a truth value), and the name of the mask where it fails."""
+
+    name: str
+    constant: float | None = None
+    fails: str | None = None
+
+
+class Writer:
+    """Writes lines that assign to new names, each from ``columns``, ``constants`` and names before it.
+
+    ``columns[i]`` is that of the i-th signal.  Equal right-hand sides are written once.  ``constants`` are numbers by
+    the names of the tensors without dimensions that hold them.
+    """
+
+    def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
+        self._columns = {name: index for index, name in enumerate(signals)}
+        self._params = params
+        self._known: dict[str, str] = {}
+        self.lines: list[str] = []
+        self.constants: dict[str, float] = {}
+
+    def filled(self, constant: float) -> str:
+        """The name of a column that holds a constant."""
+        return self._line(f"columns.new_full((columns.shape[1],), {self._held(constant)}.item())")
+
+    def number(self, node: Expression) -> Term:
+        """The term of an expression."""
+        if isinstance(node, Const):
+            return self._constant(node.value)
+        if isinstance(node, Param):
+            return self._constant(self._params[node.name])
+        if isinstance(node, Signal):
+            return Term(self._line(f"columns[{self._columns[node.name]}]"))
+        if isinstance(node, When):
+            return self._when(node)
+        args = [self.number(argument) for argument in node.args]
+        fails = self._any_of([term.fails for term in args])
+        if all(term.constant is not None for term in args):
+            return self._folded(node, args, fails)
+        return self._operation(node, args, fails)
+
+    def _operation(self, node: Op, args: list[Term], fails: str | None) -> Term:
+        if node.op in ("+", "*"):
+            compute = add if node.op == "+" else mul
+            total = args[0]
+            for term in args[1:]:
+                if total.constant is not None and term.constant is not None:
+                    total = self._constant(compute(total.constant, term.constant))
+                else:
+                    total = Term(self._line(f"{self._operand(total)} {node.op} {self._operand(term)}"))
+            return Term(total.name, None, fails)
+        if node.op in ("min", "max"):
+            best = args[0]
+            for term in args[1:]:
+                best = self._extreme(node.op, best, term)
+            return Term(best.name, best.constant, fails)
+        if node.op == "clamp":
+            value, low, high = args
+            if value.constant is None and low.constant is not None and high.constant is not None:
+                return Term(self._line(f"clamp({value.name}, {low.name}, {high.name})"), None, fails)
+            return Term(self._extreme("min", self._extreme("max", value, low), high).name, None, fails)
+        if node.op == "^":
+            return self._power(node, args, fails)
+        if node.op == "/":
+            top, bottom = (self._operand(term) for term in args)
+            if args[1].constant is None:
+                own: str | None = self._line(f"{bottom} == 0.0")
+            else:
+                own = self._everywhere() if args[1].constant == 0.0 else None
+            return Term(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own]))
+        if node.op == "-":
+            return Term(self._line(f"{self._operand(args[0])} - {self._operand(args[1])}"), None, fails)
+        inner = args[0].name
+        if node.op == "neg":
+            return Term(self._line(f"-{inner}"), None, fails)
+        result = self._line(f"{node.op}({inner})")
+        if node.op == "sqrt":
+            fails = self._any_of([fails, self._line(f"{inner} < 0.0")])
+        elif node.op == "exp":
+            fails = self._any_of([fails, self._line(f"isinf({result}) & isfinite({inner})")])
+        return Term(result, None, fails)
+
+    def _power(self, node: Op, args: list[Term], fails: str | None) -> Term:
+        base, exponent = args
+        factors = MULTIPLIED_EXPONENTS.get(node.args[1].value, 0) if isinstance(node.args[1], Const) else 0
+        if factors:
+            square = self._line(f"{base.name} * {base.name}")
+            return Term(square if factors == 2 else self._line(f"{square} * {base.name}"), None, fails)
+        left, right = self._operand(base), self._operand(exponent)
+        result = self._line(f"pow({left}, {right})")
+        own = self._line(f"isfinite({left}) & isfinite({right}) & ~isfinite({result})")
+        return Term(result, None, self._any_of([fails, own]))
+
+    def _extreme(self, op: str, first: Term, second: Term) -> Term:
+        """As Python's ``min`` and ``max``: the second one only where it is strictly beyond the first."""
+        if first.constant is not None and second.constant is not None:
+            return self._constant((min if op == "min" else max)(first.constant, second.constant))
+        if second.constant is not None:
+            return Term(self._line(f"clamp({first.name}, {'max' if op == 'min' else 'min'}={second.name})"))
+        one, other = self._operand(first), self._operand(second)
+        beyond = self._line(f"{other} {'<' if op == 'min' else '>'} {one}")
+        return Term(self._line(f"where({beyond}, {other}, {one})"))
+
+    def _when(self, node: When) -> Term:
+        result = self.number(node.otherwise)
+        for condition, value in reversed(node.cases):
+            test = self._condition(condition)
+            if test.constant is not None and test.fails is None:
+                result = self.number(value) if test.constant else result
+                continue
+            case = self.number(value)
+            taken = self._truth(test)
+            other = self._both(self._line(f"~{taken}"), result.fails) if result.fails else None
+            fails = self._any_of([test.fails, self._both(taken, case.fails), other])
+            values = f"{self._operand(case)}, {self._operand(result)}"
+            result = Term(self._line(f"where({taken}, {values})"), None, fails)
+        return result
+
+    def _condition(self, node: Expression | Condition) -> Term:
+        assert isinstance(node, Condition), "and, or, not and cases take conditions"
+        if node.op == "not":
+            inner = self._condition(node.args[0])
+            if inner.constant is not None:
+                return Term(inner.name, float(not inner.constant), inner.fails)
+            return Term(self._line(f"~{inner.name}"), None, inner.fails)
+        if node.op in ("and", "or"):
+            return self._connective(node)
+        left, right = (self.number(cast("Expression", side)) for side in node.args)
+        fails = self._any_of([left.fails, right.fails])
+        if left.constant is not None and right.constant is not None:
+            return Term("", float(_COMPARISONS[node.op](left.constant, right.constant)), fails)
+        return Term(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
+
+    def _connective(self, node: Condition) -> Term:
+        """From the last part to the first: a part behind one that decides is not computed and cannot fail."""
+        sign = "&" if node.op == "and" else "|"
+        result = self._condition(node.args[-1])
+        for part in reversed(node.args[:-1]):
+            first = self._condition(part)
+            truth, rest = self._truth(first), self._truth(result)
+            goes_on = truth if node.op == "and" else self._line(f"~{truth}")
+            fails = self._any_of([first.fails, self._both(goes_on, result.fails)])
+            result = Term(self._line(f"{truth} {sign} {rest}"), None, fails)
+        return result
+
+    def _folded(self, node: Op, args: list[Term], fails: str | None) -> Term:
+        """The value of an operation on constants."""
+        # The exponent's own node tells a product from a power, so a constant one stays as it is written.
+        parts = tuple(Const(term.constant if term.constant is not None else math.nan) for term in args)
+        if node.op == "^" and not isinstance(node.args[1], Const) and parts[1].value in MULTIPLIED_EXPONENTS:
+            try:
+                return Term(*self._literal(math.pow(parts[0].value, parts[1].value)), fails)
+            except _FAILURES:
+                return Term(*self._literal(math.nan), self._everywhere())
+        try:
+            return Term(*self._literal(evaluate(Op(node.op, parts), {}, {})), fails)
+        except _FAILURES:
+            return Term(*self._literal(math.nan), self._everywhere())
+
+    def _constant(self, value: float) -> Term:
+        return Term(*self._literal(value))
+
+    def _literal(self, value: float) -> tuple[str, float]:
+        text = repr(float(value))
+        if not math.isfinite(value):
+            return f"float('{text}')", value
+        return (f"({text})" if text.startswith("-") else text), value
+
+    def _operand(self, term: Term) -> str:
+        """The term as a tensor, which torch takes faster than a number; and with numbers it divides less exactly."""
+        return term.name if term.constant is None else self._held(term.constant)
+
+    def _held(self, constant: float) -> str:
+        for name, value in self.constants.items():
+            if repr(value) == repr(constant):
+                return name
+        name = f"k{len(self.constants)}"
+        self.constants[name] = constant
+        return name
+
+    def _truth(self, term: Term) -> str:
+        if term.constant is None:
+            return term.name
+        everywhere = self._everywhere()
+        return everywhere if term.constant else self._line(f"~{everywhere}")
+
+    def _everywhere(self) -> str:
+        return self._line("columns.new_ones((columns.shape[1],)) > 0.0")
+
+    def _both(self, mask: str, other: str | None) -> str | None:
+        return None if other is None else self._line(f"{mask} & {other}")
+
+    def _any_of(self, masks: Sequence[str | None]) -> str | None:
+        names = list(dict.fromkeys(mask for mask in masks if mask is not None))
+        result = names[0] if names else None
+        for name in names[1:]:
+            result = self._line(f"{result} | {name}")
+        return result
+
+    def _line(self, text: str) -> str:
+        if text not in self._known:
+            name = f"t{len(self._known)}"
+            self._known[text] = name
+            self.lines.append(f"{name} = {text}")
+        return self._known[text]

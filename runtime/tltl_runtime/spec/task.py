@@ -1,0 +1,116 @@
+"""A task: the automaton of a spec, the values of its params, and how its steps are rewarded."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import EMPTY, record
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.project import project_for
+from tltlc.io.spec_file import read, split
+from tltlc.monitor import Monitor, RewardOptions
+from tltlc.monitor.arguments import reward_options
+from tltlc.pipeline import CompileOptions, compile_source, read_artefact, unknown_spec
+from tltlc.resolve.spec import Spec
+
+_FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
+
+
+@record
+class Task:
+    """What an episode is judged by: the automaton, values of its params (SI units) before its own, the reward.
+
+    A task is plain data and can be pickled; a :class:`Monitor` is not and cannot.
+    """
+
+    fspa: Fspa
+    params: Mapping[str, float]
+    reward: RewardOptions = RewardOptions()
+
+    def monitor(self) -> Monitor:
+        """A new monitor, before its first sample."""
+        return Monitor(self.fspa, self.params, self.reward)
+
+
+def load_task(
+    spec: str | Path | Fspa,
+    params: Mapping[str, float] = EMPTY,
+    reward: RewardOptions | None = None,
+    *,
+    offered: Mapping[str, float] = EMPTY,
+) -> Task:
+    """The task that a spec describes.
+
+    ``spec`` is an automaton; the path ``FILE.tltl`` or ``FILE.fspa.json``, with ``:NAME`` behind it where the file
+    holds several specs; or a text: several lines, or one that has blanks and does not end like a path.  A file's
+    project (``tltl.toml``) gives it its libraries.  ``params`` are values in SI units; ``offered`` are others
+    that a level has at hand, of which those count that the spec has and ``params`` does not set.
+
+    Raises:
+        TltlError: whatever reading and compiling finds; TLT0720 no spec of that name, TLT0721 not exactly one spec,
+            TLT0307 and TLT0308 for params that do not fit.
+        TypeError: ``spec``, ``params`` or ``reward`` is of another type.
+    """
+    if not isinstance(params, Mapping):
+        raise TypeError(f"params map names to numbers, e.g. {{'top_speed': 0.06}}; {params!r:.60} does not")
+    fspa, _ = read_spec(spec)
+    known = {param.name for param in fspa.params}
+    values = {name: value for name, value in offered.items() if name in known}
+    task = Task(fspa, {**values, **params}, reward_options(reward))
+    task.monitor()
+    return task
+
+
+def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
+    """The automaton that ``spec`` describes, and its source where there is one; errors as of :func:`load_task`."""
+    if isinstance(spec, Fspa):
+        return spec, None
+    if not isinstance(spec, (str, os.PathLike)) or not str(spec).strip():
+        one = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
+        raise TypeError(f"a spec is a path, a text or an automaton, not {spec!r:.60}{one}")
+    if isinstance(spec, str) and _is_text(spec):
+        source, path, name = SourceFile("<text>", spec), "<text>", None
+        is_artefact = _is_artefact(spec)
+    else:
+        path, name = split(os.fspath(spec))
+        source, is_artefact = read(path)
+    if is_artefact:
+        fspa = read_artefact(source)
+        if name not in (None, fspa.name):
+            raise TltlError([unknown_spec(str(name), [fspa.name], path)])
+        return fspa, None
+    libraries = () if path == "<text>" else project_for(path).libraries
+    compiled = compile_source(source, CompileOptions(library_dirs=libraries, specs=(name,) if name else ()))
+    fspa = _only(compiled.automata, path)
+    return fspa, next(each for each in compiled.program.specs if each.name == fspa.name)
+
+
+def _is_text(spec: str) -> bool:
+    """Whether this is the text of a spec or of an artefact, and no path."""
+    if "\n" in spec or _is_artefact(spec):
+        return True
+    return " " in spec and not _FILE.match(spec)
+
+
+def _is_artefact(text: str) -> bool:
+    """Whether this is the text of an artefact: no specification begins with a brace."""
+    return text.lstrip().startswith("{")
+
+
+def _only(automata: tuple[Fspa, ...], file: str) -> Fspa:
+    if len(automata) == 1:
+        return automata[0]
+    names = [fspa.name for fspa in automata]
+    if not names:
+        title, way_out = f"`{file}` holds no spec", "declare one: `spec NAME { … }`"
+    else:
+        listed = ", ".join(f"`{name}`" for name in names[:10]) + (", …" if len(names) > 10 else "")
+        title = f"`{file}` holds {len(names)} specs, and an environment takes one: {listed}"
+        way_out = f"name one of them, e.g. `{file}:{names[0]}`" if file != "<text>" else "give a text with one spec"
+    raise TltlError([Diagnostic("TLT0721", title, help=way_out)])

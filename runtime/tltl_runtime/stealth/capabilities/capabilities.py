@@ -1,0 +1,132 @@
+"""Whether a level has what a spec speaks of: its entities and signals, on the spec's clock and scales."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from math import inf, isclose
+from typing import Final
+
+from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
+from tltl_runtime.stealth.capabilities.vocabulary import Offer, offers, params
+from tltl_runtime.stealth.level import Level, entity_names
+from tltl_runtime.stealth.levels.made_for import comes_with_the_package
+from tltl_runtime.stealth.levels.table import suggestion
+from tltl_runtime.stealth.signals import described
+from tltl_runtime.stealth.world.player import DECISION
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor.samples import param_values, range_text
+from tltlc.resolve.spec import Signal
+from tltlc.resolve.units import TYPES
+
+_CALL: Final = re.compile(r"([\w.]+)\((.*)\)\Z")
+_OF: Final = {"active": "switch", "open": "barrier"}
+"""The signals that not every entity has, and of what kind those are that do."""
+
+_ARTICLE: Final = {"angle": "an angle"}
+
+
+def check_supply(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+    """Everything that a spec asks of a level and does not get.
+
+    TLT0810 an entity that is missing, TLT0811 a signal; TLT0812 one of another type (a warning: of another range);
+    TLT0813, a warning, the spec is made for another level; TLT0617 another clock; TLT0307 the level's value of a
+    param lies outside the param's range.
+    """
+    found = [*_signals(level, fspa, places)]
+    if fspa.level is not None and fspa.level != level.name:
+        title = f"`{fspa.name}` is made for the level `{fspa.level}`, not for `{level.name}`"
+        help_ = f"write `level {level.name}` in the spec, where it is made for that one"
+        where = places.level()
+        if where and comes_with_the_package(where[0].source.name):
+            help_ = (
+                f"this spec comes with tltlc: `tltlc new FOLDER --level {fspa.level}` copies it with its level; "
+                f"write `level {level.name}` in the copy, and put that beside `{level.name}.toml`"
+            )
+        found.append(Diagnostic("TLT0813", title, where, help_, "warning"))
+    if fspa.clock_s is not None and not isclose(fspa.clock_s, DECISION, rel_tol=1e-9):
+        title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, and a step of the game takes {DECISION:g} s"
+        help_ = f"write `clock {DECISION:g} s` in the specification"
+        found.append(Diagnostic("TLT0617", title, places.clock(), help_))
+    try:
+        param_values(fspa.params, given_params(level, fspa))
+    except TltlError as error:
+        found += error.diagnostics
+    return found
+
+
+def given_params(level: Level, fspa: Fspa) -> dict[str, float]:
+    """The values, in SI units, of those params of a spec that the level knows."""
+    known = {param.name for param in fspa.params}
+    return {name: value for name, value in params(level).items() if name in known}
+
+
+def used_entities(level: Level, fspa: Fspa) -> tuple[str, ...]:
+    """The entities of the level that the signals of a spec speak of, in the spec's order."""
+    there = entity_names(level)
+    return tuple(dict.fromkeys(name for signal in fspa.signals for name in _arguments(signal.name) if name in there))
+
+
+def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
+    offered, there = offers(level), entity_names(level)
+    missing: set[str] = set()
+    for signal in fspa.signals:
+        strangers = [name for name in _arguments(signal.name) if name not in there]
+        for name in strangers:
+            if name not in missing:
+                missing.add(name)
+                title = f"the level `{level.name}` has no entity `{name}`"
+                yield Diagnostic("TLT0810", title, places.entity(name), suggestion(name, there))
+        if strangers:
+            continue
+        if signal.name in offered:
+            yield from _mismatch(signal, offered[signal.name], level, places)
+        else:
+            title = f"the level `{level.name}` has no signal `{signal.name}`"
+            yield Diagnostic("TLT0811", title, places.signal(signal.name), _way_out(signal.name, level, offered))
+
+
+def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
+    """What does not fit between a signal as the spec declares it and as the level gives it."""
+    bool_wanted = signal.type == "bool" and offer.type != "bool"
+    if bool_wanted or TYPES[signal.type] != TYPES[offer.type]:
+        title = f"`{signal.name}` is {_a(signal.type)} in the spec, and the level `{level.name}` gives {_a(offer.type)}"
+        help_ = f"declare it as {_a(offer.type)}, or give the signal that you mean another name"
+        yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_)
+        return
+    low, high = _ends(signal.low, signal.high)
+    least, most = _ends(offer.low, offer.high)
+    if least < low or most > high:
+        title = (
+            f"`{signal.name}` is in {range_text(signal.low, signal.high)} in the spec, "
+            f"and in {range_text(*_rounded(offer))} in the level `{level.name}`"
+        )
+        help_ = "widen its range: a value outside counts as the nearest one inside"
+        yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
+
+
+def _way_out(name: str, level: Level, offered: dict[str, Offer]) -> str:
+    call = _CALL.match(name)
+    if call and call[1] in _OF:
+        kind = _OF[call[1]]
+        known = [each.name for each in (level.switches if kind == "switch" else level.barriers)]
+        return f"it is for a {kind}: {suggestion(call[2], known)}"
+    return suggestion(name, offered, described(level)) + "\nunder `[signals]` a level gives its signals further names"
+
+
+def _arguments(signal: str) -> list[str]:
+    call = _CALL.match(signal)
+    return [name.strip() for name in call[2].split(",")] if call else []
+
+
+def _ends(low: float | None, high: float | None) -> tuple[float, float]:
+    return -inf if low is None else low - 1e-6, inf if high is None else high + 1e-6
+
+
+def _rounded(offer: Offer) -> tuple[float | None, float | None]:
+    return (None if offer.low is None else round(offer.low, 3)), (None if offer.high is None else round(offer.high, 3))
+
+
+def _a(type_: str) -> str:
+    return _ARTICLE.get(type_, f"a {type_}")

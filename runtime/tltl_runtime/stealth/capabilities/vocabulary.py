@@ -1,0 +1,46 @@
+"""What a level gives a spec: signals with their types and ranges, and params."""
+
+from __future__ import annotations
+
+from math import dist, pi
+
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.signals import readers
+from tltlc.core.record import record
+from tltlc.resolve.spec import ValueType
+
+
+@record
+class Offer:
+    """A signal of a level: its type, and the range of its values in SI units; None is an open end."""
+
+    type: ValueType
+    low: float | None
+    high: float | None
+
+
+def offers(level: Level) -> dict[str, Offer]:
+    """The signals of a level, by name, its further names included."""
+    meant = dict(level.signals)
+    return {name: _offer(meant.get(name, name), level) for name in readers(level)}
+
+
+def params(level: Level) -> dict[str, float]:
+    """The params of specs that a level knows: ``level_size`` is the diagonal of its bounds, in metres."""
+    return {"level_size": dist(level.bounds.low, level.bounds.high)}
+
+
+def _offer(name: str, level: Level) -> Offer:
+    base = name.partition("(")[0]
+    if base in ("health", "stamina"):
+        return Offer("ratio", 0.0, 1.0)
+    if base == "time":
+        return Offer("time", 0.0, None)
+    if base == "bearing":
+        return Offer("angle", -pi, pi)
+    if base == "distance":
+        return Offer("length", 0.0, params(level)["level_size"])
+    if base.startswith("position."):
+        axis = "xyz".index(base[-1])
+        return Offer("length", level.bounds.low[axis], level.bounds.high[axis])
+    return Offer("bool", 0.0, 1.0)

@@ -1,0 +1,107 @@
+"""What the agent senses of the game: vectors to entities, values of variables, and the semantic map."""
+
+from __future__ import annotations
+
+from math import dist, pi
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from gymnasium import spaces
+
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.observation.semantic_map import SemanticMap
+from tltl_runtime.stealth.observation.sensors import SensorChoice, chosen
+from tltl_runtime.stealth.signals import Reader, entities, readers
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.game import Game
+
+_HALF_TIME_S: Final = 60.0
+"""The time that is sensed as 0.5: it has no end, and what is sensed has."""
+
+
+class Senses:
+    """The senses that a level declares, or ``sensors`` in place of them; ``look`` follows a game of that level.
+
+    ``space`` is a Dict, without the keys of which nothing is declared:
+
+    - ``entities`` float32 (3 n,), the vectors from the player's feet, over the diagonal of the bounds, in [-1, 1];
+    - ``variables`` float32 (n,): truth as 0 or 1, lengths over the diagonal, positions as a share of the bounds,
+      angles over pi, and the time t as t / (t + 60 s); the others as they are, all in [-1, 1];
+    - ``map`` uint8 (types, extent, extent), 1 where a cell is of that type; rows run north, columns east.
+
+    Raises:
+        TltlError: TLT0815, where ``sensors`` say what the level does not have.
+    """
+
+    def __init__(self, level: Level, sensors: SensorChoice | None = None) -> None:
+        self.sensors = sensors = chosen(level, sensors)
+        places, signals = entities(level), readers(level)
+        self._places = [places[name] for name in sensors.entities]
+        self._variables = [_scaled(name, level, signals[name]) for name in sensors.variables]
+        diagonal = dist(level.bounds.low, level.bounds.high)
+        sizes = [diagonal] * 3 * len(self._places) + [1.0] * len(self._variables)
+        self._sizes = np.array(sizes, dtype=np.float32)
+        # Arrays, because numpy takes three times as long with numbers.
+        self._least, self._most = np.full_like(self._sizes, -1.0), np.ones_like(self._sizes)
+        self._map = SemanticMap(level, sensors.map) if sensors.map else None
+        self._open: list[bool] = []
+        self.space = spaces.Dict(self._spaces())
+
+    def look(self, game: Game) -> dict[str, Any]:
+        """What is sensed now, in ``space``."""
+        x, y, z = game.world.player.position
+        vectors: list[float] = []
+        for place in self._places:
+            px, py, pz = place(game)
+            vectors += (px - x, py - y, pz - z)
+        values = [read(game) for read in self._variables]
+        row = np.array(vectors + values, dtype=np.float32)
+        row /= self._sizes
+        row.clip(self._least, self._most, row)
+        found: dict[str, Any] = {}
+        if vectors:
+            found["entities"] = row[: len(vectors)]
+        if values:
+            found["variables"] = row[len(vectors) :]
+        if self._map is not None:
+            found["map"] = self._see(game, self._map)
+        return found
+
+    def _see(self, game: Game, semantic_map: SemanticMap) -> Any:
+        if game.open != self._open:
+            self._open = list(game.open)
+            semantic_map.reset()
+            for barrier, is_open in enumerate(self._open):
+                if is_open:
+                    semantic_map.set_open(barrier, True)
+        player = game.world.player
+        ids = semantic_map.look(player.position, player.crouching, game.world.mover_boxes(), game.enemies.positions)
+        return semantic_map.one_hot(ids)
+
+    def _spaces(self) -> dict[str, spaces.Space[Any]]:
+        found: dict[str, spaces.Space[Any]] = {}
+        if self._places:
+            found["entities"] = spaces.Box(-1.0, 1.0, (3 * len(self._places),), np.float32)
+        if self._variables:
+            found["variables"] = spaces.Box(-1.0, 1.0, (len(self._variables),), np.float32)
+        if self._map is not None:
+            sensor = self._map.sensor
+            found["map"] = spaces.Box(0, 1, (len(sensor.types), sensor.extent, sensor.extent), np.uint8)
+        return found
+
+
+def _scaled(name: str, level: Level, read: Reader) -> Reader:
+    """How a signal is sensed: as a share of its range; time, which has no end, as what is over of a longer one."""
+    low, high = level.bounds.low, level.bounds.high
+    if name == "time":
+        return lambda game: game.time / (game.time + _HALF_TIME_S)
+    if name.startswith("position."):
+        axis = "xyz".index(name[-1])
+        return lambda game: (read(game) - low[axis]) / (high[axis] - low[axis])
+    if name.startswith("distance("):
+        diagonal = dist(low, high)
+        return lambda game: read(game) / diagonal
+    if name.startswith("bearing("):
+        return lambda game: read(game) / pi
+    return read

@@ -1,0 +1,107 @@
+"""The semantic map: what is around the agent at the height of its body, cut out of the level's voxels in 2 µs, and
+another for each mover or enemy in it.
+
+The map does not turn with the agent: its first axis runs north (y), its second east (x), and the agent is in the
+cell in the middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.level import Level, MapSensor, Point
+from tltl_runtime.stealth.observation.voxels import BELOW, CROUCHED, LAYER, STANDING, Voxels
+from tltl_runtime.stealth.world.geometry import Bounds
+
+_ENEMY_RADIUS: Final = 0.3
+_ENEMY_HEIGHT: Final = 1.8
+_TOUCH: Final = 1e-6
+
+
+class SemanticMap:
+    """The map of a level as its sensors, or ``sensor``, say.  ``reset`` shuts all barriers.
+
+    Raises ValueError where there is no map among the sensors, or one of a type that there is not.
+    """
+
+    def __init__(self, level: Level, sensor: MapSensor | None = None) -> None:
+        sensor = level.sensors.map if sensor is None else sensor
+        if sensor is None:
+            raise ValueError(f"level {level.name} declares no map among its sensors")
+        self.sensor = sensor
+        self.voxels = Voxels(level, sensor)
+        self._barriers = len(level.barriers)
+        self._mover = self.voxels.ids.get("mover", 0)
+        self._enemy = self.voxels.ids.get("enemy", 0)
+        self._rows_of_types = np.eye(len(sensor.types) + 1, dtype=np.uint8)[1:]
+        frame, margin = self.voxels.frame, self.voxels.margin
+        self._origin = (frame.x, frame.y, frame.z)
+        self._per_metre = 1.0 / frame.cell
+        self._side = sensor.extent * frame.cell
+        self._most_column = frame.columns - 2 * margin - 1
+        self._most_row = frame.rows - 2 * margin - 1
+        self._most_layer = frame.layers - 1
+        self.reset()
+
+    def reset(self) -> None:
+        """Shut all barriers."""
+        self._shut = set(range(self._barriers))
+        self._layers = self.voxels.layers(self._shut)
+
+    def set_open(self, barrier: int, opened: bool) -> None:
+        """Open or shut the barrier with this index."""
+        (self._shut.discard if opened else self._shut.add)(barrier)
+        self._layers = self.voxels.layers(self._shut)
+
+    def look(
+        self,
+        position: Point,
+        crouching: bool = False,
+        movers: Sequence[Bounds] = (),
+        enemies: Sequence[Point] = (),
+    ) -> NDArray[np.uint8]:
+        """The ids of types around feet at ``position``, uint8 [extent, extent]: 0, or 1 + the type's index.
+
+        ``movers`` are the corners of their boxes now, ``enemies`` the positions of their feet.  From outside the bounds
+        it is the map of the nearest cell inside.
+        """
+        x, y, z = position
+        x0, y0, z0 = self._origin
+        margin, extent, scale = self.voxels.margin, self.sensor.extent, self._per_metre
+        column = min(max(int((x - x0) * scale) - margin, 0), self._most_column)
+        row = min(max(int((y - y0) * scale) - margin, 0), self._most_row)
+        layer = min(max(int((z - z0) / LAYER + 0.5), 0), self._most_layer)
+        window = self._layers[crouching][layer][row : row + extent, column : column + extent]
+        found: NDArray[np.uint8] = window.copy()
+        west, south = x0 + column / scale, y0 + row / scale
+        bottom, top = z - BELOW, z + (CROUCHED if crouching else STANDING)
+        if self._mover:
+            for (a, b, c), (d, e, f) in movers:
+                if c < top and f > bottom:
+                    self._stamp(found, a - west, b - south, d - west, e - south, self._mover)
+        if self._enemy:
+            for a, b, c in enemies:
+                if c < top and c + _ENEMY_HEIGHT > bottom:
+                    a, b = a - west, b - south
+                    self._stamp(
+                        found, a - _ENEMY_RADIUS, b - _ENEMY_RADIUS, a + _ENEMY_RADIUS, b + _ENEMY_RADIUS, self._enemy
+                    )
+        return found
+
+    def one_hot(self, ids: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """A map of ids as one of layers, uint8 [types, extent, extent], all zero where a cell is of no type."""
+        found: NDArray[np.uint8] = self._rows_of_types.take(ids, axis=1)
+        return found
+
+    def _stamp(self, found: NDArray[np.uint8], a: float, b: float, c: float, d: float, number: int) -> None:
+        """Mark the cells that a rectangle meets, given in metres from the map's south-western corner."""
+        if a < self._side and b < self._side and c > 0.0 and d > 0.0:
+            scale = self._per_metre
+            west = int(a * scale + _TOUCH) if a > 0.0 else 0
+            south = int(b * scale + _TOUCH) if b > 0.0 else 0
+            found[south : ceil(d * scale - _TOUCH), west : ceil(c * scale - _TOUCH)] = number

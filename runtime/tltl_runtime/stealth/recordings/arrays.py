@@ -1,0 +1,133 @@
+"""The arrays of an episode's file, by name: what they hold, and how they come from an episode and go back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
+from tltl_runtime.stealth.world.player import PlayerState
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record
+
+Size = Literal["n", "n + 1", "signals", "atoms", "enemies", "movers", "switches", "barriers"]
+Arrays = Mapping[str, NDArray[Any]]
+
+
+@record
+class Array:
+    """What is fixed of an array: ``dtype`` as numpy writes it, the ``shape``, and the least and greatest value."""
+
+    name: str
+    dtype: str
+    shape: tuple[Size | int, ...]
+    unit: str
+    doc: str
+    low: float = -inf
+    high: float = inf
+
+
+ARRAYS: Final = (
+    Array("time", "<f8", ("n + 1",), "s", "since the reset", low=0.0),
+    Array("position", "<f8", ("n + 1", 3), "m", "the player's feet: x east, y north, z up"),
+    Array("velocity", "<f8", ("n + 1", 3), "m/s", "of the player"),
+    Array("yaw", "<f8", ("n + 1",), "rad", "where the player looks: 0 along x, growing towards y"),
+    Array("crouching", "|b1", ("n + 1",), "", "whether the player crouches"),
+    Array("grounded", "|b1", ("n + 1",), "", "whether the player stands on something"),
+    Array("stamina", "<f8", ("n + 1",), "1", "what the player has left to sprint with", low=0.0, high=1.0),
+    Array("health", "<f8", ("n + 1",), "1", "of the player", low=0.0, high=1.0),
+    Array("enemy_position", "<f8", ("n + 1", "enemies", 3), "m", "the enemies' feet"),
+    Array("enemy_yaw", "<f8", ("n + 1", "enemies"), "rad", "where the enemies look"),
+    Array("enemy_mode", "|u1", ("n + 1", "enemies"), "", "what the enemies are at, an index into `meta.modes`"),
+    Array("enemy_sees", "|b1", ("n + 1", "enemies"), "", "whether the player is in an enemy's sight"),
+    Array("mover_position", "<f8", ("n + 1", "movers", 3), "m", "the middle of the moving obstacles"),
+    Array("switch_active", "|b1", ("n + 1", "switches"), "", "which switches are active"),
+    Array("barrier_open", "|b1", ("n + 1", "barriers"), "", "which barriers are open"),
+    Array("actions", "|u1", ("n", len(BRANCHES)), "", "x, y, jump, crouch, sprint, as the environments take them"),
+    Array("signals", "<f8", ("n + 1", "signals"), "SI", "those of the spec; bools are 0 and 1"),
+    Array("atoms", "<f8", ("n", "atoms"), "1", "robustness of the spec's atoms", low=-1.0, high=1.0),
+    Array("states", "<i4", ("n + 1",), "", "of the automaton, from 0", low=0),
+    Array("progress", "<f8", ("n + 1",), "1", "the best so far", low=0.0, high=1.0),
+    Array("rewards", "<f8", ("n",), "1", "of the steps"),
+)
+
+
+def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+    """The arrays of an episode, as :data:`ARRAYS` has them; ``modes`` are those that the enemies can be in."""
+    shots = episode.snapshots
+    index = {mode: number for number, mode in enumerate(modes)}
+    columns = {
+        "time": [shot.time for shot in shots],
+        "position": [shot.player.position for shot in shots],
+        "velocity": [shot.player.velocity for shot in shots],
+        "yaw": [shot.player.yaw for shot in shots],
+        "crouching": [shot.player.crouching for shot in shots],
+        "grounded": [shot.player.grounded for shot in shots],
+        "stamina": [shot.player.stamina for shot in shots],
+        "health": [shot.health for shot in shots],
+        "enemy_position": [shot.enemies for shot in shots],
+        "enemy_yaw": [shot.yaws for shot in shots],
+        "enemy_mode": [[index[mode] for mode in shot.modes] for shot in shots],
+        "enemy_sees": [shot.sees for shot in shots],
+        "mover_position": [shot.movers for shot in shots],
+        "switch_active": [shot.active for shot in shots],
+        "barrier_open": [shot.open for shot in shots],
+        **{name: getattr(episode, name) for name in ("actions", "signals", "atoms", "states", "progress", "rewards")},
+    }
+    known = sizes(episode.level, episode.fspa, len(episode.actions))
+    return {
+        array.name: np.asarray(columns[array.name], dtype=array.dtype).reshape(shape_of(array, known))
+        for array in ARRAYS
+    }
+
+
+def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
+    """The snapshots that the arrays hold; each index into ``modes`` is one."""
+    lists = {name: array.tolist() for name, array in arrays.items()}
+    player = zip(
+        *(map(tuple, lists[name]) for name in ("position", "velocity")),
+        *(lists[name] for name in ("yaw", "crouching", "grounded", "stamina")),
+        strict=True,
+    )
+    rest = zip(
+        lists["health"],
+        map(_points, lists["enemy_position"]),
+        map(tuple, lists["enemy_yaw"]),
+        (tuple(modes[number] for number in row) for row in lists["enemy_mode"]),
+        map(tuple, lists["enemy_sees"]),
+        map(_points, lists["mover_position"]),
+        map(tuple, lists["switch_active"]),
+        map(tuple, lists["barrier_open"]),
+        strict=True,
+    )
+    rows = zip(lists["time"], player, rest, strict=True)
+    return tuple(Snapshot(time, PlayerState(*state), *others) for time, state, others in rows)
+
+
+def sizes(level: Level, fspa: Fspa, count: int) -> dict[Size, int]:
+    """How long the axes of the arrays are in an episode of ``count`` decisions."""
+    return {
+        "n": count,
+        "n + 1": count + 1,
+        "signals": len(fspa.signals),
+        "atoms": len(fspa.atoms),
+        "enemies": len(level.enemies),
+        "movers": len(level.movers),
+        "switches": len(level.switches),
+        "barriers": len(level.barriers),
+    }
+
+
+def shape_of(array: Array, known: Mapping[Size, int]) -> tuple[int, ...]:
+    """The shape of an array, in numbers."""
+    return tuple(size if isinstance(size, int) else known[size] for size in array.shape)
+
+
+def _points(points: list[list[float]]) -> tuple[Point, ...]:
+    return tuple((x, y, z) for x, y, z in points)

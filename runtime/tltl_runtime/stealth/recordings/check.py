@@ -1,0 +1,123 @@
+"""Whether an episode is what it says: judged again by its spec, and played again in its level."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.versions import versions
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor import Monitor
+
+_Difference = tuple[str, object, object]
+"""What differs, what was recorded, and what follows."""
+
+
+def check(episode: Episode) -> tuple[Diagnostic, ...]:
+    """Judge the recorded signals again, step by step: atoms, states, progress, rewards and the end must be equal.
+
+    Nothing is found where all are.  Else TLT0823 for the first step that differs, or what the monitor finds wrong.
+    """
+    try:
+        first = next(_judged(episode), None)
+    except TltlError as error:
+        return error.diagnostics
+    if first is None:
+        return ()
+    step, (what, recorded, follows) = first
+    title = f"step {step} of the recording does not follow from its signals: {what} was recorded as "
+    help_ = "the recording was changed, or comes from another version of tltlc"
+    return (Diagnostic("TLT0823", f"{title}{recorded}, and is {follows}", help=help_),)
+
+
+def resimulate(episode: Episode) -> int | None:
+    """Play the actions again from the seed: the first row that is not the same bit for bit, None where all are.
+
+    Row 0 is the moment of the reset.  Beside the snapshots, signals are compared that the game itself has.  Raises
+    TltlError: TLT0730 without pybullet, which nothing else here needs.
+    """
+    from tltl_runtime.stealth.game import Game
+    from tltl_runtime.stealth.world.physics import WorldError
+
+    names = [(column, signal.name) for column, signal in enumerate(episode.fspa.signals)]
+    row = 0
+    game = None
+    try:
+        game = Game(episode.level)
+        game.reset(episode.seed)
+        own = [(column, name) for column, name in names if name in game.readers]
+        for row, snapshot in enumerate(episode.snapshots):
+            if row:
+                game.step(episode.actions[row - 1].tolist())
+            signals = game.signals()
+            if game.snapshot() != snapshot or any(
+                signals[name] != episode.signals[row, column] for column, name in own
+            ):
+                return row
+    except WorldError:
+        return row
+    finally:
+        if game is not None:
+            game.close()
+    return None
+
+
+def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
+    """Nothing where :func:`resimulate` finds the episode again, else TLT0824 with what may have changed since."""
+    row = resimulate(episode)
+    if row is None:
+        return ()
+    when = f"at step {row}" if row else "from the start"
+    title = f"played again from seed {episode.seed}, the episode is another one {when}"
+    now = versions()
+    changed = [
+        f"{name} {then} (now {now.get(name)})" for name, then in episode.versions.items() if then != now.get(name)
+    ]
+    help_ = (
+        f"it was recorded with {', '.join(changed)}"
+        if changed
+        else "the game's code has changed since, or the recording"
+    )
+    return (Diagnostic("TLT0824", title, help=help_),)
+
+
+def _judged(episode: Episode) -> Iterator[tuple[int, _Difference]]:
+    """What differs, with the number of its step; 0 is the moment of the reset."""
+    names = [signal.name for signal in episode.fspa.signals]
+    monitor = Monitor(episode.fspa, episode.params, episode.reward)
+    count = len(episode.actions)
+    verdict = episode.fspa.states[0].verdict
+    if episode.states[0] or episode.progress[0]:
+        yield 0, ("the start", "another", "state 0 without progress")
+    for row in range(1, count + 1):
+        if monitor.done:
+            yield row, ("its end", "not yet reached", f"step {row - 1}")
+        last = row == count and episode.end != "stopped"
+        step = monitor.step(dict(zip(names, episode.signals[row].tolist(), strict=True)), last=last)
+        verdict = step.verdict
+        pairs: list[_Difference] = [
+            (f"`{atom.name}`", recorded, value)
+            for atom, recorded, value in zip(
+                episode.fspa.atoms, episode.atoms[row - 1].tolist(), monitor.values, strict=True
+            )
+        ]
+        pairs += [
+            ("the state", int(episode.states[row]), step.state),
+            ("the progress", float(episode.progress[row]), step.progress),
+            ("the reward", float(episode.rewards[row - 1]), step.reward),
+        ]
+        yield from ((row, pair) for pair in pairs if pair[1] != pair[2])
+    ends: list[_Difference] = [
+        ("the verdict", episode.verdict, verdict),
+        ("success", episode.success, monitor.success),
+        ("the end", episode.end, _end(monitor, verdict)),
+    ]
+    yield from ((count, pair) for pair in ends if pair[1] != pair[2])
+
+
+def _end(monitor: Monitor, verdict: str) -> str:
+    if not monitor.done:
+        return "stopped"
+    if monitor.success:
+        return "success"
+    return "violation" if verdict == "violated" else "limit"

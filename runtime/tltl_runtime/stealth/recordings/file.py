@@ -1,0 +1,290 @@
+"""The file of an episode: a compressed numpy archive, ``docs/episode-log.md`` describes every array in it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.fault import fault
+from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
+from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.numpy_archive import ArchiveError, read_array, read_members
+from tltl_runtime.stealth.snapshot import BRANCHES
+from tltl_runtime.support.load_errors import Refusals
+from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.core.record import record, replace
+from tltlc.core.source import SourceFile
+from tltlc.io.files import read_bytes
+from tltlc.io.json_text import loads
+from tltlc.io.limits import RECORDED_TEXTS, RECORDING
+from tltlc.io.resources import bounded
+from tltlc.io.writing import write_file
+from tltlc.monitor import RewardOptions
+from tltlc.pipeline import read_artefact
+
+SUFFIX: Final = ".episode.npz"
+FORMAT: Final = "tltl-episode"
+VERSION: Final = 1
+MAX_BYTES: Final = RECORDING.size
+"""Greatest size of a file and of what it holds unpacked, about half a million decisions: 256 MiB."""
+
+_TEXTS: Final = ("meta", "artefact")
+"""The arrays that hold the bytes of a text, UTF-8."""
+
+_REFUSALS: Final = Refusals("an episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
+
+
+@record
+class Names:
+    """What the entries along an axis are called."""
+
+    signals: tuple[str, ...]
+    atoms: tuple[str, ...]
+    enemies: tuple[str, ...]
+    movers: tuple[str, ...]
+    switches: tuple[str, ...]
+    barriers: tuple[str, ...]
+
+
+@record
+class Meta:
+    """What the array ``meta`` holds as JSON: all of an episode that is no array, but for the artefact of its spec."""
+
+    format: str
+    version: int
+    player: str
+    seed: int
+    verdict: Literal["holding", "pending", "satisfied", "violated"]
+    success: bool
+    end: End
+    params: Mapping[str, float]
+    reward: RewardOptions
+    versions: Mapping[str, str]
+    modes: tuple[str, ...]
+    names: Names
+    level: Level
+
+
+def file_stem(episode: Episode) -> str:
+    """What the files of an episode are called, but for their endings: ``LEVEL-VARIANT-SEED``."""
+    return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
+
+
+def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Collection[str] = ()) -> Path:
+    """Return a path for an episode that overwrites nothing: ``STEM.episode.npz``, else ``STEM-2`` and so on.
+
+    ``pictures`` are the endings of files that are written beside the episode, such as ``.png``.  A file that holds
+    exactly this ``content`` may be written again, and so may its pictures.
+    """
+    name, number = stem, 1
+    while not _is_free(folder, name, content, pictures):
+        number += 1
+        name = f"{stem}-{number}"
+    return folder / f"{name}{SUFFIX}"
+
+
+def _is_free(folder: Path, name: str, content: bytes | None, pictures: Collection[str]) -> bool:
+    path = folder / f"{name}{SUFFIX}"
+    if os.path.lexists(path):
+        return path.is_file() and path.read_bytes() == content
+    return not any(os.path.lexists(folder / f"{name}{ending}") for ending in pictures)
+
+
+def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
+    """Write an episode to a file, which is there as a whole or not at all; equal episodes give equal bytes.
+
+    Raises:
+        TltlError: TLT0005 where the system refuses.
+        ValueError: the episode's arrays are not of the shapes that its level and its automaton ask for.
+    """
+    write_file(Path(path), to_bytes(episode))
+
+
+@bounded()
+def read_episode(path: str | os.PathLike[str]) -> Episode:
+    """The episode in a file.
+
+    Raises:
+        TltlError: TLT0001 it cannot be read; TLT0820 it is no episode, or is damaged; TLT0821 of another version;
+            TLT0822 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0604.
+    """
+    name = os.fspath(path)
+    return from_bytes(read_bytes(path, name, MAX_BYTES), name)
+
+
+def to_bytes(episode: Episode) -> bytes:
+    """What :func:`write_episode` writes."""
+    meta = json.dumps(to_json(_meta(episode)), ensure_ascii=False, allow_nan=False)
+    (artefact,) = emit("json", episode.fspa).values()
+    texts = {"meta": meta, "artefact": str(artefact)}
+    arrays: dict[str, Any] = {name: np.frombuffer(text.encode(), dtype=np.uint8) for name, text in texts.items()}
+    arrays |= to_arrays(episode, _modes(episode))
+    written = BytesIO()
+    np.savez_compressed(written, **arrays)
+    return written.getvalue()
+
+
+def from_bytes(data: bytes, name: str) -> Episode:
+    """The episode in the bytes of a file, which messages call ``name``; errors as of :func:`read_episode`."""
+    members = _members(data, name)
+    meta = _read_meta(members, name)
+    fspa = read_artefact(SourceFile(f"{name}/artefact", _text(members, "artefact", name)))
+    unpacked = _read_arrays(members, meta.level, fspa, name)
+    _check_indices(unpacked, meta, fspa, name)
+    return Episode(
+        level=meta.level,
+        fspa=fspa,
+        params=meta.params,
+        player=meta.player,
+        seed=meta.seed,
+        actions=unpacked["actions"],
+        snapshots=snapshots(unpacked, meta.modes),
+        signals=unpacked["signals"],
+        atoms=unpacked["atoms"],
+        states=unpacked["states"],
+        progress=unpacked["progress"],
+        rewards=unpacked["rewards"],
+        verdict=meta.verdict,
+        success=meta.success,
+        end=meta.end,
+        reward=meta.reward,
+        versions=meta.versions,
+    )
+
+
+def _meta(episode: Episode) -> Meta:
+    level = episode.level
+    return Meta(
+        format=FORMAT,
+        version=VERSION,
+        player=episode.player,
+        seed=episode.seed,
+        verdict=episode.verdict,  # type: ignore[arg-type]
+        success=episode.success,
+        end=episode.end,
+        params=episode.params,
+        reward=episode.reward,
+        versions=episode.versions,
+        modes=_modes(episode),
+        names=_names(level, episode.fspa),
+        # Where the spec lay says nothing to others.
+        level=replace(level, spec=level.spec.replace("\\", "/").rpartition("/")[2]),
+    )
+
+
+def _modes(episode: Episode) -> tuple[str, ...]:
+    return tuple(sorted({mode for shot in episode.snapshots for mode in shot.modes}))
+
+
+def _names(level: Level, fspa: Fspa) -> Names:
+    groups = (fspa.signals, fspa.atoms, level.enemies, level.movers, level.switches, level.barriers)
+    return Names(*(tuple(each.name for each in group) for group in groups))
+
+
+# --- reading what nobody vouches for ----------------------------------------------------------------
+
+
+def _members(data: bytes, name: str) -> dict[str, bytes]:
+    """The files of the archive that an episode has, by the names of their arrays."""
+    if len(data) > MAX_BYTES:
+        raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+    try:
+        members = read_members(data, [*_TEXTS, *(array.name for array in ARRAYS)], MAX_BYTES)
+    except ArchiveError as error:
+        raise _REFUSALS.unreadable(name, str(error)) from None
+    if "meta" not in members:
+        raise _REFUSALS.unreadable(name, "it is an archive of something else")
+    return members
+
+
+def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
+    text = _text(members, "meta", name)
+    try:
+        document = loads(text, RECORDED_TEXTS["meta"])
+    except (ValueError, RecursionError):
+        raise _REFUSALS.broken(name, "`meta` is not JSON") from None
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise _REFUSALS.unreadable(name, "it is an archive of something else")
+    _REFUSALS.check_version(name, document.get("version"), VERSION)
+    try:
+        meta = from_json(Meta, document, "meta")
+    except (RecordJsonError, RecursionError) as error:
+        raise _REFUSALS.broken(name, str(error)) from None
+    if wrong := fault(meta.level):
+        raise _REFUSALS.broken(name, f"its level is unfit: {wrong}")
+    return meta
+
+
+def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
+    data = _array(members, array, name)
+    if data.dtype != np.uint8 or data.ndim != 1:
+        raise _REFUSALS.broken(name, f"the array `{array}` holds no bytes")
+    limit = RECORDED_TEXTS[array]
+    if data.size > limit.size or np.count_nonzero(data == ord(",")) >= (limit.values or 0):
+        most = f"{limit.size >> 20} MiB or {limit.values:,} values"
+        raise _REFUSALS.broken(name, f"the array `{array}` holds more than {most}")
+    try:
+        return data.tobytes().decode()
+    except UnicodeDecodeError:
+        raise _REFUSALS.broken(name, f"the array `{array}` is no UTF-8 text") from None
+
+
+def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
+    """The arrays, of the shapes and within the ranges that they must have."""
+    found = {array.name: _array(members, array.name, name) for array in ARRAYS}
+    actions = found["actions"]
+    known = sizes(level, fspa, actions.shape[0] if actions.ndim else 0)
+    for array in ARRAYS:
+        _check(found[array.name], array, shape_of(array, known), name)
+    return found
+
+
+def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
+    """An array of whatever shape."""
+    if array not in members:
+        raise _REFUSALS.broken(name, f"the array `{array}` is missing")
+    try:
+        return read_array(members[array])
+    except ArchiveError as error:
+        raise _REFUSALS.broken(name, f"the array `{array}`: {error}") from None
+
+
+def _check(found: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
+    if found.dtype != np.dtype(array.dtype) or found.shape != shape:
+        expected = f"{array.dtype} of shape {shape}"
+        raise _REFUSALS.broken(
+            name, f"the array `{array.name}` is {found.dtype.str} of shape {found.shape}, not {expected}"
+        )
+    if found.dtype == np.bool_:
+        good = bool((found.view(np.uint8) <= 1).all())
+    else:
+        # What is no number is in no range.
+        good = bool(((found >= array.low) & (found <= array.high) & np.isfinite(found)).all())
+    if not good:
+        raise _REFUSALS.broken(name, f"the array `{array.name}` has values that it cannot have")
+
+
+def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
+    """That everything that counts something counts what there is."""
+    limits = [
+        ("actions", np.array(BRANCHES)),
+        ("states", np.array(len(fspa.states))),
+        ("enemy_mode", np.array(len(meta.modes))),
+    ]
+    for array, limit in limits:
+        if bool((arrays[array] >= limit).any()):
+            raise _REFUSALS.broken(name, f"the array `{array}` has values that it cannot have")
+    if meta.names != _names(meta.level, fspa):
+        raise _REFUSALS.broken(name, "`meta.names` are not those of the level and of the spec")
+    if meta.seed < 0:
+        raise _REFUSALS.broken(name, "`meta.seed` is below 0")

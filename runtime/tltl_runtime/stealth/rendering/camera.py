@@ -1,0 +1,130 @@
+"""Where a picture of a level is taken from, and what each of its pixels looks at."""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin, tan
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.level import Level, Point
+from tltlc.core.record import record
+
+View = Literal["third_person", "top_down", "overview"]
+VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")
+
+SMALLEST, LARGEST = 16, 4096
+"""The least and the greatest width and height of a picture, in pixels; pybullet ends the process beyond."""
+
+_FOLLOW = (0.0, -6.6, 8.4)
+"""From the player to the eye that follows it: south of it and above, so that north is up in every view."""
+_AHEAD = (0.0, 0.6, 0.6)
+"""From the player's feet to what that eye looks at."""
+_FIELD = 50.0
+_TOP_FIELD = 8.0
+"""A narrow field from far away: walls hardly lean outwards."""
+_MARGIN = 1.03
+_OVERVIEW_FIELD = 40.0
+_EDGE = 0.015
+"""The part of the overview that stays free at each side."""
+_OBLIQUE = 1.05
+"""How much higher than it is far back the eye of the overview is."""
+
+
+@record
+class Camera:
+    """An eye that looks from ``eye`` to ``target``, ``field`` degrees high; lengths in metres.
+
+    ``up`` is what is up in the picture.  Pictures show what is from ``near`` to ``far``.
+    """
+
+    eye: Point
+    target: Point
+    field: float
+    up: Point = (0.0, 0.0, 1.0)
+    near: float = 0.5
+    far: float = 150.0
+
+
+def camera(level: Level, view: View, player: Point, aspect: float) -> Camera:
+    """The camera of a view; ``aspect`` is the picture's width over its height, ``player`` where the feet are.
+
+    ``third_person`` follows the player from the south, ``top_down`` and ``overview`` (from the south, oblique) show
+    the entire level.
+    """
+    if view == "third_person":
+        return Camera(_plus(player, _FOLLOW), _plus(player, _AHEAD), _FIELD)
+    if view == "top_down":
+        return _top_down(level, aspect)
+    return _overview(level, aspect)
+
+
+def check_size(size: object) -> tuple[int, int]:
+    """Width and height of a picture; raises ValueError where that is no pair of whole numbers within the range."""
+    match size:
+        case (int(width), int(height)) if all(SMALLEST <= side <= LARGEST for side in (width, height)):
+            return width, height
+    raise ValueError(f"a picture's size is (width, height) in pixels, each from {SMALLEST} to {LARGEST}, not {size!r}")
+
+
+def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
+    """For each pixel the way from the eye that is one metre of depth: (height, width, 3)."""
+    ahead, right, up = _axes(camera)
+    half = tan(np.radians(camera.field) / 2)
+    x = (2 * (np.arange(width) + 0.5) / width - 1) * half * width / height
+    y = (1 - 2 * (np.arange(height) + 0.5) / height) * half
+    rows = (ahead + y[:, None] * up).astype(np.float32)
+    columns = (x[:, None] * right).astype(np.float32)
+    lines: NDArray[np.float32] = rows[:, None] + columns
+    return lines
+
+
+def pixels(camera: Camera, points: NDArray[np.float64], width: int, height: int) -> NDArray[np.float64]:
+    """Where points (n, 3) appear, in pixels from the upper left corner: (n, 2); all must lie before the eye."""
+    ahead, right, up = _axes(camera)
+    seen = points - np.array(camera.eye)
+    half = tan(np.radians(camera.field) / 2)
+    depth = np.maximum(seen @ ahead, camera.near)
+    x = seen @ right / depth / (half * width / height)
+    y = seen @ up / depth / half
+    return np.stack([(x + 1) / 2 * width, (1 - y) / 2 * height], axis=1)
+
+
+def _top_down(level: Level, aspect: float) -> Camera:
+    """From above the middle, so high that floor and wall tops fit."""
+    low, high = level.bounds.low, level.bounds.high
+    x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
+    needed = max(high[1] - low[1], (high[0] - low[0]) / aspect) * _MARGIN
+    eye = (x, y, high[2] + needed / 2 / tan(np.radians(_TOP_FIELD) / 2))
+    return Camera(eye, (x, y, 0.0), _TOP_FIELD, up=(0.0, 1.0, 0.0), near=eye[2] - high[2] - 1, far=eye[2] + 5)
+
+
+def _overview(level: Level, aspect: float) -> Camera:
+    """From the south and above, as near as all corners of the level still fit."""
+    low, high = level.bounds.low, level.bounds.high
+    x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
+    corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2])])
+    size = hypot(high[0] - low[0], high[1] - low[1])
+    for away in np.arange(size * 0.4, size * 4, size * 0.02).tolist():
+        eye = (x, y - away, away * _OBLIQUE)
+        # How high in the picture a corner is follows from its angle alone: half of them lie above the middle one.
+        angles = np.arctan2(corners[:, 2] - eye[2], corners[:, 1] - eye[1])
+        ahead = float(angles.min() + angles.max()) / 2
+        seen = Camera(eye, (x, eye[1] + cos(ahead), eye[2] + sin(ahead)), _OVERVIEW_FIELD, far=away * 4)
+        where = pixels(seen, corners, 1000, round(1000 / aspect)) / (1000, 1000 / aspect)
+        if where.min() >= _EDGE and where.max() <= 1 - _EDGE:
+            break
+    return seen
+
+
+def _axes(camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    ahead = np.subtract(camera.target, camera.eye)
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, camera.up)
+    right = right / np.linalg.norm(right)
+    return ahead, right, np.cross(right, ahead)
+
+
+def _plus(a: Point, b: Point) -> Point:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]

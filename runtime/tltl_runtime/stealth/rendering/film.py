@@ -1,0 +1,182 @@
+"""An episode as moving pictures: each frame a view of the game and a strip that says how the automaton judges it."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from math import cos, sin
+from pathlib import Path
+from typing import Final, Literal
+
+import matplotlib
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.summary import Notation
+from tltl_runtime.stealth.rendering.camera import View as Rendered
+from tltl_runtime.stealth.rendering.film_file import Picture
+from tltl_runtime.stealth.rendering.interpolation import between
+from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
+from tltl_runtime.stealth.rendering.render import Renderer
+from tltl_runtime.stealth.snapshot import Snapshot
+
+View = Literal["third_person", "top_down", "overview", "plan"]
+
+Moment = tuple[int, Snapshot]
+Pixel = Callable[[Point], tuple[float, float]]
+
+STRIP: Final = 60
+"""Height of the strip below the view, in pixels."""
+
+_INSTANT: Final = 1e-6
+"""Seconds that count as none."""
+
+_TEXT: Final = 12
+_BAR: Final = 90
+"""Greatest width of a bar, in pixels."""
+_BARS_FROM: Final = 80
+_GAP: Final = 6
+_LINES: Final = (25, 41)
+"""Where in the strip the lines stand that say what remains."""
+
+_PAPER: Final = "#0f172a"
+_PALE: Final = "#e2e8f0"
+_EMPTY: Final = "#334155"
+_GREEN: Final = "#22c55e"
+_RED: Final = "#ef4444"
+MODES: Final = {"patrol": "#7f1d1d", "chase": "#ff0000", "search": "#f97316", "return": "#64748b"}
+_FONT: Final = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
+
+
+def frames(
+    episode: Episode, times: Sequence[float], view: View, size: tuple[int, int], notation: Notation = "english"
+) -> Iterator[Picture]:
+    """One picture for each of ``times``, in seconds from the reset and rising, ``size`` pixels wide and high, RGB.
+
+    Between two decisions bodies are on their ways, and the automaton is where the earlier one left it.
+    """
+    width, height = size
+    font = ImageFont.truetype(str(_FONT), _TEXT)
+    moments = [_moment(episode, time) for time in times]
+    inner = (width, height - STRIP)
+    pictures = _plans(episode, moments, inner) if view == "plan" else _rendered(episode, moments, view, inner)
+    for moment, picture in zip(moments, pictures, strict=True):
+        yield _framed(picture, episode, moment, font, notation)
+
+
+def _moment(episode: Episode, time: float) -> Moment:
+    """The number of the last decision before a time, and what there is to see then."""
+    shots = episode.snapshots
+    row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
+    since = time - shots[row].time
+    if since <= _INSTANT or row == len(shots) - 1:
+        return row, shots[row]
+    return row, between(shots[row], shots[row + 1], since / (shots[row + 1].time - shots[row].time))
+
+
+def _rendered(episode: Episode, moments: Sequence[Moment], view: Rendered, size: tuple[int, int]) -> Iterator[Picture]:
+    renderer = Renderer(episode.level, *size)
+    try:
+        for _, shot in moments:
+            yield renderer.frame(shot, view)
+    finally:
+        renderer.close()
+
+
+# --- the plan with what moves -----------------------------------------------------------------------
+
+
+def _plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
+    """The level's plan with the way so far and everybody on it."""
+    empty, pixel = backdrop(episode.level, size)
+    way = Image.fromarray(empty)
+    draw = ImageDraw.Draw(way)
+    places = [pixel(shot.player.position) for shot in episode.snapshots]
+    drawn = moments[0][0]
+    for row, shot in moments:
+        for before in range(drawn, row):
+            draw.line(places[before : before + 2], fill=state_colour(int(episode.states[before])), width=2)
+        drawn = row
+        picture = way.copy()
+        _populate(picture, pixel, episode.level, shot, state_colour(int(episode.states[row])))
+        yield np.asarray(picture)
+
+
+def _populate(picture: Image.Image, pixel: Pixel, level: Level, shot: Snapshot, colour: str) -> None:
+    """Draw what is shut, what moves, the enemies and the player, who is of this colour."""
+    draw = ImageDraw.Draw(picture)
+    metre = pixel((1.0, 0.0, 0.0))[0] - pixel((0.0, 0.0, 0.0))[0]
+    for barrier, is_open in zip(level.barriers, shot.open, strict=True):
+        if not is_open:
+            draw.rectangle(_corners(pixel, barrier.box.low, barrier.box.high), fill=BARRIERS[barrier.kind])
+    for mover, (x, y, z) in zip(level.movers, shot.movers, strict=True):
+        half_x, half_y = mover.size[0] / 2, mover.size[1] / 2
+        box = _corners(pixel, (x - half_x, y - half_y, z), (x + half_x, y + half_y, z))
+        draw.rectangle(box, fill="#7c3aed")
+    for place, yaw, mode in zip(shot.enemies, shot.yaws, shot.modes, strict=True):
+        _figure(draw, pixel(place), yaw, 0.35 * metre, MODES.get(mode, _RED))
+    radius = (0.22 if shot.player.crouching else 0.35) * metre
+    _figure(draw, pixel(shot.player.position), shot.player.yaw, radius, colour)
+
+
+def _corners(pixel: Pixel, low: Point, high: Point) -> tuple[float, ...]:
+    (left, bottom), (right, top) = pixel(low), pixel(high)
+    return left, top, right, bottom
+
+
+def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radius: float, colour: str) -> None:
+    """A body from above, with a line to where it looks."""
+    x, y = at
+    draw.line((x, y, x + 2 * radius * cos(yaw), y - 2 * radius * sin(yaw)), fill=_PAPER, width=2)
+    draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour, outline=_PAPER)
+
+
+# --- the strip --------------------------------------------------------------------------------------
+
+
+def _framed(
+    view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont, notation: Notation
+) -> Picture:
+    """The view with the strip below it: time, bars of progress and health, and what remains to be satisfied."""
+    height, width, _ = view.shape
+    picture = Image.new("RGB", (width, height + STRIP), _PAPER)
+    picture.paste(Image.fromarray(view), (0, 0))
+    draw = ImageDraw.Draw(picture)
+    row, shot = moment
+    state = episode.fspa.states[int(episode.states[row])]
+    top = height + 5
+    draw.text((8, top), f"{shot.time:6.2f} s", _PALE, font)
+    bars = (("progress", float(episode.progress[row]), _GREEN), ("health", episode.snapshots[row].health, _RED))
+    words = sum(int(font.getlength(text)) + 3 * _GAP for text in ("progress", "health", episode.end))
+    bar = max(2 * _GAP, min(_BAR, (width - _BARS_FROM - words) // 2))
+    x = _BARS_FROM
+    for name, share, colour in bars:
+        draw.text((x, top), name, _PALE, font)
+        x += int(font.getlength(name)) + _GAP
+        draw.rectangle((x, top + 3, x + bar, top + 12), fill=_EMPTY)
+        if share > 0.0:
+            draw.rectangle((x, top + 3, x + round(bar * share), top + 12), fill=colour)
+        x += bar + 2 * _GAP
+    if row == len(episode.actions):
+        draw.text((x, top), episode.end, _PALE, font)
+    draw.rectangle((8, height + _LINES[0] + 2, 16, height + _LINES[0] + 12), fill=state_colour(state.id))
+    lines = _fitting(getattr(state.label, notation), width - 30, font)
+    for line, y in zip(lines, _LINES, strict=False):
+        draw.text((22, height + y), line, _PALE, font)
+    return np.asarray(picture)
+
+
+def _fitting(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
+    """As much of the text as there is room for in the lines of the strip."""
+    lines: list[str] = []
+    while text and len(lines) < len(_LINES):
+        line = text
+        while font.getlength(line) > width:
+            line = line.rpartition(" ")[0] if " " in line else line[:-1]
+        text = text[len(line) :].lstrip()
+        lines.append(line)
+    if text:
+        lines[-1] = lines[-1][:-1] + "…"
+    return lines

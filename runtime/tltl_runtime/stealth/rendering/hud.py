@@ -1,0 +1,112 @@
+"""What a player reads on the screen: health and stamina, whether it is seen, what is still to be done, and the end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import wrap
+from typing import Any, Final, Literal
+
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.recordings.cause import Cause, Kind
+from tltl_runtime.stealth.snapshot import Snapshot
+from tltl_runtime.stealth.world.player import DECISION
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record, replace
+
+Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
+"""How something is to be taken, which a screen shows by colour."""
+
+KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
+
+_TITLES: Final[dict[Kind, str]] = {
+    "success": "success",
+    "killed": "you died",
+    "violated": "the spec is violated",
+    "limit": "time is up",
+    "no way": "time is up",
+    "stopped": "stopped",
+}
+_WIDTH: Final = 36
+"""Letters in a line beside the picture."""
+_LONG: Final = 72
+"""Letters in a line below a title."""
+_MOST_LINES: Final = 10
+"""For what remains, beside the picture."""
+
+
+@record
+class Bar:
+    """A named number in [0, 1]."""
+
+    name: str
+    value: float
+    tone: Tone
+
+
+@record
+class Line:
+    """A line of text."""
+
+    text: str
+    tone: Tone = "plain"
+
+
+@record
+class Hud:
+    """The head-up display: bars and lines, and where the game stands still a title with lines below it."""
+
+    bars: tuple[Bar, ...]
+    lines: tuple[Line, ...]
+    title: str = ""
+    tone: Tone = "plain"
+    below: tuple[str, ...] = ()
+
+
+def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
+    """What there is to read while the game runs; ``info`` is that of the environment's last step or reset."""
+    bars = (
+        Bar("health", snapshot.health, "good" if snapshot.health > 0.5 else "bad"),
+        Bar("stamina", snapshot.player.stamina, "plain"),
+        Bar("progress", info["progress"], "warn"),
+    )
+    lines = [Line(f"{_clock(snapshot.time, fspa)}   {info['verdict']}", "quiet")]
+    if snapshot.enemies:
+        lines.append(_seen(snapshot))
+    lines += [Line(text) for text in _shortened(fspa.states[info["state"]].label.english)]
+    return Hud(bars, tuple(lines))
+
+
+def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
+    """The screen before the first key."""
+    goal = wrap(fspa.formula.english, _LONG)
+    below = (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin.")
+    return replace(shown, title=f"{level.name} {level.variant}", below=below)
+
+
+def ending(shown: Hud, why: Cause, file: str) -> Hud:
+    """The screen after the last step: how it ended, and ``file``, where it was recorded."""
+    tone: Tone = "good" if why.kind == "success" else "bad"
+    below = (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
+    return replace(shown, title=_TITLES[why.kind], tone=tone, below=below)
+
+
+def _clock(seconds: float, fspa: Fspa) -> str:
+    """The time, and how much of it is left where the spec has a limit."""
+    if fspa.limit_steps is None:
+        return f"{seconds:.1f} s"
+    return f"{seconds:.1f} s, {max(0.0, fspa.limit_steps * DECISION - seconds):.0f} s left"
+
+
+def _seen(snapshot: Snapshot) -> Line:
+    if "chase" in snapshot.modes:
+        return Line("you are chased", "bad")
+    if any(snapshot.sees):
+        return Line("you are in sight", "warn")
+    return Line("they search for you", "warn") if "search" in snapshot.modes else Line("nobody sees you", "good")
+
+
+def _shortened(text: str) -> list[str]:
+    lines = wrap(text, _WIDTH)
+    if len(lines) <= _MOST_LINES:
+        return lines
+    return [*lines[: _MOST_LINES - 1], f"{lines[_MOST_LINES - 1][: _WIDTH - 2]} …"]

@@ -1,0 +1,294 @@
+"""A level from above, with the way of an episode through it, coloured by the automaton's state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from io import BytesIO
+from itertools import pairwise
+from math import ceil
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch, Rectangle
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.capabilities.reach import Reach
+from tltl_runtime.stealth.enemies.grid import grid_of
+from tltl_runtime.stealth.level import Box, Enemy, Level, Point
+from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.summary import Notation
+from tltlc.automaton.fspa import Fspa
+
+SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
+"""By kind, as :data:`BARRIERS`."""
+BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
+_SOLID_NAMES: Final = {"floor": "floor", "platform": "platform", "low": "low obstacle", "wall": "wall"}
+_BARRIER_NAMES: Final = {"solid": "gate", "laser": "laser"}
+_STATES: Final = ("#2563eb", "#9333ea", "#0d9488", "#ca8a04", "#db2777", "#65a30d", "#0284c7", "#ea580c")
+INK: Final = "#0f172a"
+SWITCH, EXIT, MOVER, ROUTE = "#facc15", "#16a34a", "#7c3aed", "#dc2626"
+_UNREACHED: Final = (0.86, 0.0, 0.0, 0.3)
+ENDS: Final[dict[End, tuple[str, str]]] = {
+    "success": ("D", "#16a34a"),
+    "violation": ("X", "#dc2626"),
+    "limit": ("s", "#64748b"),
+    "stopped": ("o", "#64748b"),
+}
+"""Marker and colour."""
+
+DPI: Final = 100
+_METRES_PER_INCH: Final = 2.0
+_LONGEST_SIDE: Final = 40.0
+"""Of a picture, in inches: larger levels are drawn smaller."""
+
+LINE: Final = 0.22
+"""Height of a line of the legend, in inches."""
+
+_COLUMN: Final = 2.0
+"""Width of a column of the key to a level's colours, in inches."""
+
+_ROOMY: Final = 6.0
+"""Inches to a side from which letters have their full size, in plans of less than their natural size."""
+
+MOST_LISTED: Final = 12
+"""Of the states of an episode, as many are in the legend."""
+
+LETTERS_PER_INCH: Final = 12
+"""Of a line of the legend; what is longer is cut."""
+
+
+def draw_level(level: Level, reach: Reach) -> bytes:
+    """The plan of a level as a PNG; red lies over all that nobody can stand on."""
+    width, height = natural_size(level)
+    key = _key(level)
+    columns = max(1, int(width / _COLUMN))
+    figure = Figure(figsize=(width, height + (ceil(len(key) / columns) + 1) * LINE), dpi=DPI, layout="constrained")
+    axes = level_axes(figure, level)
+    _add_reach(axes, reach)
+    figure.legend(handles=key, loc="outside lower left", ncols=columns, fontsize=8, frameon=False)
+    return png(figure)
+
+
+def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
+    """The plan of an episode as a PNG, ``size`` pixels wide and high: its way, where the state changed, how it ended.
+
+    The legend says what remained to be satisfied in each state.
+    """
+    states = episode.states.tolist()
+    path = [shot.player.position for shot in episode.snapshots]
+    visited = list(dict.fromkeys(states))[:MOST_LISTED]
+    below = (len(visited) + 2) * LINE
+    width, height = natural_size(episode.level)
+    inches = (size[0] / DPI, size[1] / DPI) if size else (width, height + below)
+    figure = Figure(figsize=inches, dpi=DPI, layout="constrained")
+    axes = level_axes(figure, episode.level, start=False)
+    shrunk = _shrunk(figure, episode.level)
+    title = f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
+    axes.set_title("")
+    # A letter is about 0.65 of its height wide.
+    figure.suptitle(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
+    _add_way(axes, path, states)
+    dot = 9 * shrunk
+    marks = [_mark(axes, path[0], "o", "white", "start", dot)]
+    # The mark of the end, which names its state, lies over all others.
+    for row in (row for row in range(1, len(states) - 1) if states[row] != states[row - 1]):
+        _mark(axes, path[row], "o", state_colour(states[row]), str(states[row]), dot)
+        axes.annotate(str(states[row]), path[row][:2], color="white", fontsize=6, ha="center", va="center", zorder=7)
+    died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
+    if died is not None:
+        marks.append(_mark(axes, path[died], "P", "white", "without health", 1.6 * dot))
+    marks.append(_mark(axes, path[-1], *ENDS[episode.end], f"end: {episode.end}, state {states[-1]}", dot))
+    marks[-1].set_zorder(8)
+    letters = int(inches[0] * LETTERS_PER_INCH / shrunk)
+    lines = [
+        Line2D(
+            [], [], color=state_colour(state), linewidth=3, label=state_label(episode.fspa, state, letters, notation)
+        )
+        for state in visited
+    ]
+    figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8 * shrunk, frameon=False)
+    return png(figure)
+
+
+def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
+    """The plan of a level without its moving parts, (height, width, 3), and where in it a place is, in pixels."""
+    figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
+    axes = level_axes(figure, level, moving=False, start=False)
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    transform = axes.transData
+
+    def pixel(place: Point) -> tuple[float, float]:
+        x, y = transform.transform(place[:2])
+        return float(x), size[1] - float(y)
+
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy(), pixel
+
+
+def state_colour(state: int) -> str:
+    """The colour of a state of the automaton, as ``#rrggbb``."""
+    return _STATES[state % len(_STATES)]
+
+
+def _add_reach(axes: Any, reach: Reach) -> None:
+    """Red over the cells without ground that can be reached."""
+    rows, columns = reach.ground.shape
+    west, south = reach.origin
+    red = np.where(reach.ground[..., None], 0.0, _UNREACHED)
+    extent = (west, west + columns * reach.cell, south, south + rows * reach.cell)
+    axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
+
+
+def _key(level: Level) -> list[Any]:
+    """What the colours of a level's plan mean, those that there are in it."""
+    kinds = {solid.kind for solid in level.solids}
+    handles: list[Any] = [Patch(facecolor=SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in SOLIDS if kind in kinds]
+    barriers = {barrier.kind for barrier in level.barriers}
+    handles += [Patch(facecolor=BARRIERS[kind], label=_BARRIER_NAMES[kind]) for kind in BARRIERS if kind in barriers]
+    handles.append(Patch(facecolor=_UNREACHED, label="nobody stands there"))
+    handles.append(Line2D([], [], marker="o", linestyle="", color=INK, label="start"))
+    if level.switches:
+        handles.append(Line2D([], [], marker="o", linestyle="", color=SWITCH, markersize=10, label="switch"))
+    if level.exits:
+        handles.append(exit_mark())
+    if level.enemies:
+        handles.append(Line2D([], [], linestyle="--", color=ROUTE, label="route of an enemy"))
+    if level.movers:
+        handles.append(Line2D([], [], linestyle=":", color=MOVER, label="way of a moving obstacle"))
+    return handles
+
+
+def exit_mark() -> Line2D:
+    """The star of an exit, for legends."""
+    return Line2D([], [], marker="*", linestyle="", color=EXIT, markersize=12, label="exit")
+
+
+def natural_size(level: Level) -> tuple[float, float]:
+    """Width and height in inches."""
+    (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
+    width, height = (x1 - x0) / _METRES_PER_INCH, (y1 - y0) / _METRES_PER_INCH
+    shrink = min(1.0, _LONGEST_SIDE / max(width, height))
+    return width * shrink, height * shrink + 0.4
+
+
+def _shrunk(figure: Figure, level: Level) -> float:
+    """How much smaller letters are than in a plan of the natural size, so that a small one has room for them."""
+    roomy = np.minimum(natural_size(level), _ROOMY)
+    return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
+
+
+def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
+    """Axes in metres with all that a level has; what moves is drawn where it begins.
+
+    Without room for letters of full size, only switches and exits have their names.
+    """
+    (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
+    axes: Any = figure.add_subplot(
+        xlim=(x0, x1),
+        ylim=(y0, y1),
+        aspect="equal",
+        title=f"{level.name} {level.variant}",
+        xlabel="x, m",
+        ylabel="y, m",
+    )
+    shrunk = _shrunk(figure, level)
+    roomy, letters = shrunk == 1.0, 8 * shrunk
+    axes.tick_params(labelsize=10 * shrunk)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.label.set_size(10 * shrunk)
+    for solid in sorted(level.solids, key=lambda solid: solid.box.high[2]):
+        axes.add_patch(_area(solid.box, facecolor=SOLIDS[solid.kind], edgecolor="#94a3b8", linewidth=0.4))
+    for barrier in level.barriers:
+        axes.add_patch(_area(barrier.box, facecolor=BARRIERS[barrier.kind], alpha=0.8 if moving else 0.25))
+        if roomy:
+            _name(axes, barrier.name, _middle(barrier.box), letters)
+    for mover in level.movers:
+        axes.plot(*_flat(mover.path), color=MOVER, linestyle=":", linewidth=1.5)
+        if moving and roomy:
+            _name(axes, mover.name, mover.path[0], letters)
+    for enemy in level.enemies:
+        axes.plot(*_flat(patrol(level, enemy)), color=ROUTE, linestyle="--", linewidth=1.0)
+        if moving and roomy:
+            _name(axes, enemy.name, enemy.route[0], letters)
+    for switch in level.switches:
+        axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor=SWITCH, alpha=0.5))
+        _name(axes, switch.name, switch.position, letters)
+    for way_out in level.exits:
+        axes.plot(*way_out.position[:2], marker="*", markersize=14 * shrunk, color=EXIT)
+        _name(axes, way_out.name, way_out.position, letters)
+    if start:
+        axes.plot(*level.start.position[:2], marker="o", markersize=7, color=INK)
+    return axes
+
+
+def patrol(level: Level, enemy: Enemy) -> list[tuple[float, float]]:
+    """The way that an enemy walks round, past what stands on the straight line, while all barriers are shut."""
+    floor = grid_of(level).floor(range(len(level.barriers)))
+    route = [point[:2] for point in (*enemy.route, enemy.route[0])]
+    way = route[:1]
+    for goal in route[1:]:
+        while (here := floor.towards(way[-1], goal)) not in (None, way[-1], goal):
+            way.append(here)
+        way.append(goal)
+    return way
+
+
+def _add_way(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
+    pieces = [(one[:2], other[:2]) for one, other in pairwise(path)]
+    colours = [state_colour(state) for state in states[: len(pieces)]]
+    axes.add_collection(LineCollection(pieces, colors=colours, linewidths=2.0, capstyle="round", zorder=4))
+
+
+def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: float) -> Any:
+    (mark,) = axes.plot(
+        *place[:2],
+        marker=marker,
+        markersize=size,
+        markerfacecolor=colour,
+        markeredgecolor=INK,
+        linestyle="",
+        label=label,
+        zorder=6,
+    )
+    return mark
+
+
+def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
+    """A state in the legend: its number, what remains to be satisfied, and its verdict where that is settled."""
+    known = fspa.states[state]
+    text = getattr(known.label, notation)
+    if len(text) > letters:
+        text = text[: letters - 1] + "…"
+    settled = f" ({known.verdict})" if known.verdict in ("satisfied", "violated") and notation != "english" else ""
+    # matplotlib reads what stands between dollars as mathematics.
+    return f"state {state}: {text}{settled}".replace("$", r"\$")
+
+
+def png(figure: Figure) -> bytes:
+    """The figure as a PNG; equal figures give equal bytes."""
+    written = BytesIO()
+    figure.savefig(written, format="png", dpi=DPI, metadata={"Software": None})
+    return written.getvalue()
+
+
+def _area(box: Box, **style: Any) -> Rectangle:
+    (x0, y0, _), (x1, y1, _) = box.low, box.high
+    return Rectangle((x0, y0), x1 - x0, y1 - y0, **style)
+
+
+def _middle(box: Box) -> Point:
+    (x0, y0, z0), (x1, y1, _) = box.low, box.high
+    return (x0 + x1) / 2, (y0 + y1) / 2, z0
+
+
+def _flat(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
+    listed = list(points)
+    return [point[0] for point in listed], [point[1] for point in listed]
+
+
+def _name(axes: Any, name: str, place: Point, size: float) -> None:
+    axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=size, color=INK)

@@ -1,0 +1,35 @@
+"""Folders that belong to one process at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import reason
+from tltlc.io.locking import try_lock
+
+_LOCK: Final = ".lock"
+
+
+@contextmanager
+def held(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
+    """Within, no other process holds the folder, which is made where it is missing.
+
+    The system lets go of it when the process ends, however it does.
+
+    Raises:
+        TltlError: TLT0005, with ``advice``, where nothing can be written there; ``busy`` where another process has it.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / _LOCK).open("a+b")
+    except (OSError, ValueError) as error:
+        title = f"cannot write into `{folder}`: {reason(error)}"
+        raise TltlError([Diagnostic("TLT0005", title, help=advice)]) from None
+    with file:
+        if not try_lock(file):
+            raise TltlError([busy])
+        yield

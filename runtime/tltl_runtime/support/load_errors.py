@@ -1,0 +1,40 @@
+"""What is said of a file that cannot be taken for what it should hold: nobody vouches for it."""
+
+from __future__ import annotations
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+@record
+class Refusals:
+    """The errors of files that hold ``what``, such as "a policy".
+
+    Their codes are those of a file that is something else or is damaged, of one of another version, and of one in which
+    something is not as it must be; ``again`` says how to make another, such as "train the policy again".
+    """
+
+    what: str
+    unreadable_code: str
+    version_code: str
+    broken_code: str
+    again: str
+
+    def unreadable(self, name: str, why: str) -> TltlError:
+        """The file called ``name`` is something else, or is damaged."""
+        return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.what}: {why}")
+
+    def broken(self, name: str, why: str) -> TltlError:
+        """Something in the file called ``name`` is not as it must be."""
+        return self._error(self.broken_code, f"`{name}` is a broken {self.what.partition(' ')[2]}: {why}")
+
+    def check_version(self, name: str, found: object, known: int) -> None:
+        """Raise TltlError where the version that a file says it has is not the ``known`` one."""
+        if type(found) is int and found == known:
+            return
+        help_ = "use a newer tltlc" if type(found) is int and found > known else self.again
+        title = f"`{name}` has version {found!r:.20}, and only version {known} can be read"
+        raise TltlError([Diagnostic(self.version_code, title, help=help_)])
+
+    def _error(self, code: str, title: str) -> TltlError:
+        return TltlError([Diagnostic(code, title, help=f"get a whole copy of the file, or {self.again}")])

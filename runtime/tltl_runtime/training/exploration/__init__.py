@@ -1,0 +1,1 @@
+"""Exploration: search, reset distributions and self-imitation."""

@@ -1,0 +1,1 @@
+"""The imitation baseline: behavioural cloning and GAIL."""

@@ -1,0 +1,1 @@
+"""PPO: the runner, the policy, the environments and the weights of penalties."""

@@ -1,0 +1,48 @@
+"""The policy of a training."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from torch import Tensor
+
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.policy import NoNumbersError, Policy
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.ppo.environment import TrainingEnv
+from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.versions import versions
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+def card_of(run: Run, env: TrainingEnv) -> Card:
+    """What a policy says that is trained by ``run`` in ``env``, on the level as its file is now; without a record."""
+    level = load_level(run.level, run.variant)
+    return Card(
+        level=level.name,
+        variant=level.variant,
+        level_hash=level_hash(level),
+        fspa=run.fspa,
+        params=run.params,
+        reward=run.settings.rewards,
+        sensors=run.sensors,
+        shapes=tuple(env.shapes.items()),
+        branches=env.branches,
+        network=run.settings.network,
+        versions=versions(),
+        training={},
+    )
+
+
+def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
+    """The policy of an actor's ``weights``.
+
+    Raises:
+        TltlError: TLT0866, a weight is no finite number in half precision.
+    """
+    try:
+        return Policy(card, weights)
+    except NoNumbersError as error:
+        help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
+        raise TltlError([Diagnostic("TLT0866", str(error), help=help_)]) from None

@@ -1,0 +1,176 @@
+"""What a training measured, a line an iteration: ``metrics.jsonl``, and the same for TensorBoard."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from collections.abc import Iterator, Mapping
+from math import isfinite
+from pathlib import Path
+from typing import Any, Final
+
+from torch.utils.tensorboard import SummaryWriter
+
+from tltl_runtime.support.record_json import to_json
+from tltl_runtime.training.run.report import Report, Window
+from tltlc.automaton.fspa import Fspa, State
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import reading_error, reason
+from tltlc.io.json_text import loads
+from tltlc.io.limits import MEASUREMENTS, TRACE_LINE
+from tltlc.io.writing import write_file
+
+METRICS: Final = "metrics.jsonl"
+
+_ADVICE: Final = "see that there is room, and that you may write there"
+OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
+"""The means over the last episodes."""
+_WHOLE: Final = ("iteration", "steps", "episodes", "window")
+"""The whole numbers of a line that are read again."""
+_READ: Final = {*_WHOLE, "seconds", "losses", *OF_THE_WINDOW}
+_OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
+
+
+class Metrics:
+    """The files of measurements in the folder of a training, to which it adds a line and a step for each report.
+
+    After a training that is resumed, what was measured later than the iteration ``after`` and its ``steps`` is gone:
+    it is measured again.
+
+    Raises:
+        TltlError: TLT0005, nothing can be written there, of ``add`` too; TLT0001, a file there cannot be read.
+    """
+
+    def __init__(self, folder: Path, fspa: Fspa, *, after: int = 0, steps: int = 0) -> None:
+        self._path, self._fspa = folder / METRICS, fspa
+        truncate(self._path, after)
+        try:
+            # TensorBoard hides what other files of this folder say of this step and of later ones.
+            self._events = SummaryWriter(str(folder), purge_step=steps + 1)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
+
+    def add(self, report: Report) -> None:
+        """Write what an iteration measured."""
+        measured = measurements(report, self._fspa)
+        try:
+            _append(self._path, _line(measured).encode())
+            for tag, value in _scalars(measured):
+                self._events.add_scalar(tag, value, report.steps)
+            self._events.flush()
+        except OSError as error:
+            raise _unwritable(self._path, error) from None
+
+    def close(self) -> None:
+        """Close the files."""
+        self._events.close()
+
+
+def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
+    """A line of ``metrics.jsonl``, as ``docs/training.md`` describes it."""
+    iteration, window = report.iteration, report.window
+    return {
+        "iteration": iteration.number,
+        "steps": report.steps,
+        "seconds": round(report.seconds, 3),
+        "steps_per_s": round(iteration.steps / (iteration.collect_s + iteration.learn_s), 1),
+        "collect_s": round(iteration.collect_s, 4),
+        "learn_s": round(iteration.learn_s, 4),
+        "episodes": len(iteration.finished),
+        "window": window.count,
+        **(dict.fromkeys(OF_THE_WINDOW) if not window.count else means(window)),
+        "confirmation": report.confirmation and to_json(report.confirmation),
+        "states": [_ended(window, fspa.states[state]) for state in sorted(window.states)],
+        "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
+    }
+
+
+def _ended(window: Window, state: State) -> dict[str, Any]:
+    label, ended, violated = state.label, window.states[state.id], window.violated.get(state.id, 0.0)
+    shares = {"share": round(ended, 6), "violated": round(violated, 6)}
+    return {"state": state.id, "label": label.ascii, "english": label.english, **shares}
+
+
+def means(window: Window) -> dict[str, float]:
+    """How the episodes of a window went."""
+    values = (window.pass_rate, window.progress, window.reward, window.steps)
+    return {name: round(value, 6) for name, value in zip(OF_THE_WINDOW, values, strict=True)}
+
+
+def read_metrics(path: Path) -> list[dict[str, Any]]:
+    """The lines of ``metrics.jsonl`` in order, none where there is no file.
+
+    One is left out that was cut short, or lacks what is read again.
+
+    Raises:
+        TltlError: TLT0001, the system does not give us the file; TLT0004, it is larger than
+            :data:`tltlc.io.limits.MEASUREMENTS` allows.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MEASUREMENTS.size + 1)
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise reading_error(str(path), error) from None
+    if len(data) > MEASUREMENTS.size:
+        title = f"`{path}` is larger than {MEASUREMENTS.size >> 20} MiB"
+        raise TltlError([Diagnostic("TLT0004", title, help="move it away: the training then goes on without it")])
+    text = data.decode(errors="replace")
+    return [measured for line in text.splitlines() if (measured := _measured(line)) is not None]
+
+
+def truncate(path: Path, iteration: int) -> None:
+    """Leave of ``metrics.jsonl`` the lines up to an iteration; raises TltlError, TLT0001 and TLT0005."""
+    kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
+    write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
+
+
+def _line(measured: Mapping[str, Any]) -> str:
+    return json.dumps(measured, ensure_ascii=False) + "\n"
+
+
+def _measured(line: str) -> dict[str, Any] | None:
+    """What a line says; None where it lacks what is read again."""
+    try:
+        measured = loads(line, TRACE_LINE)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(measured, dict) or not measured.keys() >= _READ:
+        return None
+    whole = all(type(measured[name]) is int for name in _WHOLE)
+    # Before the first episode has ended, there are no means.
+    means = [measured[name] for name in OF_THE_WINDOW if measured["window"] or measured[name] is not None]
+    fits = whole and all(map(_is_number, [measured["seconds"], *means])) and isinstance(measured["losses"], dict)
+    return measured if fits else None
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
+
+
+def _append(path: Path, line: bytes) -> None:
+    """Add a line with a single write: a process that is killed leaves all of it or nothing."""
+    descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+    try:
+        if os.write(descriptor, line) < len(line):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        # No checkpoint may outlast what was measured before it.
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _scalars(measured: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """The measurements as TensorBoard takes them, by tag."""
+    yield from ((f"train/{name}", measured[name]) for name in OF_THE_WINDOW if measured["window"])
+    yield from ((f"time/{name}", measured[name]) for name in _OF_THE_ITERATION)
+    yield from ((f"state/{each['state']}", each["share"]) for each in measured["states"])
+    yield from ((f"violated/{each['state']}", each["violated"]) for each in measured["states"])
+    yield from ((f"loss/{name}", value) for name, value in measured["losses"].items())
+
+
+def _unwritable(path: Path, error: OSError) -> TltlError:
+    title = f"cannot write `{path}`: {reason(error)}"
+    return TltlError([Diagnostic("TLT0005", title, help=_ADVICE)])

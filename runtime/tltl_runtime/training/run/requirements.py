@@ -1,0 +1,50 @@
+"""What settings name that must be there: classes, and a device."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from rsl_rl.utils import resolve_callable
+
+from tltl_runtime.training.ppo.distributed import peers
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+def class_of(setting: str, name: str, base: type) -> Any:
+    """The class of a name, a subclass of ``base``; TLT0862 where it is none."""
+    try:
+        found = resolve_callable(name)
+        why = "" if isinstance(found, type) and issubclass(found, base) else f"it is no subclass of {base.__name__}"
+    except (ImportError, AttributeError, ValueError) as error:
+        why = str(error)
+    if why:
+        title = f"wrong class for `classes.{setting}`, `{name}`: {why}"
+        help_ = f'expected "package.module:Class", a subclass of {base.__module__}:{base.__qualname__}'
+        raise TltlError([Diagnostic("TLT0862", title, help=help_)])
+    return found
+
+
+def device_of(device: str) -> str:
+    """The device of this process: where torchrun started several, "cuda" is a GPU of its own for each.
+
+    Raises TltlError, TLT0862, where there is none.
+    """
+    if not device.startswith("cuda"):
+        return device
+    own, gpus = peers(), torch.cuda.device_count() if torch.cuda.is_available() else 0
+    if own.count == 1:
+        if int(device.partition(":")[2] or 0) >= gpus:
+            raise _no_device(f"there is no device `{device}` here, or torch was built without it", 'train on the "cpu"')
+        return device
+    if device != "cuda":
+        title = f"each of {own.count} processes takes a device of its own, and `{device}` is but one"
+        raise _no_device(title, 'say "cuda"; the variable CUDA_VISIBLE_DEVICES chooses which ones they take')
+    if own.local_count > gpus:
+        title = f"each of {own.local_count} processes takes a device of its own, and torch finds {gpus} here"
+        raise _no_device(title, 'start no more processes than devices, or train on the "cpu"')
+    return f"cuda:{own.local_rank}"
+
+
+def _no_device(title: str, help_: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0862", title, help=help_)])

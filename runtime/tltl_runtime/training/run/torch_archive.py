@@ -1,0 +1,180 @@
+"""Read what ``torch.save`` wrote, from a file that may be damaged or malicious, without a blow-up in memory.
+
+``torch.load`` with ``weights_only`` executes nothing of the file, but it unpacks compressed members of any size, makes
+tensors that are larger than their storage, and shares one list in many places. This module refuses all three first.
+"""
+
+from __future__ import annotations
+
+import pickletools
+import zipfile
+from collections.abc import Iterable, Mapping
+from io import BytesIO
+from typing import Any, Final
+
+import torch
+from torch import Tensor
+
+from tltlc.io.limits import CHECKPOINT
+
+_GLOBALS: Final = {
+    "collections OrderedDict",
+    "torch._utils _rebuild_tensor_v2",
+    *(f"torch {kind}Storage" for kind in ("Float", "Double", "Half", "BFloat16", "Long", "Int", "Short", "Char")),
+    *(f"torch {kind}Storage" for kind in ("Byte", "Bool")),
+}
+"""The classes and functions that a file of plain data and tensors names."""
+_PICKLE: Final = "data.pkl"
+_MARK, _TUPLE, _ORDERED, _OTHER = "mark", "tuple", "class OrderedDict", "other"
+"""The kinds of values on the stack of a pickle; an empty tuple is another value."""
+_PROTOCOL: Final = 2
+"""That of the pickles which ``torch.save`` writes."""
+_OPCODES: Final = 20
+"""More operations of a pickle than any value or tensor takes."""
+
+
+class TorchArchiveError(ValueError):
+    """The bytes are not what ``torch.save`` writes for plain data and tensors; the message says why."""
+
+
+def read_torch(data: bytes) -> Any:
+    """The plain data and tensors that ``torch.save`` wrote, on the CPU.
+
+    Raises TorchArchiveError where the bytes are something else, are damaged, or pass
+    :data:`tltlc.io.limits.CHECKPOINT`.
+    """
+    stored = _checked(data)
+    try:
+        content = torch.load(BytesIO(stored), map_location="cpu", weights_only=True)
+    except Exception as error:
+        # torch raises exceptions of many classes for files that it does not understand.
+        raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
+    _check_values(content)
+    return content
+
+
+def _checked(data: bytes) -> bytes:
+    """The same archive, its members checked: stored as they are, whole, and with no call but those of plain data.
+
+    It is written anew, since a hostile archive can show other members to torch than to Python.
+    """
+    # torch reads a file that begins otherwise as its older format, whatever archive follows.
+    if not data.startswith(b"PK\x03\x04"):
+        raise TorchArchiveError("it is damaged, or no checkpoint (BadZipFile)")
+    try:
+        with zipfile.ZipFile(BytesIO(data)) as archive:
+            members = archive.infolist()
+            if any(member.compress_type != zipfile.ZIP_STORED for member in members):
+                raise TorchArchiveError("its parts are compressed, as torch never writes them")
+            if sum(member.file_size for member in members) > len(data):
+                raise TorchArchiveError("its parts are larger than the file")
+            if archive.testzip():
+                raise TorchArchiveError("it is damaged")
+            contents = {member.filename: archive.read(member) for member in members}
+        for name, content in contents.items():
+            if name.rpartition("/")[2] == _PICKLE:
+                _check_calls(content)
+        return _archive(contents)
+    except TorchArchiveError:
+        raise
+    except Exception as error:
+        # Strange archives and pickles end in exceptions of many classes, too.
+        raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
+
+
+def _archive(contents: Mapping[str, bytes]) -> bytes:
+    archive = BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as members:
+        for name, content in contents.items():
+            members.writestr(name, content)
+    return archive.getvalue()
+
+
+def _check_calls(pickled: bytes) -> None:
+    """Refuse a pickle that is too long, or does more than make plain data and tensors.
+
+    Keys of dicts must be no tuples: tuples that hold each other twice take a time that doubles with each level to hash.
+    """
+    stack: list[str] = []
+    marks: list[int] = []
+    memo: dict[int, str] = {}
+    for count, (opcode, argument, _) in enumerate(pickletools.genops(pickled)):
+        if count > _OPCODES * (CHECKPOINT.values or 0):
+            raise TorchArchiveError(f"it holds more than {CHECKPOINT.values:,} values")
+        if opcode.proto > _PROTOCOL or opcode.name in ("INST", "OBJ", "EXT1", "EXT2", "EXT4"):
+            raise TorchArchiveError("it holds more than plain data")
+        if opcode.name == "GLOBAL" and argument not in _GLOBALS:
+            raise TorchArchiveError(f"it holds more than plain data: {argument:.60}")
+        taken = _taken(stack, marks, opcode)
+        keys = taken[1::2] if opcode.name in ("SETITEM", "SETITEMS") else []
+        if _TUPLE in keys or (opcode.name == "REDUCE" and taken == [_ORDERED, _TUPLE]):
+            raise TorchArchiveError("a key in it is no text and no number")
+        if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
+            memo[int(str(argument))] = stack[-1]
+        elif opcode.name in ("BINGET", "LONG_BINGET", "GET"):
+            stack.append(memo[int(str(argument))])
+        else:
+            if opcode.name == "MARK":
+                marks.append(len(stack))
+            stack += _given(opcode, argument)
+
+
+def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
+    """The kinds of the values that an operation takes from the stack, without the mark below them.
+
+    ``marks`` are where marks were put on the stack; some may be gone.
+    """
+    if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
+        return []
+    count = len(opcode.stack_before)
+    if pickletools.markobject in opcode.stack_before:
+        below = opcode.stack_before.index(pickletools.markobject)
+        while marks[-1] >= len(stack) or stack[marks[-1]] != _MARK:
+            marks.pop()
+        mark = marks.pop()
+        taken = [*stack[mark - below : mark], *stack[mark + 1 :]]
+        del stack[mark - below :]
+        return taken
+    taken = stack[len(stack) - count :]
+    del stack[len(stack) - count :]
+    return taken
+
+
+def _given(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
+    """The kinds of the values that an operation puts onto the stack."""
+    if opcode.name == "MARK":
+        return [_MARK]
+    if opcode.name in ("TUPLE", "TUPLE1", "TUPLE2", "TUPLE3"):
+        return [_TUPLE]
+    if argument == "collections OrderedDict" and opcode.name == "GLOBAL":
+        return [_ORDERED]
+    return [_OTHER] * len(opcode.stack_after)
+
+
+def _check_values(content: object) -> None:
+    """Check the size of what was read as it is walked through: a value in two places counts twice."""
+    level: list[object] = [content]
+    count = 0
+    for _ in range(CHECKPOINT.depth or 0):
+        following: list[object] = []
+        for value in level:
+            count += 1
+            _check_tensor(value)
+            following += _inside(value)
+            if count + len(following) > (CHECKPOINT.values or 0):
+                raise TorchArchiveError(f"it holds more than {CHECKPOINT.values:,} values")
+        if not following:
+            return
+        level = following
+    raise TorchArchiveError(f"it nests deeper than {CHECKPOINT.depth} levels")
+
+
+def _check_tensor(value: object) -> None:
+    if isinstance(value, Tensor) and value.numel() * value.element_size() > value.untyped_storage().nbytes():
+        raise TorchArchiveError("a tensor in it is larger than the numbers that are there")
+
+
+def _inside(value: object) -> Iterable[object]:
+    if isinstance(value, Mapping):
+        return value.values()
+    return value if isinstance(value, (list, tuple, set, frozenset)) else ()

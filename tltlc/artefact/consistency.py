@@ -1,0 +1,202 @@
+"""What the schema cannot say of an artefact: that its parts agree with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Final, Union
+
+from tltlc.artefact.guards import guard_problems
+from tltlc.artefact.locations import Path
+from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.core.record import record
+from tltlc.expression.tree import Param, Signal, nodes
+from tltlc.resolve import spec
+
+Declared = Union[spec.Signal, spec.Param, spec.Atom]
+
+CYCLES_WORK: Final = 1_000_000
+"""Steps after which what only cycles can tell is left unchecked."""
+
+
+@record
+class Problem:
+    """A contradiction and the place of the value that is blamed for it."""
+
+    path: Path
+    message: str
+
+
+def problems(fspa: Fspa) -> Iterator[Problem]:
+    """Every contradiction; later checks are left out where they would rest on values already found wrong.
+
+    The guards of a state (exactly one is true of every sample) are decided exactly, but only for
+    automata that are small enough for it: see :mod:`tltlc.artefact.guards`.  So are the states
+    on accepted cycles and the verdicts of automata over infinite traces.
+    """
+    for check in (_names, _values, _indices, _parallel, _numbering, _distances, _guards):
+        found = False
+        for problem in check(fspa):
+            found = True
+            yield problem
+        if found:
+            return
+
+
+def _names(fspa: Fspa) -> Iterator[Problem]:
+    """Names are unique, and expressions speak of the declared ones."""
+    declared: dict[str, Sequence[Declared]] = {"signals": fspa.signals, "params": fspa.params, "atoms": fspa.atoms}
+    known: dict[str, set[str]] = {}
+    for kind, items in declared.items():
+        known[kind] = set()
+        for index, item in enumerate(items):
+            if item.name in known[kind]:
+                yield Problem((kind, index, "name"), f"two {kind} are named `{item.name}`")
+            known[kind].add(item.name)
+    for index, atom in enumerate(fspa.atoms):
+        for node in nodes(atom.expression):
+            if isinstance(node, Signal) and node.name not in known["signals"]:
+                yield Problem(("atoms", index, "expression"), f"there is no signal `{node.name}`")
+            elif isinstance(node, Param) and node.name not in known["params"]:
+                yield Problem(("atoms", index, "expression"), f"there is no param `{node.name}`")
+
+
+def _values(fspa: Fspa) -> Iterator[Problem]:
+    """Ranges are not empty, and params lie in theirs."""
+    for index, signal in enumerate(fspa.signals):
+        if signal.low is not None and signal.high is not None and signal.low > signal.high:
+            yield Problem(("signals", index, "range"), f"the range of `{signal.name}` is empty")
+    for index, param in enumerate(fspa.params):
+        low = param.value if param.low is None else param.low
+        high = param.value if param.high is None else param.high
+        if not low <= param.value <= high:
+            yield Problem(("params", index, "value"), f"the value of `{param.name}` lies outside its range")
+
+
+def _indices(fspa: Fspa) -> Iterator[Problem]:
+    """Every index names something, states stand in order, edges are sorted."""
+    states, atoms = len(fspa.states), len(fspa.atoms)
+    for index, state in enumerate(fspa.states):
+        if state.id != index:
+            yield Problem(("states", index, "id"), f"state {index} has the id {state.id}")
+    for index, group in enumerate(fspa.exclusive):
+        if any(atom >= atoms for atom in group):
+            yield Problem(("exclusive", index), f"there are only {atoms} atoms")
+    previous = (-1, -1)
+    for index, edge in enumerate(fspa.edges):
+        for end, state_index in (("source", edge.source), ("target", edge.target)):
+            if state_index >= states:
+                yield Problem(("edges", index, end), f"there is no state {state_index}")
+        if (edge.source, edge.target) < previous:
+            yield Problem(("edges", index), "the edges are not sorted by source and target")
+        previous = (edge.source, edge.target)
+        for prime in edge.guard.primes:
+            if any(atom >= atoms for atom, _ in prime):
+                yield Problem(("edges", index, "guard", "primes"), f"there are only {atoms} atoms")
+    for index, pair in enumerate(fspa.acceptance):
+        for kind, edges in (("fin", pair.fin), ("inf", pair.inf)):
+            if any(edge >= len(fspa.edges) for edge in edges):
+                yield Problem(("acceptance", "pairs", index, kind), f"there are only {len(fspa.edges)} edges")
+
+
+def _parallel(fspa: Fspa) -> Iterator[Problem]:
+    """Edges of one source and target differ in the pairs that name them; over finite traces there are no pairs."""
+    named = fspa.marks()
+    seen: set[tuple[object, ...]] = set()
+    for index, edge in enumerate(fspa.edges):
+        key = (edge.source, edge.target, named[index])
+        if key in seen:
+            alike = " that the same pairs name" if fspa.semantics == "infinite" else ""
+            message = f"two edges{alike} lead from state {edge.source} to state {edge.target}"
+            yield Problem(("edges", index), message)
+        seen.add(key)
+
+
+def _numbering(fspa: Fspa) -> Iterator[Problem]:
+    """States are numbered breadth-first: each is first met from a state before it, in that state's turn."""
+    parents = [len(fspa.states)] * len(fspa.states)
+    for edge in fspa.edges:
+        parents[edge.target] = min(parents[edge.target], edge.source)
+    turn = 0
+    for state in range(1, len(fspa.states)):
+        if parents[state] >= state:
+            yield Problem(("states", state), f"state {state} cannot be reached from a state before it")
+        elif parents[state] < turn:
+            yield Problem(("states", state), "the states are not numbered breadth-first")
+        else:
+            turn = parents[state]
+
+
+def _distances(fspa: Fspa) -> Iterator[Problem]:
+    """Goals, distances, verdicts and the size of the spec are what the edges make them."""
+    goals, verdicts = _by_cycles(fspa) if fspa.semantics == "infinite" else _by_states(fspa)
+    to_goal = _steps_to(fspa, goals)
+    for state in fspa.states:
+        if state.accepting != (state.id in goals):
+            lies, accepts = ("no", "is") if state.accepting else ("an", "is not")
+            message = f"state {state.id} lies on {lies} accepted cycle, and {accepts} accepting"
+            yield Problem(("states", state.id, "accepting"), message)
+        distance = to_goal.get(state.id)
+        if state.distance != distance:
+            yield Problem(
+                ("states", state.id, "distance"),
+                f"the distance of state {state.id} is {_said(distance)}, not {_said(state.distance)}",
+            )
+        verdict = verdicts[state.id]
+        if state.verdict != verdict:
+            yield Problem(
+                ("states", state.id, "verdict"),
+                f"the verdict of state {state.id} is `{verdict}`, not `{state.verdict}`",
+            )
+    size = max(to_goal.values(), default=0)
+    if fspa.spec_size != size:
+        yield Problem(("spec_size",), f"spec_size is {size}, not {fspa.spec_size}")
+
+
+def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
+    """Over finite traces: the accepting states, and the verdict of each state."""
+    goals = [state.id for state in fspa.states if state.accepting]
+    to_goal = _steps_to(fspa, goals)
+    to_failure = _steps_to(fspa, (state.id for state in fspa.states if not state.accepting))
+    return goals, [_verdict(state.accepting, to_goal.get(state.id), to_failure.get(state.id)) for state in fspa.states]
+
+
+def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
+    """Over infinite traces: the states on accepted cycles, and the verdict of each state."""
+    from tltlc.automaton.infinite.analysis import analysis_of_fspa
+    from tltlc.automaton.infinite.work import OutOfWork, Work
+
+    try:
+        analysis = analysis_of_fspa(fspa, Work(CYCLES_WORK))
+    except OutOfWork:
+        return [state.id for state in fspa.states if state.accepting], [state.verdict for state in fspa.states]
+    return analysis.goals, [analysis.verdict(state.id) for state in fspa.states]
+
+
+def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:
+    """The least number of transitions from each state to one of ``goals``, by backward breadth-first search."""
+    into: list[list[int]] = [[] for _ in fspa.states]
+    for edge in fspa.edges:
+        into[edge.target].append(edge.source)
+    steps = dict.fromkeys(goals, 0)
+    queue = list(steps)
+    for state in queue:
+        for source in into[state]:
+            if source not in steps:
+                steps[source] = steps[state] + 1
+                queue.append(source)
+    return steps
+
+
+def _verdict(accepting: bool, to_goal: int | None, to_failure: int | None) -> Verdict:
+    if accepting:
+        return "satisfied" if to_failure is None else "holding"
+    return "violated" if to_goal is None else "pending"
+
+
+def _said(distance: int | None) -> str:
+    return "null" if distance is None else str(distance)
+
+
+def _guards(fspa: Fspa) -> Iterator[Problem]:
+    for path, message in guard_problems(fspa):
+        yield Problem(path, message)

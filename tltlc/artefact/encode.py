@@ -1,0 +1,85 @@
+"""From an automaton to the JSON document of its artefact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from tltlc.automaton.fspa import Edge, Fspa, State, Text
+from tltlc.expression.json import to_json
+from tltlc.resolve.spec import Param, Signal
+
+
+def encode(fspa: Fspa) -> dict[str, Any]:
+    """The document, its keys in the order in which they are written; an atom without documentation has no ``doc``."""
+    return {
+        "format": "fspa",
+        "version": 1,
+        "spec": {
+            "name": fspa.name,
+            "doc": fspa.doc,
+            "formula": _text(fspa.formula),
+            "limit_steps": fspa.limit_steps,
+            "judge": fspa.judge,
+            "level": fspa.level,
+            "tags": list(fspa.tags),
+            "clock_s": fspa.clock_s,
+        },
+        "semantics": fspa.semantics,
+        "signals": [_signal(signal) for signal in fspa.signals],
+        "params": [_param(param) for param in fspa.params],
+        "atoms": [{"name": atom.name, "expression": to_json(atom.expression), **_doc(atom.doc)} for atom in fspa.atoms],
+        "exclusive": [list(group) for group in fspa.exclusive],
+        "states": [_state(state) for state in fspa.states],
+        "initial": 0,
+        "edges": _edges(fspa.edges),
+        "spec_size": fspa.spec_size,
+        **_acceptance(fspa),
+    }
+
+
+def _acceptance(fspa: Fspa) -> dict[str, Any]:
+    if fspa.semantics == "finite":
+        return {}
+    return {"acceptance": {"pairs": [{"fin": list(pair.fin), "inf": list(pair.inf)} for pair in fspa.acceptance]}}
+
+
+def _text(text: Text) -> dict[str, str]:
+    return {"ascii": text.ascii, "unicode": text.unicode, "english": text.english}
+
+
+def _doc(doc: str) -> dict[str, str]:
+    return {"doc": doc} if doc else {}
+
+
+def _signal(signal: Signal) -> dict[str, Any]:
+    return {"name": signal.name, "type": signal.type, "range": [signal.low, signal.high], **_doc(signal.doc)}
+
+
+def _param(param: Param) -> dict[str, Any]:
+    document: dict[str, Any] = {"name": param.name, "type": param.type, "value": param.value}
+    return {**document, "range": [param.low, param.high], **_doc(param.doc)}
+
+
+def _state(state: State) -> dict[str, Any]:
+    return {
+        "id": state.id,
+        "label": _text(state.label),
+        "accepting": state.accepting,
+        "verdict": state.verdict,
+        "distance": state.distance,
+    }
+
+
+def _edges(edges: Iterable[Edge]) -> list[dict[str, Any]]:
+    # The lists of equal literals are one list: a large automaton has millions of them.
+    literals: dict[tuple[int, bool], list[int | bool]] = {}
+
+    def literal(atom: int, polarity: bool) -> list[int | bool]:
+        return literals.setdefault((atom, polarity), [atom, polarity])
+
+    def encoded(edge: Edge) -> dict[str, Any]:
+        primes = [[literal(*each) for each in prime] for prime in edge.guard.primes]
+        return {"source": edge.source, "target": edge.target, "guard": {"text": edge.guard.text, "primes": primes}}
+
+    return [encoded(edge) for edge in edges]

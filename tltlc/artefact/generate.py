@@ -1,0 +1,60 @@
+"""Writes ``validator.py`` from ``fspa.schema.json``: run ``python -m tltlc.artefact.generate``.
+
+A generated module validates an artefact without importing a schema library, which alone would
+cost more than most compilations.  Needs fastjsonschema, which ``pip install tltlc[dev]`` brings.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).parent
+
+HEADER = '''"""Validates artefacts. Generated from fspa.schema.json by generate.py: do not edit."""
+# ruff: noqa
+# mypy: ignore-errors
+# fmt: off
+'''
+
+PLAIN_HEAD = "(data, custom_formats={}, name_prefix=None):"
+TYPED_HEAD = "(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:"
+
+RECURSIVE = ("#/definitions/expression", "#/definitions/condition")
+
+
+def validator_source() -> str:
+    """The text of ``validator.py``: a module with ``validate(data)``, which raises at the first error."""
+    import fastjsonschema
+
+    schema = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
+    code = fastjsonschema.compile_to_code(_inlined(schema, schema["definitions"]), use_default=False)
+    lines = [_slim(line) for line in code.splitlines() if not line.startswith(("VERSION = ", "from "))]
+    imports = "from tltlc.artefact.errors import JsonSchemaValueException\n"
+    return HEADER + imports + "\n".join(lines).strip() + "\n"
+
+
+def _inlined(node: Any, definitions: dict[str, Any]) -> Any:
+    """The schema with its references replaced, except recursive ones: every call would format its place's name."""
+    if isinstance(node, list):
+        return [_inlined(item, definitions) for item in node]
+    if not isinstance(node, dict):
+        return node
+    reference = node.get("$ref")
+    if isinstance(reference, str) and reference not in RECURSIVE:
+        return _inlined(definitions[reference.rsplit("/", 1)[1]], definitions)
+    return {key: _inlined(value, definitions) for key, value in node.items()}
+
+
+def _slim(line: str) -> str:
+    """Drops what is not needed here: the value and the schema quoted in a ``raise``, decimals, many errors at once."""
+    line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
+    line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")
+    line = line.replace(PLAIN_HEAD, TYPED_HEAD)
+    return line.replace(", Decimal", "").replace("str(data_keys)", "str(sorted(data_keys))").rstrip()
+
+
+if __name__ == "__main__":
+    (FOLDER / "validator.py").write_text(validator_source(), encoding="utf-8")

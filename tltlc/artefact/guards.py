@@ -1,0 +1,154 @@
+"""Whether the guards of an artefact are canonical and part the samples among the edges of each state.
+
+A product of literals (a cube) is a pair of bit sets: the atoms that it wants true and those that
+it wants false.  ``D`` is what the exclusive groups allow (semantics, section 3); its complement is
+the sum of the cubes ``a & b`` over the pairs of each group.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+from tltlc.artefact.locations import Path
+from tltlc.automaton.fspa import Fspa, Implicant
+
+Cube = tuple[int, int]
+
+WORK_LIMIT = 200_000
+"""Cube operations after which the rest is left unchecked (about a fifth of a second)."""
+
+
+_BITS_OF_A_STEP = 512
+"""How many atoms a cube operation looks at; one with more counts more."""
+
+
+class _SpentError(Exception):
+    """The work limit is reached."""
+
+
+class _Work:
+    """Counts cube operations, so that what is checked does not depend on the machine's speed."""
+
+    def __init__(self) -> None:
+        self.left = WORK_LIMIT
+
+    def spend(self, amount: int = 1) -> None:
+        self.left -= amount
+        if self.left < 0:
+            raise _SpentError
+
+
+def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
+    """Where a guard is no complete list of prime implicants, or not exactly one edge of a state is taken.
+
+    Indices are taken to be in range.  Large automata are checked up to a fixed amount of work.
+    """
+    work = _Work()
+    leaving: list[list[int]] = [[] for _ in fspa.states]
+    for index, edge in enumerate(fspa.edges):
+        leaving[edge.source].append(index)
+    cubes: list[list[Cube]] = []
+    try:
+        # A pair takes as many bits as there are atoms, and each guard is compared with all of them.
+        work.spend(sum(len(group) ** 2 // 2 for group in fspa.exclusive) * (1 + len(fspa.atoms) // _BITS_OF_A_STEP))
+        pairs = [(1 << a | 1 << b, 0) for group in fspa.exclusive for a, b in combinations(group, 2)]
+        for index, edge in enumerate(fspa.edges):
+            cubes.append([_cube(prime) for prime in edge.guard.primes])
+            message = _guard_problem(edge.guard.primes, cubes[index], pairs, work)
+            if message:
+                yield ("edges", index, "guard", "primes"), message
+                return
+        for state, edges in enumerate(leaving):
+            for one, other in combinations(edges, 2):
+                if any(_meet(p, q, pairs, work) for p in cubes[one] for q in cubes[other]):
+                    targets = f"to states {fspa.edges[one].target} and {fspa.edges[other].target}"
+                    yield ("edges", other, "guard"), f"the guards from state {state} {targets} can be true at once"
+                    return
+            if not _covers_all([cube for index in edges for cube in cubes[index]] + pairs, work):
+                yield ("states", state), f"some samples lead nowhere from state {state}"
+                return
+    except _SpentError:
+        return
+
+
+def _cube(prime: Implicant) -> Cube:
+    positive = negative = 0
+    for atom, polarity in prime:
+        if polarity:
+            positive |= 1 << atom
+        else:
+            negative |= 1 << atom
+    return positive, negative
+
+
+def _guard_problem(
+    primes: Sequence[Implicant], cubes: Sequence[Cube], pairs: Sequence[Cube], work: _Work
+) -> str | None:
+    """What keeps the cubes from being all prime implicants of a guard, those outside D left out.
+
+    A set of cubes is the set of all primes of its sum iff none lies in another and each consensus of
+    two lies in one of them (Quine 1955).
+    """
+    for prime, cube in zip(primes, cubes, strict=True):
+        if len({atom for atom, _ in prime}) < len(prime):
+            return "an implicant names an atom twice"
+        work.spend(1 + len(pairs) // 8)
+        if any(_lies_in(cube, pair) for pair in pairs):
+            return "an implicant asks for two exclusive atoms at once"
+    work.spend(len(pairs) * len(cubes) // 8)
+    uncovered = {pair for pair in pairs if not any(_lies_in(pair, cube) for cube in cubes)}
+    whole = [*cubes, *sorted(uncovered)]
+    for one, other in combinations(whole, 2):
+        work.spend()
+        if _lies_in(one, other) or _lies_in(other, one):
+            return "an implicant is contained in another"
+        consensus = _consensus(one, other)
+        if consensus is not None:
+            work.spend(len(whole))
+            if not any(_lies_in(consensus, cube) for cube in whole):
+                return "an implicant is missing, so that the guard's robustness would be wrong"
+    return None
+
+
+def _lies_in(inner: Cube, outer: Cube) -> bool:
+    """Whether every sample of the one cube is in the other."""
+    return outer[0] & ~inner[0] == 0 and outer[1] & ~inner[1] == 0
+
+
+def _consensus(one: Cube, other: Cube) -> Cube | None:
+    """What follows from two cubes by resolving the one atom in which they oppose, None if it is not one."""
+    opposed = one[0] & other[1] | one[1] & other[0]
+    if opposed == 0 or opposed & (opposed - 1):
+        return None
+    return (one[0] | other[0]) & ~opposed, (one[1] | other[1]) & ~opposed
+
+
+def _meet(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bool:
+    """Whether some sample within D is in both cubes."""
+    work.spend()
+    if one[0] & other[1] or one[1] & other[0]:
+        return False
+    both = (one[0] | other[0], one[1] | other[1])
+    work.spend(len(pairs) // 8)
+    return not any(_lies_in(both, pair) for pair in pairs)
+
+
+def _covers_all(cubes: Sequence[Cube], work: _Work) -> bool:
+    """Whether every sample is in some cube, by splitting on the atom that stands in most cubes."""
+    work.spend(1 + len(cubes))
+    if (0, 0) in cubes:
+        return True
+    counts: dict[int, int] = {}
+    for positive, negative in cubes:
+        bits = positive | negative
+        while bits:
+            bit = bits & -bits
+            counts[bit] = counts.get(bit, 0) + 1
+            bits ^= bit
+    if not counts:
+        return False
+    split = max(counts, key=lambda bit: counts[bit])
+    true = [(positive & ~split, negative) for positive, negative in cubes if not negative & split]
+    false = [(positive, negative & ~split) for positive, negative in cubes if not positive & split]
+    return _covers_all(true, work) and _covers_all(false, work)

@@ -1,0 +1,52 @@
+"""What a schema error says, in words that need no knowledge of schemas."""
+
+from __future__ import annotations
+
+import ast
+
+from tltlc.artefact.errors import JsonSchemaValueException
+
+_TYPES = {
+    "integer": "a whole number",
+    "number": "a number",
+    "string": "a text",
+    "object": "an object",
+    "array": "a list",
+    "boolean": "true or false",
+    "null": "null",
+}
+
+_COUNTS = {
+    "minItems": "must hold at least {} {}",
+    "maxItems": "must hold at most {} {}",
+    "minProperties": "is empty",
+    "maxProperties": "holds fields that do not go together",
+    "minLength": "is empty",
+}
+
+
+def worded(error: JsonSchemaValueException) -> str:
+    """A title, e.g. "`states[1].distance` must be a whole number or null"."""
+    place = error.place.removeprefix("data").removeprefix(".")
+    subject = f"`{place}`" if place else "the artefact"
+    remark = str(error).removeprefix(error.place).strip()
+    if error.rule == "type":
+        kinds = remark.removeprefix("must be ").split(" or ")
+        return f"{subject} must be {' or '.join(_TYPES[kind] for kind in kinds)}"
+    if error.rule == "enum":
+        return f"{subject} must be {_listed(remark.removeprefix('must be one of '), ' or ')}"
+    if error.rule == "required":
+        return f"{subject} lacks {_listed(remark.removeprefix('must contain ').removesuffix(' properties'), ' and ')}"
+    if error.rule == "additionalProperties":
+        fields = _listed(remark.removeprefix("must not contain ").removesuffix(" properties"), " and ")
+        return f"{subject} may not hold {fields}"
+    if error.rule in _COUNTS:
+        count = "".join(word for word in remark.split() if word.isdigit())
+        return f"{subject} {_COUNTS[error.rule].format(count, 'value' if count == '1' else 'values')}"
+    return f"{subject} {remark}"
+
+
+def _listed(literal: str, last: str) -> str:
+    """A printed Python list as a list in a sentence."""
+    items = [f"`{item}`" for item in ast.literal_eval(literal)]
+    return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]

@@ -1,0 +1,1 @@
+"""From a spec over finite traces to its minimal automaton."""

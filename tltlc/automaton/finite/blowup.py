@@ -1,0 +1,128 @@
+"""When an automaton outgrows its budget: which part of the spec is to blame."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Final, NamedTuple
+
+from tltlc.automaton.diagrams import Diagrams, OutOfSteps
+from tltlc.automaton.finite.labels import LabelsTooLong
+from tltlc.automaton.finite.machine import OutOfStates, machine
+from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.guards import TooManyPrimes
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.io.limits import WORK
+from tltlc.logic.normal_form import negation_normal_form
+from tltlc.resolve.spec import Part, Spec
+
+ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
+_RECURSION_ROOM = 10_000
+_PART_BUDGET = 2_000
+"""States tried for one part alone: enough to rank the parts, small enough to answer soon."""
+
+
+class Size(NamedTuple):
+    """How large the automaton of a part alone is: a number by which parts are compared, and words."""
+
+    number: int
+    words: str
+
+
+@contextmanager
+def recursion_room() -> Iterator[None]:
+    """Room for diagrams as deep as a spec has atoms and temporal subformulas; restored afterwards."""
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(before, _RECURSION_ROOM))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(before)
+
+
+def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
+    """The error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
+    too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else why(reason)
+    left = WORK["states of blamed parts"]
+
+    def size(part: Part, spec: Spec) -> Size | None:
+        nonlocal left
+        if left < 0:
+            # The parts that were looked at are more than a message names.
+            return Size(0, "")
+        found = _size(part, spec)
+        left -= found.number if found else 0
+        return found
+
+    return blamed(spec, reason, too_large, size)
+
+
+def why(reason: Exception) -> str:
+    """What is the matter with the automaton where no budget of states or work is spent."""
+    if isinstance(reason, LabelsTooLong):
+        return f"needs labels of more than {WORK['label nodes']} operators and atoms"
+    return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
+
+
+def blamed(
+    spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, Spec], Size | None], advice: str = ADVICE
+) -> TltlError:
+    """The error, with the parts of the spec whose own automata are largest.
+
+    ``too_large`` says what is the matter with the automaton where it is none of its guards; ``size`` is None of a part
+    that is too large alone.
+    """
+    sizes: dict[Part, Size | None] = {}
+    alone: list[Part] = []
+    for part in spec.parts:
+        sizes[part] = size(part, spec)
+        if sizes[part] is None:
+            # The first part that is too large alone is the one to blame.
+            alone.append(part)
+            break
+    worst = sorted(((part, found) for part, found in sizes.items() if found), key=lambda each: -each[1].number)
+    if not sizes:
+        labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
+    elif alone or len(spec.parts) == 1:
+        labels = (_cause(next(iter(alone or sizes))),)
+    else:
+        labels = tuple(
+            Label(part.source, part.span, f"{found.words} alone; the parts multiply") for part, found in worst[:3]
+        )
+    if isinstance(reason, TooManyPrimes):
+        return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _fewer_guards(spec, reason))])
+    title = f"the automaton of `{spec.name}` {too_large}"
+    return TltlError([Diagnostic("TLT0501", title, labels, advice)])
+
+
+def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
+    """What makes guards smaller, or fewer."""
+    pairs = sum(len(group) * (len(group) - 1) // 2 for group in spec.exclusive)
+    if reason.whose == "a guard" and 2 * pairs > reason.limit:
+        # The guard is computed over these pairs, too.
+        return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
+    if reason.whose == "a guard":
+        return "split the spec, or name the condition as a predicate"
+    order = "give the goals an order, or split the spec"
+    return order if spec.exclusive else f"declare atoms that never hold together `exclusive`, {order}"
+
+
+def _cause(part: Part) -> Label:
+    """The part's longest bound, where it has one: a bound of n samples may have to be remembered n times over."""
+    bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
+    if bound is None:
+        return Label(part.source, part.span, "it is this part")
+    return Label(bound.source, bound.span, "it is this bound")
+
+
+def _size(part: Part, spec: Spec) -> Size | None:
+    """The states of one part's automaton, None for :data:`_PART_BUDGET` and more."""
+    normal = negation_normal_form(part.formula)
+    successors = Successors([atom.name for atom in spec.atoms], Diagrams(step_limit=100_000))
+    successors.number_variables(normal)
+    try:
+        states = len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
+    except (OutOfStates, OutOfSteps, RecursionError):
+        return None
+    return Size(states, f"{states} states") if states < _PART_BUDGET else None

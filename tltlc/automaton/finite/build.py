@@ -1,0 +1,324 @@
+"""From a resolved specification to its automaton: the stages of this package in order.
+
+formula -> normal form -> minimal machine -> states with acceptance -> distances, verdicts, guards,
+labels -> :class:`~tltlc.automaton.fspa.Fspa`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
+from tltlc.automaton.finite.blowup import blow_up, recursion_room
+from tltlc.automaton.finite.composition import minimal_machine as compose
+from tltlc.automaton.finite.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooLong
+from tltlc.automaton.finite.machine import Machine, OutOfStates
+from tltlc.automaton.finite.order import better_order, reordered, restored
+from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
+from tltlc.automaton.guards import Guards, TooManyPrimes
+from tltlc.automaton.judge import default_judge, judge_of
+from tltlc.core.source import SourceFile, Span
+from tltlc.expression.tree import Signal as SignalValue
+from tltlc.io.limits import WORK
+from tltlc.logic.formula import Formula, rebuild
+from tltlc.logic.normal_form import negation_normal_form
+from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
+from tltlc.resolve.spec import Atom, Signal, Spec
+
+DEFAULT_STATE_BUDGET = 50_000
+
+_LONGEST_IN_ENGLISH = 2_000
+"""Characters of a formula above which no sentence would be read."""
+
+
+def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
+    """The minimal complete automaton of a specification over finite traces (semantics, section 3).
+
+    Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where more than ``state_budget``
+    states are needed on the way, or labels get too long, TLT0502 where there are too many edges or prime
+    implicants; both name the part of the spec that is to blame.
+    """
+    with recursion_room():
+        try:
+            return _build(spec, state_budget)
+        except (OutOfStates, OutOfSteps, TooManyPrimes, LabelsTooLong, RecursionError) as reason:
+            raise blow_up(spec, reason, state_budget) from None
+
+
+def minimal_machine(
+    formula: Formula,
+    atoms: Sequence[str],
+    state_budget: int,
+    exclusive: Iterable[Sequence[int]] = (),
+    diagrams: Diagrams | None = None,
+) -> tuple[Successors, Machine, int]:
+    """The minimal machine of a formula, with the tables it lives in and the letters that ``exclusive`` allows."""
+    normal = negation_normal_form(formula)
+    diagrams = Diagrams() if diagrams is None else diagrams
+    successors = Successors(atoms, diagrams)
+    successors.number_variables(normal)
+    allowed = allowed_letters(diagrams, exclusive)
+    return successors, compose(successors, normal, state_budget, allowed), allowed
+
+
+def _build(spec: Spec, state_budget: int) -> Fspa:
+    """The automaton, by way of another order of the atoms where theirs makes large diagrams."""
+    order = better_order(spec.formula, [atom.name for atom in spec.atoms])
+    if order is None:
+        return _built(spec, state_budget)
+    try:
+        return _built(spec, state_budget, WORK["steps in the given order of atoms"])
+    except OutOfSteps:
+        return restored(_built(reordered(spec, order), state_budget), spec, order)
+
+
+def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
+    """The automaton; raises :class:`OutOfSteps` where machine or guards take more than so many steps, if any."""
+    names = [atom.name for atom in spec.atoms]
+    diagrams = Diagrams()
+
+    def bounded_steps() -> AbstractContextManager[None]:
+        return diagrams.at_most(steps) if steps is not None else nullcontext()
+
+    with bounded_steps():
+        successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive, diagrams)
+    targets = _targets(minimal, diagrams)
+    distance = distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    order = breadth_first(next(iter(targets)), targets, distance)
+    verdict = verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    labels = _labels(spec.formula, successors, minimal, order, allowed)
+
+    states = tuple(
+        State(
+            id=number,
+            label=labels[leaf],
+            accepting=diagrams.high[leaf] == 1,
+            verdict=verdict[leaf],
+            distance=distance[leaf],
+        )
+        for number, leaf in enumerate(order)
+    )
+    with bounded_steps():
+        edges = _edges(order, minimal, Guards(diagrams, names, allowed), diagrams)
+    finite = [d for d in distance.values() if d is not None]
+    return Fspa(
+        name=spec.name,
+        doc=spec.doc,
+        formula=text_of(spec.formula),
+        level=spec.level,
+        limit_steps=spec.limit_steps,
+        judge=spec.judge or (judge_of(spec.parts) if spec.parts else default_judge(spec.formula)),
+        semantics=spec.semantics,
+        tags=spec.tags,
+        clock_s=spec.clock_s,
+        signals=spec.signals,
+        params=spec.params,
+        atoms=spec.atoms,
+        exclusive=spec.exclusive,
+        states=states,
+        edges=edges,
+        spec_size=max(finite, default=0),
+    )
+
+
+def allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:
+    """The letters with at most one atom of each group, as a transition to ``ACCEPT`` or ``REJECT``."""
+    allowed = ACCEPT
+    for group in exclusive:
+        none, at_most_one = ACCEPT, ACCEPT
+        for atom in sorted(set(group), reverse=True):
+            at_most_one = diagrams.node(atom, at_most_one, none)
+            none = diagrams.node(atom, none, REJECT)
+        allowed = diagrams.conjoin(allowed, at_most_one)
+    return allowed
+
+
+# --- states ---------------------------------------------------------------------------------------
+# A state is a leaf: what remains, and whether the trace may end here.
+
+
+def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
+    """The states of the automaton, the initial one first.
+
+    No trace is empty, so the initial state may accept or not: it is shared with a state that is
+    reached, the rejecting one where both are.
+    """
+    reached = diagrams.leaves(*minimal.transitions.values())
+    rejecting, accepting = diagrams.leaf(minimal.initial, 0), diagrams.leaf(minimal.initial, 1)
+    initial = accepting if accepting in reached and rejecting not in reached else rejecting
+    return [initial, *(leaf for leaf in reached if leaf not in (initial, IMPOSSIBLE))]
+
+
+def _targets(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
+    """The states that each state leads to, the initial state first; one edge goes to each.
+
+    Raises :class:`TooManyPrimes` where these are more edges than a spec may have.
+    """
+    found: dict[int, list[int]] = {}
+    left = WORK["edges"]
+    for leaf in state_leaves(minimal, diagrams):
+        reached = diagrams.leaves(minimal.transitions[diagrams.low[leaf]])
+        found[leaf] = [target for target in reached if target != IMPOSSIBLE]
+        left -= len(found[leaf])
+        if left < 0:
+            raise TooManyPrimes("the automaton", WORK["edges"], "edges")
+    return found
+
+
+def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
+    """The least number of transitions to an accepting state, None for traps: backward breadth-first search."""
+    sources: dict[int, list[int]] = {state: [] for state in targets}
+    for state, successors in targets.items():
+        for target in successors:
+            sources[target].append(state)
+    distance: dict[int, int | None] = dict.fromkeys(targets)
+    queue = [state for state in targets if accepting(state)]
+    for state in queue:
+        distance[state] = 0
+    for state in queue:
+        for source in sources[state]:
+            if distance[source] is None:
+                distance[source] = (distance[state] or 0) + 1
+                queue.append(source)
+    return distance
+
+
+def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
+    """The states breadth-first; of several successors those nearer to acceptance first, traps last."""
+    position = {state: index for index, state in enumerate(targets)}
+
+    def rank(state: int) -> tuple[bool, int, int]:
+        d = distance[state]
+        return d is None, d or 0, position[state]
+
+    order = [initial]
+    seen = {initial}
+    for state in order:
+        for target in sorted(targets[state], key=rank):
+            if target not in seen:
+                seen.add(target)
+                order.append(target)
+    return order
+
+
+def verdicts(
+    targets: Mapping[int, list[int]], distance: Mapping[int, int | None], accepting: Callable[[int], bool]
+) -> dict[int, Verdict]:
+    """``satisfied`` where no rejecting state is in reach, ``violated`` where no accepting one is."""
+    to_rejection = distances(targets, lambda state: not accepting(state))
+
+    def verdict(state: int) -> Verdict:
+        if distance[state] is None:
+            return "violated"
+        if to_rejection[state] is None:
+            return "satisfied"
+        return "holding" if accepting(state) else "pending"
+
+    return {state: verdict(state) for state in targets}
+
+
+def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Diagrams) -> tuple[Edge, ...]:
+    number = {leaf: index for index, leaf in enumerate(order)}
+    made: dict[int, Guard] = {}
+    edges: list[Edge] = []
+    for source, leaf in enumerate(order):
+        for target, guard in guards.by_leaf(minimal.transitions[diagrams.low[leaf]]).items():
+            if guard not in made:
+                made[guard] = Guard(guards.text(guard), guards.primes(guard))
+            edges.append(Edge(source, number[target], made[guard]))
+    return tuple(sorted(edges, key=lambda edge: (edge.source, edge.target)))
+
+
+# --- texts ----------------------------------------------------------------------------------------
+
+
+def _labels(
+    source: Formula, successors: Successors, minimal: Machine, order: Sequence[int], allowed: int
+) -> dict[int, Text]:
+    """The label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
+
+    Raises :class:`LabelsTooLong` where they have more nodes together than the row "label nodes" of ``WORK`` allows.
+    """
+    diagrams = successors.diagrams
+    labels = Labels(successors, minimal, negation_normal_form(source), allowed)
+    restored = _written_with_arrows(source, labels)
+    formulas: dict[int, Formula] = {}
+    left = WORK["label nodes"]
+    own = labels.simplified(source)
+    for state in minimal.transitions:
+        formula = _restored(labels.label(state), restored)
+        formulas[state] = own if state == minimal.initial and labels.size(own) <= labels.size(formula) else formula
+        left -= labels.size(formulas[state])
+        if left < 0:
+            raise LabelsTooLong
+    texts = {state: text_of(formula) for state, formula in formulas.items()}
+    return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
+
+
+def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formula]:
+    """The parts of the source that are ``->`` or ``<->``, by their normal form.
+
+    Parts that nobody reads are left out, and the largest parts where all have more nodes than the row "arrow nodes" of
+    ``WORK``.
+    """
+    parts = [part for part in source.walk() if part.op in ("implies", "iff")]
+    left = WORK["arrow nodes"]
+    written: dict[Formula, Formula] = {}
+    for part in sorted(parts, key=labels.size):
+        left -= labels.size(part)
+        if left < 0 or labels.size(part) > LONGEST_SIMPLIFIED:
+            break
+        written[negation_normal_form(part)] = part
+    return written
+
+
+def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
+    """The formula with every part that the source wrote with ``->`` or ``<->`` written so again."""
+    for node in formula.bottom_up(known=restored):
+        restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
+    return restored[formula]
+
+
+def text_of(formula: Formula) -> Text:
+    """A formula in the three notations."""
+    plain = ascii_text(formula)
+    english = english_text(formula) if len(plain) <= _LONGEST_IN_ENGLISH else f"Satisfy {plain}."
+    return Text(plain, unicode_text(formula), english)
+
+
+def _at_the_end(label: Text, accepting: bool) -> Text:
+    """The label, where acceptance hangs on whether the trace ends here: ``X`` and ``N`` leave such states."""
+    if label.ascii == "true" and not accepting:
+        return Text(label.ascii, label.unicode, "The trace must go on for one more step.")
+    if label.ascii == "false" and accepting:
+        return Text(label.ascii, label.unicode, "The trace must end here.")
+    return label
+
+
+# --- specs without a file -------------------------------------------------------------------------
+
+
+def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[Iterable[str]] = ()) -> Spec:
+    """A spec over free atoms: each is a signal of the same name in [-1, 1], and its own robustness."""
+    groups = [tuple(group) for group in exclusive]
+    names = tuple(dict.fromkeys((*formula.atoms(), *(atom for group in groups for atom in group))))
+    return Spec(
+        name=name,
+        doc="",
+        formula=formula,
+        parts=(),
+        atoms=tuple(Atom(atom, SignalValue(atom)) for atom in names),
+        signals=tuple(Signal(atom, "number", -1.0, 1.0) for atom in names),
+        params=(),
+        exclusive=tuple(tuple(names.index(atom) for atom in group) for group in groups),
+        level=None,
+        limit_steps=None,
+        judge=None,
+        semantics="finite",
+        tags=(),
+        clock_s=None,
+        source=SourceFile("<formula>", ascii_text(formula)),
+        name_span=Span(0, 0),
+    )

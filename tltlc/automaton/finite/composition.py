@@ -1,0 +1,107 @@
+"""Large conjunctions and disjunctions part by part: build each, minimise, multiply the smallest two, and so on.
+
+Exploring a formula as a whole meets every combination of what its parts may still ask for, also
+those that minimisation would merge at once.  Specifications of game play are small enough for that;
+random conjunctions of dozens of clauses are not.
+"""
+
+from __future__ import annotations
+
+from heapq import heapify, heappop, heappush
+
+from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, LEAF, TRUE, Diagrams, OutOfSteps
+from tltlc.automaton.finite.estimate import Estimate
+from tltlc.automaton.finite.machine import Machine, OutOfStates, machine
+from tltlc.automaton.finite.successors import Successors
+from tltlc.io.limits import WORK
+from tltlc.logic.formula import Formula
+
+WHOLE_STEPS = 5_000
+"""Steps that exploration as a whole may take before the parts are tried: a few thousandths of a second."""
+
+
+def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
+    """The minimal machine of a formula in negation normal form, as a whole where that is cheap, else by parts.
+
+    Raises as :func:`tltlc.automaton.finite.machine.machine` does, and :class:`OutOfStates` where all parts and
+    products together need more states than the row "states of parts" of :data:`~tltlc.io.limits.WORK`, or three times
+    the budget.
+    """
+    return _Composition(successors, state_budget, allowed).minimal(formula)
+
+
+class _Composition:
+    """Makes the machine of one formula; counts the states of all machines on the way to it."""
+
+    def __init__(self, successors: Successors, state_budget: int, allowed: int) -> None:
+        self._successors = successors
+        self._state_budget = state_budget
+        self._allowed = allowed
+        self._left = max(WORK["states of parts"], 3 * state_budget)
+        self._estimate = Estimate(successors.diagrams, WORK["estimate of states"])
+
+    def minimal(self, formula: Formula) -> Machine:
+        whole = self._successors.obligation(formula)
+        if formula.op not in ("and", "or"):
+            return self._machine(whole)
+        try:
+            with self._successors.diagrams.at_most(WHOLE_STEPS):
+                return self._machine(whole)
+        except (OutOfStates, OutOfSteps, RecursionError):
+            return self._by_parts(formula)
+
+    def _machine(self, obligation: int) -> Machine:
+        if self._left < 0:
+            raise OutOfStates
+        made = machine(self._successors, obligation, self._state_budget, self._allowed)
+        self._left -= len(made.representative)
+        return made
+
+    def _by_parts(self, formula: Formula) -> Machine:
+        diagrams = self._successors.diagrams
+        join = diagrams.both if formula.op == "and" else diagrams.either
+        machines = [self.minimal(part) for part in formula.args]
+        if self._estimate.exceeds(machines, formula.op == "and", self._state_budget):
+            raise OutOfStates
+        # The running number breaks ties, so that the order is the same everywhere.
+        heap = [(len(made.transitions), number, made) for number, made in enumerate(machines)]
+        heapify(heap)
+        number = len(heap)
+        while len(heap) > 1:
+            (_, _, left), (_, _, right) = heappop(heap), heappop(heap)
+            made = self._machine(join(_embedded(self._successors, left), _embedded(self._successors, right)))
+            heappush(heap, (len(made.transitions), number, made))
+            number += 1
+        return heap[0][2]
+
+
+def _embedded(successors: Successors, made: Machine) -> int:
+    """An obligation for the machine's initial state: each state becomes a variable with a known transition."""
+    diagrams = successors.diagrams
+    obligations: dict[int, int] = {}
+    for state, transition in made.transitions.items():
+        settled = _settled(diagrams, state, transition)
+        obligations[state] = successors.new_state(state) if settled is None else settled
+    memo = {IMPOSSIBLE: IMPOSSIBLE}
+    for state, transition in made.transitions.items():
+        if obligations[state] not in (FALSE, TRUE):
+            successors.define_state(
+                obligations[state],
+                diagrams.relabel(
+                    transition,
+                    lambda leaf: diagrams.leaf(obligations[diagrams.low[leaf]], diagrams.high[leaf]),
+                    memo,
+                ),
+            )
+    return obligations[made.initial]
+
+
+def _settled(diagrams: Diagrams, state: int, transition: int) -> int | None:
+    """TRUE or FALSE for a state that every possible letter leaves as it is, None for the others."""
+    # The letter without any atom is always possible: where it leads elsewhere, the rest need not be looked at.
+    leaf = transition
+    while diagrams.atom[leaf] != LEAF:
+        leaf = diagrams.low[leaf]
+    if diagrams.low[leaf] != state or any(other not in (leaf, IMPOSSIBLE) for other in diagrams.leaves(transition)):
+        return None
+    return TRUE if diagrams.high[leaf] else FALSE

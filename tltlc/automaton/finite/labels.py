@@ -1,0 +1,161 @@
+"""What remains to be done in a state, as a formula as short as can be proved.
+
+From a state's obligation the temporal subformulas go that the automaton proves to be idle there.  What is left
+is written back as a formula, the named rewrites shorten it, and then every operand of an ``and`` or
+``or`` is tried: it goes where the automaton proves that the language stays the same without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.automaton.diagrams import ACCEPT, FALSE, TRUE, OutOfSteps
+from tltlc.automaton.finite.machine import Machine, stands_for
+from tltlc.automaton.finite.readback import Writer
+from tltlc.automaton.finite.successors import Successors
+from tltlc.logic import formula as build
+from tltlc.logic.formula import Formula
+from tltlc.logic.rewrite import simplify
+
+_MEMBERS = 6
+_CANDIDATES = 3
+"""Of the smallest obligations that a state stands for, as many are written out, and of these as many shortened."""
+
+LONGEST_SIMPLIFIED = 200
+_LONGEST_PROVED = 60
+"""Labels with more nodes than that are not rewritten, or not tried operand by operand: nobody reads them."""
+
+_PROOF_STEPS = 2_000
+_PROOF_PAIRS = 100
+_COST_OF_GIVING_UP = 30
+"""A proof is given up after so many steps or pairs of states, and then counts as so many more."""
+
+
+class LabelsTooLong(Exception):
+    """Raised when all labels together have more operators and atoms than anything could show."""
+
+
+class Labels:
+    """The labels of one machine's states.
+
+    ``work`` bounds the proofs tried for all labels together; when it is spent, labels stay as they
+    are.  A count and not a clock, so that equal input gives equal output.
+    """
+
+    __slots__ = (
+        "_allowed",
+        "_known",
+        "_machine",
+        "_members",
+        "_refuted",
+        "_simplified",
+        "_sizes",
+        "_successors",
+        "_work",
+        "_writer",
+    )
+
+    def __init__(
+        self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 3_000
+    ) -> None:
+        self._successors = successors
+        self._machine = machine
+        self._allowed = allowed
+        self._work = work
+        self._writer = Writer(successors, source)
+        self._sizes: dict[Formula, int] = {}
+        self._simplified: dict[Formula, Formula] = {}
+        self._known = dict(machine.representative)
+        self._refuted: set[tuple[int, int]] = set()
+        self._members: dict[int, list[int]] = {}
+        for obligation, state in machine.representative.items():
+            self._members.setdefault(state, []).append(obligation)
+
+    def label(self, state: int) -> Formula:
+        """The shortest label found for a state of the machine, in negation normal form."""
+        members = self._members[state]
+        if len(members) == 1 and (bound := self._writer.long_bound(members[0])) is not None:
+            return self.simplified(bound)
+        if len(members) > 1:
+            members = sorted(members, key=lambda obligation: len(self._writer.support(obligation)))
+        obligations = dict.fromkeys((self._needed(members[0], state), *members[:_MEMBERS]))
+        written = sorted(map(self._writer.formula, obligations), key=self.size)
+        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
+
+    def size(self, formula: Formula) -> int:
+        """The number of nodes of the formula as it is written; remembered, since labels share their parts."""
+        for node in formula.bottom_up(known=self._sizes):
+            self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
+        return self._sizes[formula]
+
+    def _needed(self, obligation: int, state: int) -> int:
+        """The obligation without the variables that make no difference to its language, the largest tried first."""
+        if obligation in (FALSE, TRUE):
+            return obligation
+        obligation = self._writer.without_shorter_bounds(obligation)
+        support = self._writer.support(obligation)
+        for variable in sorted(support, key=self._size_of_variable, reverse=True) if len(support) > 1 else ():
+            if self._work <= 0:
+                break
+            for value in (False, True):
+                smaller = self._writer.restricted(obligation, (variable,), value)
+                if smaller != obligation and self._proved(smaller, state):
+                    obligation = smaller
+                    break
+        return obligation
+
+    def _size_of_variable(self, variable: int) -> int:
+        formula = self._successors.formulas[variable]
+        return 0 if formula is None else self.size(formula)
+
+    def simplified(self, formula: Formula) -> Formula:
+        """The formula after the named rewrites, unless it is too long for anybody to read."""
+        return formula if self.size(formula) > LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
+
+    def _shortened(self, formula: Formula, state: int) -> Formula:
+        formula = self.simplified(formula)
+        tried: set[Formula] = set()
+        progress = self.size(formula) <= _LONGEST_PROVED
+        while progress and self._work > 0:
+            progress = False
+            for shorter in sorted(dict.fromkeys(_with_one_operand_less(formula)), key=self.size):
+                if shorter in tried:
+                    continue
+                tried.add(shorter)
+                if self._proved(shorter, state):
+                    formula, progress = simplify(shorter, self._simplified), True
+                    break
+        return formula
+
+    def _proved(self, label: Formula | int, state: int) -> bool:
+        """Whether a formula or obligation is shown to have the language of a state, within the work that is left."""
+        if self._work <= 0:
+            return False
+        successors = self._successors
+        try:
+            with successors.diagrams.at_most(_PROOF_STEPS):
+                obligation = label if isinstance(label, int) else successors.obligation(label)
+                if (obligation, state) in self._refuted:
+                    return False
+                self._work -= 1
+                proved = stands_for(
+                    successors, self._machine, self._known, obligation, state, _PROOF_PAIRS, self._allowed
+                )
+        except OutOfSteps:
+            self._work -= _COST_OF_GIVING_UP
+            return False
+        if not proved:
+            self._refuted.add((obligation, state))
+        return proved
+
+
+def _with_one_operand_less(formula: Formula) -> Iterator[Formula]:
+    """The formula with one operand of one ``and`` or ``or`` in it left out, for each such operand."""
+    args = formula.args
+    if formula.op in ("and", "or"):
+        for index in range(len(args)):
+            yield build.rebuild(formula, args[:index] + args[index + 1 :])
+    for index, argument in enumerate(args):
+        if argument.op != "atom":
+            for smaller in _with_one_operand_less(argument):
+                yield build.rebuild(formula, (*args[:index], smaller, *args[index + 1 :]))

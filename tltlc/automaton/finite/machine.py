@@ -1,0 +1,244 @@
+"""From a formula to its minimal machine: explore the obligations, then merge those of equal language.
+
+A machine is a deterministic automaton with acceptance on transitions: its states are obligations
+(what remains after the samples seen), and the leaf that a letter leads to says whether the trace may
+end with that letter.  Acceptance is put on states only at the end (:mod:`tltlc.automaton.finite.build`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfSteps
+from tltlc.automaton.finite.successors import Successors
+from tltlc.core.record import record
+
+
+class OutOfStates(Exception):
+    """Raised when exploration needs more states than its budget."""
+
+
+@record
+class Machine:
+    """The minimal machine of an obligation.
+
+    ``transitions`` maps each state, an obligation that stands for all of equal language, to its
+    transition, whose leaves lead to such representatives; the first key is the initial state.
+    ``representative`` maps every obligation that was explored to the state that stands for it.
+    """
+
+    initial: int
+    transitions: dict[int, int]
+    representative: dict[int, int]
+
+
+def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
+    """The minimal machine of an obligation over the letters that ``allowed`` (see ``Diagrams.constrain``) accepts.
+
+    Raises :class:`OutOfStates` where more than ``state_budget`` obligations are reached and
+    :class:`OutOfSteps` where their transitions take too many steps.
+    """
+    return minimise(successors, explore(successors, obligation, state_budget, allowed))
+
+
+def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
+    """The transition of every obligation that can be reached, in breadth-first order, the initial one first."""
+    diagrams = successors.diagrams
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    transition_of = successors.of_obligation
+    transitions: dict[int, int] = {}
+    seen = {initial}
+    queue = [initial]
+    # Transitions share nodes: a node met before has had its leaves queued before.
+    met = {IMPOSSIBLE}
+    for state in queue:
+        if len(queue) > state_budget:
+            raise OutOfStates
+        transition = transition_of(state)
+        if allowed != ACCEPT:
+            transition = diagrams.constrain(transition, allowed)
+        transitions[state] = transition
+        stack = [transition]
+        while stack:
+            node = stack.pop()
+            if node in met:
+                continue
+            met.add(node)
+            if atom[node] != LEAF:
+                stack.append(high[node])
+                stack.append(low[node])
+            elif low[node] not in seen:
+                seen.add(low[node])
+                queue.append(low[node])
+    return transitions
+
+
+def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
+    """Merge obligations of equal language by partition refinement.
+
+    A block splits where the transitions of its members, read up to blocks, differ.  The largest
+    part keeps the block's number, so only what leads into the smaller parts is looked at again:
+    each time that a state moves its block at least halves, as in Hopcroft's algorithm.
+    """
+    diagrams = successors.diagrams
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    block = dict.fromkeys(transitions, 0)
+    members: list[list[int]] = [list(transitions)]
+    states_of: dict[int, list[int]] = {}
+    for state, transition in transitions.items():
+        states_of.setdefault(transition, []).append(state)
+    parents, leaves_of = _links(diagrams, states_of)
+
+    # The signature of a node is its diagram with leaves read up to blocks: negative for a leaf, else
+    # the number of a triple (atom, signature, signature).
+    signature: dict[int, int] = {}
+    triples: dict[tuple[int, int, int], int] = {}
+    changed = sorted(parents)
+    while changed:
+        touched: set[int] = set()
+        # A node is made after its children, so that ascending numbers visit children first.
+        for node in changed:
+            if atom[node] == LEAF:
+                new = -1 if node == IMPOSSIBLE else -2 - 2 * block[low[node]] - high[node]
+            else:
+                below, above = signature[low[node]], signature[high[node]]
+                if below == above:
+                    new = below
+                else:
+                    triple = (atom[node], below, above)
+                    new = triples.setdefault(triple, len(triples))
+            if signature.get(node) != new:
+                signature[node] = new
+                for state in states_of.get(node, ()):
+                    touched.add(block[state])
+        moved: list[int] = []
+        for number in sorted(touched):
+            parts: dict[int, list[int]] = {}
+            for state in members[number]:
+                parts.setdefault(signature[transitions[state]], []).append(state)
+            if len(parts) == 1:
+                continue
+            largest = max(parts.values(), key=len)
+            members[number] = largest
+            for part in parts.values():
+                if part is not largest:
+                    for state in part:
+                        block[state] = len(members)
+                        moved += leaves_of.get(state, ())
+                    members.append(part)
+        changed = sorted(_ancestors(moved, parents))
+    return _quotient(successors, transitions, members)
+
+
+def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
+    """The nodes and all above them."""
+    found = set(nodes)
+    stack = list(found)
+    while stack:
+        for parent in parents[stack.pop()]:
+            if parent not in found:
+                found.add(parent)
+                stack.append(parent)
+    return found
+
+
+def _links(diagrams: Diagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+    """The parents of every node under ``roots``, and the leaves that lead to each state."""
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    parents: dict[int, list[int]] = {root: [] for root in roots}
+    leaves_of: dict[int, list[int]] = {}
+    stack = list(parents)
+    while stack:
+        node = stack.pop()
+        if atom[node] == LEAF:
+            leaves_of.setdefault(low[node], []).append(node)
+            continue
+        for child in (low[node], high[node]):
+            known = parents.get(child)
+            if known is None:
+                parents[child] = [node]
+                stack.append(child)
+            else:
+                known.append(node)
+    return parents, leaves_of
+
+
+def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[list[int]]) -> Machine:
+    """The machine whose states are the blocks, each represented by its member that was reached first."""
+    initial = next(iter(transitions))
+    if len(blocks) == len(transitions):
+        return Machine(initial, transitions, {state: state for state in transitions})
+    diagrams = successors.diagrams
+    order = {state: position for position, state in enumerate(transitions)}
+    representative: dict[int, int] = {}
+    for group in blocks:
+        first = min(group, key=order.__getitem__)
+        representative.update(dict.fromkeys(group, first))
+    memo: dict[int, int] = {IMPOSSIBLE: IMPOSSIBLE}
+
+    def to_representative(leaf: int) -> int:
+        return diagrams.leaf(representative[diagrams.low[leaf]], diagrams.high[leaf])
+
+    return Machine(
+        initial=initial,
+        transitions={
+            state: diagrams.relabel(transition, to_representative, memo)
+            for state, transition in transitions.items()
+            if representative[state] == state
+        },
+        representative=representative,
+    )
+
+
+def stands_for(
+    successors: Successors,
+    machine: Machine,
+    known: dict[int, int],
+    obligation: int,
+    state: int,
+    pair_limit: int,
+    allowed: int = ACCEPT,
+) -> bool:
+    """Whether an obligation has the language of a state of a minimal machine.
+
+    Reads both in step: since no two states of a minimal machine are equal, each obligation on the way must
+    stand for one state.  ``known`` says for which ones that is settled; what a successful comparison finds
+    is added to it.  Raises :class:`OutOfSteps` after ``pair_limit`` obligations.
+    """
+    diagrams = successors.diagrams
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    if obligation in known:
+        return known[obligation] == state
+    assumed = {obligation: state}
+    queue = [obligation]
+    for left in queue:
+        if len(queue) > pair_limit:
+            raise OutOfSteps
+        transition = successors.of_obligation(left)
+        if allowed != ACCEPT:
+            transition = diagrams.constrain(transition, allowed)
+        stack = [(transition, machine.transitions[assumed[left]])]
+        visited = set(stack)
+        while stack:
+            m, n = stack.pop()
+            am, an = atom[m], atom[n]
+            if am == an == LEAF:
+                if m == n == IMPOSSIBLE:
+                    continue
+                if IMPOSSIBLE in (m, n) or high[m] != high[n]:
+                    return False
+                found = known.get(low[m], assumed.get(low[m]))
+                if found is None:
+                    assumed[low[m]] = low[n]
+                    queue.append(low[m])
+                elif found != low[n]:
+                    return False
+                continue
+            lows = (low[m] if am <= an else m, low[n] if an <= am else n)
+            highs = (high[m] if am <= an else m, high[n] if an <= am else n)
+            for pair in (lows, highs):
+                if pair not in visited:
+                    visited.add(pair)
+                    stack.append(pair)
+    known.update(assumed)
+    return True

@@ -1,0 +1,224 @@
+"""An obligation written back as a formula: common factors first, operands in source order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+
+from tltlc.automaton.diagrams import FALSE, TRUE
+from tltlc.automaton.finite.successors import Successors
+from tltlc.logic import formula as build
+from tltlc.logic.bounded import bounded, counted_down
+from tltlc.logic.formula import Formula
+
+_TERM_LIMIT = 64
+"""Sums of products with more terms are written as nested case distinctions instead."""
+
+_MOST_FACTORED = 40
+"""Obligations over more variables are written out as they are built, without a search for common factors."""
+
+_Term = frozenset[tuple[int, bool]]
+_Placed = tuple[int, Formula]
+"""The place of a formula's first part in the source, and the formula."""
+
+
+class Writer:
+    """Writes the obligations of one table; operands stand in the order in which ``source`` has them."""
+
+    __slots__ = ("_long_bounds", "_position", "_successors", "_sums", "_without_shorter", "_written")
+
+    def __init__(self, successors: Successors, source: Formula) -> None:
+        self._successors = successors
+        self._position = {part: index for index, part in enumerate(source.walk())}
+        self._long_bounds = {successors.obligation(part): part for part in self._position if _is_long_bound(part)}
+        self._without_shorter: dict[int, int] = {}
+        self._written: dict[int, _Placed] = {}
+        self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
+
+    def formula(self, obligation: int) -> Formula:
+        """The formula of an obligation."""
+        return self._placed(obligation)[1]
+
+    def long_bound(self, obligation: int) -> Formula | None:
+        """The bounded operator of the source that the obligation says, with steps enough that none is shorter to write.
+
+        Looking for parts of each obligation that can go would take n² steps for the n states that count it down.
+        """
+        return self._long_bounds.get(obligation)
+
+    def support(self, obligation: int) -> list[int]:
+        """The variables that the obligation depends on, ascending."""
+        diagrams = self._successors.diagrams
+        seen, stack = {FALSE, TRUE, obligation}, [obligation]
+        variables: set[int] = set()
+        while stack:
+            node = stack.pop()
+            if node in (FALSE, TRUE):
+                continue
+            variables.add(diagrams.variable[node])
+            for child in (diagrams.absent[node], diagrams.present[node]):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        return sorted(variables)
+
+    def restricted(self, obligation: int, variables: Collection[int], value: bool) -> int:
+        """The obligation where variables are known to hold, or known not to."""
+        diagrams = self._successors.diagrams
+        last = max(variables)
+        memo: dict[int, int] = {}
+
+        def restrict(node: int) -> int:
+            tested = diagrams.variable[node]
+            if tested > last:
+                return node
+            if tested in variables:
+                return restrict(diagrams.present[node] if value else diagrams.absent[node])
+            result = memo.get(node)
+            if result is None:
+                absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
+                result = memo[node] = diagrams.obligation(tested, absent, present)
+            return result
+
+        return restrict(obligation)
+
+    def without_shorter_bounds(self, obligation: int) -> int:
+        """The obligation with one ``next`` of each bound that is counted down, where that one says all of them.
+
+        The obligation of a longer bound has a variable for each shorter one, by which the two are compared; labels
+        would have to find out of each of these that it can go.
+        """
+        known = self._without_shorter.get(obligation)
+        if known is None:
+            known = self._without_shorter[obligation] = self._with_longest_bounds(obligation)
+        return known
+
+    def _with_longest_bounds(self, obligation: int) -> int:
+        diagrams, successors = self._successors.diagrams, self._successors
+        gone: set[int] = set()
+        for variable in self.support(obligation):
+            formula = successors.formulas[variable]
+            if formula is None or variable in gone:
+                continue
+            shorter = counted_down(formula)
+            if shorter is None:
+                continue
+            others = set()
+            while shorter is not None:
+                others.add(successors.variable(shorter))
+                shorter = counted_down(shorter)
+            smaller = self.restricted(obligation, others, formula.args[0].op == "and")
+            if smaller == obligation:
+                continue
+            # Obligations grow with their temporal variables.
+            without, with_ = (self.restricted(smaller, (variable,), value) for value in (False, True))
+            if diagrams.either(without, diagrams.both(successors.obligation(formula), with_)) == obligation:
+                obligation = smaller
+                gone |= others
+        return obligation
+
+    def _placed(self, obligation: int) -> _Placed:
+        """The place of the formula's first part in the source, and the formula of the obligation."""
+        known = self._written.get(obligation)
+        if known is None:
+            known = self._written[obligation] = self._write(obligation)
+        return known
+
+    def _write(self, obligation: int) -> _Placed:
+        if obligation == FALSE:
+            return 0, build.FALSE
+        if obligation == TRUE:
+            return 0, build.TRUE
+        first = self._successors.diagrams.variable[obligation]
+        formula = self._successors.formulas[first]
+        if formula is not None and self._successors.obligation(formula) == obligation:
+            return self._literal(first, True)
+        smaller = self.without_shorter_bounds(obligation)
+        if smaller != obligation:
+            return self._placed(smaller)
+        for absorbing, join in ((FALSE, build.and_), (TRUE, build.or_)):
+            factors, rest = self._factors(obligation, absorbing)
+            if factors:
+                operands = [self._literal(*factor) for factor in self._independent(factors, absorbing)]
+                if rest not in (FALSE, TRUE):
+                    operands.append(self._placed(rest))
+                return _joined(join, operands)
+        terms = self._terms(obligation)
+        if terms is not None:
+            products = [[self._literal(*literal) for literal in self._independent(term, FALSE)] for term in terms]
+            return _joined(build.or_, [_joined(build.and_, product) for product in products])
+        diagrams = self._successors.diagrams
+        test = self._literal(diagrams.variable[obligation], True)
+        present = _joined(build.and_, [test, self._placed(diagrams.present[obligation])])
+        return _joined(build.or_, [present, self._placed(diagrams.absent[obligation])])
+
+    def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
+        """The literals without (for TRUE: with) which the obligation is ``absorbing``, and what is left of it."""
+        factors: list[tuple[int, bool]] = []
+        wanted = absorbing == FALSE
+        support = self.support(obligation)
+        for variable in support if len(support) <= _MOST_FACTORED else support[:1]:
+            for polarity in (True, False):
+                if self.restricted(obligation, (variable,), polarity != wanted) == absorbing:
+                    factors.append((variable, polarity))
+                    obligation = self.restricted(obligation, (variable,), polarity == wanted)
+                    break
+        return factors, obligation
+
+    def _independent(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
+        """The literals of an ``and`` (``absorbing`` is FALSE) or ``or`` but those that the obligation of another says.
+
+        ``F(a & X F b)`` has the obligation of its own variable and that of ``F b``: it need not be said beside it.
+        """
+        successors = self._successors
+        literals_there = {variable for variable, _ in literals}
+        said: set[int] = set()
+        for variable, polarity in literals:
+            formula = successors.formulas[variable]
+            if polarity and formula is not None and formula.is_temporal:
+                whole = successors.obligation(formula)
+                said.update(
+                    other
+                    for other in literals_there.intersection(self.support(whole))
+                    if other != variable and self.restricted(whole, (other,), absorbing == TRUE) == absorbing
+                )
+        return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in said)]
+
+    def _terms(self, obligation: int) -> list[_Term] | None:
+        """A sum of products of the obligation, or None where it has too many terms."""
+        if obligation in self._sums:
+            return self._sums[obligation]
+        diagrams = self._successors.diagrams
+        variable = diagrams.variable[obligation]
+        absent, present = diagrams.absent[obligation], diagrams.present[obligation]
+        shared = diagrams.both(absent, present)
+        common, alone = self._terms(shared), self._terms(present)
+        # A temporal variable only ever helps: then `shared` is `absent`, and no term asks for its absence.
+        without = common if shared == absent else self._terms(absent)
+        terms: list[_Term] | None = None
+        if common is not None and alone is not None and without is not None:
+            terms = [
+                *(term | {(variable, True)} for term in alone if not any(other <= term for other in common)),
+                *(term | {(variable, False)} for term in without if not any(other <= term for other in common)),
+                *common,
+            ]
+            if len(terms) > _TERM_LIMIT:
+                terms = None
+        self._sums[obligation] = terms
+        return terms
+
+    def _literal(self, variable: int, polarity: bool) -> _Placed:
+        formula = self._successors.formulas[variable]
+        if formula is None:
+            return self._placed(self._successors.stands_for[variable])
+        place = self._position.get(formula, len(self._position) + variable)
+        return place, formula if polarity else build.not_(formula)
+
+
+def _is_long_bound(formula: Formula) -> bool:
+    found = bounded(formula)
+    return found is not None and found.steps > _MOST_FACTORED
+
+
+def _joined(join: Callable[..., Formula], operands: list[_Placed]) -> _Placed:
+    operands.sort(key=lambda operand: operand[0])
+    return operands[0][0] if operands else 0, join(*(formula for _, formula in operands))

@@ -1,0 +1,244 @@
+"""The after-automaton: from what remains to be done to what remains after a letter.
+
+An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, as a binary decision
+diagram (:class:`~tltlc.automaton.diagrams.Diagrams`), so that formulas that agree as such functions are one state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Final
+
+from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
+from tltlc.automaton.infinite.infinite import conjunction, disjunction
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.logic import formula as build
+from tltlc.logic.bounded import counted_down, counted_down_from
+from tltlc.logic.formula import Formula
+
+STEPS_PER_OBLIGATION: Final = 100
+"""The steps of work that each obligation takes which letters lead to from another one.
+
+Where a budget has fewer, it does not suffice to follow them all, so it is of no use to list them first.
+"""
+
+_TEMPORAL: Final = ("U", "W", "X")
+
+
+class After:
+    """Successors of obligations over ``atoms``; ``letters`` holds them as functions of the letter.
+
+    ``formulas[v]`` is the formula of the obligations' variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid one.
+    Where an obligation becomes too large, all that makes one raises :class:`~tltlc.automaton.diagrams.OutOfSteps`;
+    what makes functions of letters raises :class:`~tltlc.automaton.infinite.work.OutOfWork`.
+    """
+
+    def __init__(self, atoms: Sequence[str], letters: Letters[Any]) -> None:
+        self.diagrams = Diagrams()
+        self.letters = letters
+        self.formulas: list[Formula] = []
+        self.atoms = tuple(atoms)
+        self._atoms = {name: index for index, name in enumerate(atoms)}
+        self._variables: dict[Formula, int] = {}
+        self._of_formula: dict[Formula, int] = {}
+        self._obligations: dict[Formula, int] = {}
+        self._of_obligation: dict[int, int] = {FALSE: letters.leaf(FALSE), TRUE: letters.leaf(TRUE)}
+        self._most_reached = letters.work.left // STEPS_PER_OBLIGATION
+        self._both: dict[tuple[int, int], int] = {}
+        self._either: dict[tuple[int, int], int] = {}
+        self._sources: dict[int, Formula] = {FALSE: build.FALSE, TRUE: build.TRUE}
+
+    def obligation(self, formula: Formula) -> int:
+        """The obligation of a formula in normal form."""
+        found = self._obligations.get(formula)
+        if found is not None:
+            return found
+        # As over finite traces (`automaton/successors.py`).
+        chain = [formula, *counted_down_from(formula, self._obligations)]
+        for bound in chain[:-1]:
+            self._variable(bound)
+        for bound in reversed(chain):
+            found = self._obligations[bound] = self._made(bound)
+            known = self._sources.get(found)
+            if known is None or _weight(bound) < _weight(known):
+                self._sources[found] = bound
+        assert found is not None
+        return found
+
+    def _made(self, formula: Formula) -> int:
+        match formula.op:
+            case "true":
+                return TRUE
+            case "false":
+                return FALSE
+            case "and" | "or":
+                combine = self.diagrams.both if formula.op == "and" else self.diagrams.either
+                result = self.obligation(formula.args[-1])
+                for each in reversed(formula.args[:-1]):
+                    result = combine(self.obligation(each), result)
+                return result
+            case "not":
+                return self.diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
+        result = self.diagrams.obligation(self._variable(formula), FALSE, TRUE)
+        # So that `p U q | q` and `p U q` are one obligation, as over finite traces (`automaton/successors.py`).
+        for weaker in _implied_by(formula):
+            result = self.diagrams.both(result, self.obligation(weaker))
+        for stronger in _that_imply(formula):
+            result = self.diagrams.either(result, self.obligation(stronger))
+        return result
+
+    def _variable(self, formula: Formula) -> int:
+        number = self._variables.get(formula)
+        if number is None:
+            number = self._variables[formula] = len(self.formulas)
+            self.formulas.append(formula)
+        return number
+
+    def after(self, obligation: int) -> int:
+        """What remains after each letter, as a function of the letter."""
+        known = self._of_obligation
+        if obligation in known:
+            return known[obligation]
+        absent, present = self.diagrams.absent, self.diagrams.present
+        # Obligations are as deep as bounds are long.
+        stack = [obligation]
+        while stack:
+            node = stack[-1]
+            missing = [child for child in (present[node], absent[node]) if child not in known]
+            if missing:
+                stack += missing
+                continue
+            stack.pop()
+            if node not in known:
+                known[node] = self._by_variable(node, known[absent[node]], known[present[node]])
+        return known[obligation]
+
+    def _by_variable(self, obligation: int, absent: int, present: int) -> int:
+        """What remains, from what does of the obligation without its first variable and with it."""
+        formula, letters = self.formulas[self.diagrams.variable[obligation]], self.letters
+        if formula.op == "atom":
+            atom = self._atoms[formula.name]
+            true, false = letters.leaf(TRUE), letters.leaf(FALSE)
+            holds = self.both(letters.node(atom, false, true), present)
+            return self.either(self.both(letters.node(atom, true, false), absent), holds)
+        # Obligations grow with their temporal variables.
+        return self.either(absent, self.both(self.of_formula(formula), present))
+
+    def both(self, x: int, y: int) -> int:
+        """``and`` on every letter."""
+        return self.letters.combined(self._counted(self.diagrams.both), x, y, self._both)
+
+    def either(self, x: int, y: int) -> int:
+        """``or`` on every letter."""
+        return self.letters.combined(self._counted(self.diagrams.either), x, y, self._either)
+
+    def _counted(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
+        """``combine``, which raises OutOfWork where one function of the letter gets too many different values."""
+        reached: set[int] = set()
+        most = self._most_reached
+
+        def counted(one: int, other: int) -> int:
+            result = combine(one, other)
+            reached.add(result)
+            if len(reached) > most:
+                raise OutOfWork
+            return result
+
+        return counted
+
+    def of_formula(self, formula: Formula) -> int:
+        """What remains of a formula after each letter."""
+        found = self._of_formula.get(formula)
+        if found is None:
+            found = self._of_formula[formula] = self._expanded(formula)
+        return found
+
+    def _expanded(self, formula: Formula) -> int:
+        letters = self.letters
+        match formula.op:
+            case "true" | "false":
+                return letters.leaf(TRUE if formula.op == "true" else FALSE)
+            case "atom":
+                return letters.node(self._atoms[formula.name], letters.leaf(FALSE), letters.leaf(TRUE))
+            case "not":
+                return letters.node(self._atoms[formula.args[0].name], letters.leaf(TRUE), letters.leaf(FALSE))
+            case "and" | "or":
+                combine = self.both if formula.op == "and" else self.either
+                result = self.of_formula(formula.args[-1])
+                for each in reversed(formula.args[:-1]):
+                    result = combine(self.of_formula(each), result)
+                return result
+            case "X":
+                return letters.leaf(self.obligation(formula.args[0]))
+            case "U" | "W":
+                left, right = map(self.of_formula, formula.args)
+                return self.either(right, self.both(left, letters.leaf(self.obligation(formula))))
+        # Rigid.
+        return letters.leaf(self.obligation(formula))
+
+    # --- obligations as formulas ------------------------------------------------------------------
+
+    def formula(self, obligation: int) -> Formula:
+        """A formula of this obligation: the smallest one that was met, or one from its diagram."""
+        known = self._sources.get(obligation)
+        if known is None:
+            diagrams = self.diagrams
+            variable = self.formulas[diagrams.variable[obligation]]
+            absent, present = self.formula(diagrams.absent[obligation]), self.formula(diagrams.present[obligation])
+            if variable.op == "atom":
+                negative = build.not_(variable)
+                known = disjunction((conjunction((variable, present)), conjunction((negative, absent))))
+            else:
+                known = disjunction((absent, conjunction((variable, present))))
+            self._sources[obligation] = known
+        return known
+
+    def replaced(self, obligation: int, change: Callable[[Formula], int], memo: dict[int, int]) -> int:
+        """The obligation with every temporal formula replaced by the obligation that ``change`` gives for it; ``memo``
+        may be shared by calls with the same ``change``.
+        """
+        if obligation in (FALSE, TRUE):
+            return obligation
+        found = memo.get(obligation)
+        if found is None:
+            diagrams = self.diagrams
+            formula = self.formulas[diagrams.variable[obligation]]
+            absent = self.replaced(diagrams.absent[obligation], change, memo)
+            present = self.replaced(diagrams.present[obligation], change, memo)
+            if formula.op == "atom":
+                holds = self.obligation(formula)
+                fails = self.obligation(build.not_(formula))
+                found = diagrams.either(diagrams.both(holds, present), diagrams.both(fails, absent))
+            else:
+                found = diagrams.either(absent, diagrams.both(change(formula), present))
+            memo[obligation] = found
+        return found
+
+
+def _implied_by(formula: Formula) -> Iterator[Formula]:
+    """Temporal subformulas that hold wherever the formula does: ``F b`` where ``F(a & X F b)`` does."""
+    if formula.op == "X" and formula.args[0].op == "and" and (shorter := counted_down(formula)):
+        yield shorter
+    left, right = formula.args if formula.op in ("U", "W") else (None, None)
+    if formula.op == "W" and right is build.FALSE and left is not None and left.op in _TEMPORAL:
+        yield left
+    if formula.op == "U" and left is build.TRUE and right is not None and right.op == "and":
+        later = (part.args[0] if part.op == "X" else part for part in right.args)
+        yield from (part for part in later if part.op == "U" and part.args[0] is build.TRUE)
+
+
+def _that_imply(formula: Formula) -> Iterator[Formula]:
+    """Temporal subformulas wherever which the formula holds: it does where ``G b`` does, if it is ``a U G b``."""
+    if formula.op == "X" and formula.args[0].op == "or" and (shorter := counted_down(formula)):
+        yield shorter
+    left, right = formula.args if formula.op in ("U", "W") else (None, None)
+    if right is not None and right.op in _TEMPORAL:
+        yield right
+    if formula.op == "W" and right is build.FALSE and left is not None and left.op == "or":
+        later = (part.args[0] if part.op == "X" else part for part in left.args)
+        yield from (part for part in later if part.op == "W" and part.args[1] is build.FALSE)
+
+
+def _weight(formula: Formula) -> int:
+    return sum(1 for _ in formula.walk())

@@ -1,0 +1,42 @@
+"""When the automaton of a specification over infinite traces takes too much: which part of the spec is to blame."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.finite.blowup import ADVICE, Size, blamed, why
+from tltlc.automaton.guards import TooManyPrimes
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.resolve.spec import Part, Spec
+
+_FOR_A_PART: Final = 500_000
+_FOR_ALL_PARTS: Final = 2_000_000
+"""Steps of work for the automata of parts alone: enough to rank the parts, few enough to answer soon."""
+
+
+def blow_up(spec: Spec, reason: Exception) -> TltlError:
+    """The error for a spec whose automaton takes too much: TLT0501, or TLT0502 for a guard's prime implicants."""
+    too_large, advice = why(reason), ADVICE
+    if isinstance(reason, OutOfWork):
+        too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
+    left = _FOR_ALL_PARTS
+
+    def size(part: Part, spec: Spec) -> Size | None:
+        nonlocal left
+        if left < _FOR_A_PART:
+            # The parts that were looked at are more than a message names.
+            return Size(0, "")
+        try:
+            automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)
+        except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError):
+            left -= _FOR_A_PART
+            return None
+        left -= _FOR_A_PART - automaton.letters.work.left
+        states, pairs = len(automaton.steps), automaton.pairs
+        words = f"{states} state{'s' * (states != 1)} and {pairs} pair{'s' * (pairs != 1)}"
+        return Size(states * max(pairs, 1), words)
+
+    return blamed(spec, reason, too_large, size, advice)

@@ -1,0 +1,63 @@
+"""From a resolved specification over infinite traces to its automaton (semantics, section 5)."""
+
+from __future__ import annotations
+
+from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.finite.blowup import recursion_room
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
+from tltlc.automaton.fspa import Fspa, Text
+from tltlc.automaton.guards import TooManyPrimes
+from tltlc.automaton.infinite.analysis import analysis_of_rabin
+from tltlc.automaton.infinite.assembly import assembled
+from tltlc.automaton.infinite.blowup import blow_up
+from tltlc.automaton.infinite.construct import rabin
+from tltlc.automaton.infinite.readback import Writer, text_of
+from tltlc.automaton.infinite.work import STEPS_PER_STATE, OutOfWork, Work
+from tltlc.resolve.spec import Spec
+
+
+def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
+    """The deterministic, complete Rabin automaton of a specification over infinite traces.
+
+    A state accepts (``accepting``) that lies on an accepted cycle; a trap is one from which none is reached.  Raises
+    :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where the construction takes more than
+    :data:`~tltlc.automaton.infinite.work.STEPS_PER_STATE` steps for each state of ``state_budget``, TLT0502 where a
+    guard has too
+    many prime implicants.
+    """
+    with recursion_room():
+        try:
+            return _build(spec, STEPS_PER_STATE * state_budget)
+        except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
+            raise blow_up(spec, reason) from None
+
+
+def _build(spec: Spec, work: int) -> Fspa:
+    names = [atom.name for atom in spec.atoms]
+    automaton = rabin(spec.formula, names, spec.exclusive, work)
+    analysis = analysis_of_rabin(automaton, Work(work))
+    writer = Writer(spec.formula)
+
+    def text(state: int) -> Text:
+        return text_of(writer.formula(automaton.labels[state]) if state else spec.formula)
+
+    parts = assembled(automaton, analysis, names, spec.exclusive, text)
+    return Fspa(
+        name=spec.name,
+        doc=spec.doc,
+        formula=text_of(spec.formula),
+        level=spec.level,
+        limit_steps=spec.limit_steps,
+        judge=spec.judge or analysis.default_judge(),
+        semantics=spec.semantics,
+        tags=spec.tags,
+        clock_s=spec.clock_s,
+        signals=spec.signals,
+        params=spec.params,
+        atoms=spec.atoms,
+        exclusive=spec.exclusive,
+        states=parts.states,
+        edges=parts.edges,
+        spec_size=parts.spec_size,
+        acceptance=parts.acceptance,
+    )

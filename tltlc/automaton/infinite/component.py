@@ -1,0 +1,177 @@
+"""A strongly connected component of the after-automaton as an automaton of its own: labels times memories of parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, Final
+
+from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.delta2 import is_pi_2
+from tltlc.automaton.infinite.graphs import smallest_bottom
+from tltlc.automaton.infinite.leaf_automata import Breakpoint, Memory, Part, Recurrence, RoundRobin
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.infinite.mark_conditions import Clause, Marks, Skeleton, clauses
+from tltlc.core.record import record
+from tltlc.logic.formula import Formula
+
+IMPOSSIBLE: Final = -1
+"""Stands for the label after a letter that there is not."""
+
+State = tuple[Any, ...]
+"""A label and the memories of the parts; as a target also ``("exit", label)``, outside the component."""
+
+Leaf = tuple[State, Marks]
+"""The state after a letter, and the marks of the letter."""
+
+_NONE: Final[Marks] = frozenset()
+
+
+@record
+class Local:
+    """States with their labels and, of each, a function from the letter to a :data:`Leaf`.
+
+    A run that stays is accepted if one of ``accepts`` is met.
+    """
+
+    labels: dict[State, int]
+    steps: dict[State, int]
+    accepts: tuple[Clause, ...]
+
+
+def parts_of(after: After, normal: Formula, *, keep: bool, in_turn: bool) -> tuple[Skeleton, list[Part]]:
+    """The Boolean skeleton of a normalised formula and its parts.
+
+    ``in_turn``: those that can be followed one at a time are one part.  ``keep``: see
+    :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
+    """
+    found: dict[Formula | tuple[Formula, ...], int] = {}
+    parts: list[Part] = []
+
+    def read(formula: Formula) -> Skeleton:
+        if formula.op in ("and", "or"):
+            group = tuple(each for each in formula.args if each.op == ("G" if formula.op == "and" else "F"))
+            if not in_turn or len(group) < 2:
+                return (formula.op, *map(read, formula.args))
+            if group not in found:
+                found[group] = len(parts)
+                parts.append(RoundRobin(after, [_recurrence(after, each, keep=keep) for each in group]))
+            others = [read(each) for each in formula.args if each not in group]
+            return (formula.op, ("leaf", found[group]), *others)
+        if formula not in found:
+            found[formula] = len(parts)
+            rigid = formula.op in ("G", "F")
+            parts.append(_recurrence(after, formula, keep=keep) if rigid else _breakpoint(after, formula))
+        return ("leaf", found[formula])
+
+    return read(normal), parts
+
+
+def has_turns(normal: Formula) -> bool:
+    """Whether parts of a normalised formula can be followed one at a time."""
+    rigid = {"and": "G", "or": "F"}.get(normal.op)
+    if rigid is None:
+        return False
+    return sum(each.op == rigid for each in normal.args) > 1 or any(map(has_turns, normal.args))
+
+
+def _recurrence(after: After, formula: Formula, *, keep: bool) -> Recurrence:
+    return Recurrence(after, formula.args[0].args[0], "inf" if formula.op == "G" else "fin", keep=keep)
+
+
+def _breakpoint(after: After, formula: Formula) -> Breakpoint:
+    return Breakpoint(after, formula, "inf" if is_pi_2(formula) else "fin")
+
+
+def local(
+    letters: Letters[Any],
+    step_of: Callable[[int], int],
+    inside: Collection[int],
+    first: int,
+    skeleton: Skeleton,
+    parts: Sequence[Part],
+) -> Local:
+    """The smallest bottom component of the product of labels ``inside`` and memories, from the label ``first``.
+
+    ``step_of`` gives the labels after a label, as a function of the letter.
+    """
+    initial: State = (first, *(part.initial for part in parts))
+    steps, best = explored(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
+    kinds = [part.kind for part in parts]
+    values = [part.settled(memory) for part, memory in zip(parts, best[0][1:], strict=True)]
+    accepts = clauses(skeleton, kinds, values, letters.work)
+    if isinstance(accepts, bool):
+        accepts = [Clause(frozenset(), frozenset())] if accepts else []
+    members = set(best)
+    chosen = {state: step for state, step in steps.items() if state in members}
+    return Local({state: state[0] for state in chosen}, chosen, tuple(accepts))
+
+
+def explored(
+    letters: Letters[Any], initial: State, step_of: Callable[[State], int]
+) -> tuple[dict[State, int], list[State]]:
+    """The steps of all states that are reached, in the order of their distance; and the smallest bottom component."""
+    steps: dict[State, int] = {}
+    targets: dict[State, list[State]] = {}
+    queue = [initial]
+    seen = {initial}
+    for state in queue:
+        steps[state] = step_of(state)
+        targets[state] = [target for target, _ in letters.values(steps[state]) if target[0] != "exit"]
+        for target in targets[state]:
+            if target not in seen:
+                seen.add(target)
+                queue.append(target)
+    return steps, smallest_bottom(targets, initial)
+
+
+def merged(letters: Letters[Any], one: Local) -> Local:
+    """States that cannot be told apart by labels and by the marks that matter become one."""
+    labels, steps, accepts = one.labels, one.steps, one.accepts
+    used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
+    block = {state: labels[state] for state in steps}
+    count = len(set(block.values()))
+    while True:
+        memo: dict[int, int] = {}
+
+        def change(leaf: Leaf, block: dict[State, int] = block) -> Any:
+            target, marks = leaf
+            return leaf if target[0] == "exit" else (block[target], marks & used)
+
+        signature = {state: (block[state], letters.mapped(change, steps[state], memo)) for state in steps}
+        numbers: dict[tuple[int, int], int] = {}
+        block = {state: numbers.setdefault(signature[state], len(numbers)) for state in steps}
+        if len(numbers) == count:
+            break
+        count = len(numbers)
+    first: dict[int, State] = {}
+    for state in steps:
+        first.setdefault(block[state], state)
+    memo = {}
+
+    def final(leaf: Leaf) -> Leaf:
+        target, marks = leaf
+        return leaf if target[0] == "exit" else (first[block[target]], marks & used)
+
+    kept = {state: letters.mapped(final, steps[state], memo) for state in first.values()}
+    return Local({state: labels[state] for state in kept}, kept, accepts)
+
+
+def _step(
+    letters: Letters[Any], step_of: Callable[[int], int], inside: Collection[int], state: State, parts: Sequence[Part]
+) -> int:
+    """From the letter to the :data:`Leaf` of a state of the product."""
+
+    def start(label: int) -> Leaf:
+        return ((label,), _NONE) if label in inside else (("exit", label), _NONE)
+
+    found = letters.mapped(start, step_of(state[0]), {})
+    for index, (part, memory) in enumerate(zip(parts, state[1:], strict=True)):
+
+        def add(leaf: Leaf, one: tuple[Memory, bool], index: int = index) -> Leaf:
+            target, marks = leaf
+            if target[0] == "exit":
+                return leaf
+            return (*target, one[0]), marks | {index} if one[1] else marks
+
+        found = letters.combined(add, found, part.step(memory), {})
+    return found

@@ -1,0 +1,168 @@
+"""Normalisation: formulas as Boolean combinations of Sigma-2 and Pi-2 ones, of ``G F`` Sigma-1 and ``F G`` Pi-1.
+
+The rewrites are those of S. Sickert, J. Esparza, "An Efficient Normalisation Procedure for Linear Temporal Logic and
+Very Weak Alternating Automata" (LICS 2020), and of their rewrite system (TACAS 2023); what is Sigma-2 or Pi-2
+already is left as it is.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Final
+
+from tltlc.automaton.infinite import infinite
+from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.logic.formula import FALSE, TRUE, Formula
+
+
+@lru_cache(maxsize=65536)
+def has(formula: Formula, op: str) -> bool:
+    """Whether an operator stands in a formula."""
+    return formula.op == op or any(has(each, op) for each in formula.args)
+
+
+@lru_cache(maxsize=65536)
+def is_sigma_2(formula: Formula) -> bool:
+    """Whether no ``W`` has a ``U`` below it, and nothing is rigid."""
+    if formula.op in ("G", "F"):
+        return False
+    if formula.op == "W" and has(formula, "U"):
+        return False
+    return all(map(is_sigma_2, formula.args))
+
+
+@lru_cache(maxsize=65536)
+def is_pi_2(formula: Formula) -> bool:
+    """Whether no ``U`` has a ``W`` below it, and nothing is rigid."""
+    if formula.op in ("G", "F"):
+        return False
+    if formula.op == "U" and has(formula, "W"):
+        return False
+    return all(map(is_pi_2, formula.args))
+
+
+def delta_2(formula: Formula) -> Formula:
+    """The formula as such a combination; raises OutOfWork where it becomes too large."""
+    return _Normaliser().normal(formula)
+
+
+def delta_2_dually(formula: Formula) -> Formula:
+    """Another one, the negation of that of the formula's negation; raises OutOfWork alike."""
+    return infinite.negated(delta_2(infinite.negated(formula)))
+
+
+_MOST_STEPS: Final = 3000
+"""Formulas that one normalisation looks at."""
+
+
+class _Normaliser:
+    def __init__(self) -> None:
+        self._steps = 0
+        self._normal: dict[Formula, Formula] = {}
+        self._flat: dict[Formula, Formula] = {}
+
+    def normal(self, formula: Formula) -> Formula:
+        """The formula normalised."""
+        found = self._normal.get(formula)
+        if found is None:
+            self._spend()
+            found = self._normal[formula] = self._made(formula)
+        return found
+
+    def _made(self, formula: Formula) -> Formula:
+        op, args = formula.op, formula.args
+        if op == "and" or op == "or":
+            make = infinite.conjunction if op == "and" else infinite.disjunction
+            return make(map(self.normal, args))
+        if op == "G" and args[0].op == "F":
+            return self._always_eventually(args[0].args[0])
+        if op == "F" and args[0].op == "G":
+            return self._eventually_always(args[0].args[0])
+        if is_sigma_2(formula) or is_pi_2(formula):
+            return formula
+        if op == "X":
+            return _under_next(self.normal(args[0]))
+        flat = self.flat(formula)
+        if flat is formula:
+            # More rigid parts stand below it than are pulled out.
+            raise OutOfWork
+        return flat if is_sigma_2(flat) else self.normal(flat)
+
+    def _always_eventually(self, inner: Formula) -> Formula:
+        outermost = _outermost(inner, "W")
+        if outermost is None:
+            return infinite.always_eventually(inner)
+        p, q = outermost.args
+        strong = infinite.always_eventually(infinite.substituted(inner, {outermost: infinite.until(p, q)}))
+        for_ever = infinite.always_eventually(infinite.substituted(inner, {outermost: TRUE}))
+        return self.normal(
+            infinite.disjunction((strong, infinite.conjunction((infinite.eventually_always(p), for_ever))))
+        )
+
+    def _eventually_always(self, inner: Formula) -> Formula:
+        outermost = _outermost(inner, "U")
+        if outermost is None:
+            return infinite.eventually_always(inner)
+        p, q = outermost.args
+        weak = infinite.eventually_always(infinite.substituted(inner, {outermost: infinite.weak(p, q)}))
+        never = infinite.eventually_always(infinite.substituted(inner, {outermost: FALSE}))
+        return self.normal(infinite.disjunction((infinite.conjunction((infinite.always_eventually(q), weak)), never)))
+
+    def flat(self, formula: Formula) -> Formula:
+        """The formula with no ``U`` below a ``W``, but for rigid parts."""
+        found = self._flat.get(formula)
+        if found is None:
+            self._spend()
+            found = self._flat[formula] = self._flattened(formula)
+        return found
+
+    def _spend(self) -> None:
+        self._steps += 1
+        if self._steps > _MOST_STEPS:
+            raise OutOfWork
+
+    def _flattened(self, formula: Formula) -> Formula:
+        if infinite.is_rigid(formula) or not formula.args or formula.op == "not":
+            return formula
+        if formula.op != "W" or not has(formula, "U"):
+            args = {each: self.flat(each) for each in formula.args}
+            if all(new is old for old, new in args.items()):
+                return formula
+            rebuilt = infinite.substituted_below(formula, args)
+            return rebuilt if rebuilt is formula else self.flat(rebuilt)
+        a, b = formula.args
+        if has(b, "U"):
+            return self.flat(infinite.disjunction((infinite.until(a, b), infinite.weak(a, FALSE))))
+        outermost = _outermost(a, "U")
+        if outermost is None:
+            # Its U stand in rigid parts.
+            raise OutOfWork
+        p, q = outermost.args
+        weak = infinite.weak(infinite.substituted(a, {outermost: infinite.weak(p, q)}), b)
+        never = infinite.weak(infinite.substituted(a, {outermost: FALSE}), FALSE)
+        return self.flat(
+            infinite.disjunction(
+                (
+                    infinite.conjunction((infinite.always_eventually(q), weak)),
+                    infinite.until(a, infinite.disjunction((b, never))),
+                )
+            )
+        )
+
+
+@lru_cache(maxsize=4096)
+def _under_next(formula: Formula) -> Formula:
+    if formula.op == "and":
+        return infinite.conjunction(map(_under_next, formula.args))
+    if formula.op == "or":
+        return infinite.disjunction(map(_under_next, formula.args))
+    return infinite.next_(formula)
+
+
+def _outermost(formula: Formula, op: str) -> Formula | None:
+    """The first outermost subformula that begins with ``op``, but for those in rigid parts."""
+    if formula.op == op:
+        return formula
+    if formula.op in ("G", "F") or not has(formula, op):
+        return None
+    return next(filter(None, (_outermost(each, op) for each in formula.args)), None)

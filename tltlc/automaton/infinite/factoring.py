@@ -1,0 +1,167 @@
+"""Boolean combinations of temporal formulas written short, with what their terms share in front of them.
+
+The construction reads what remains off decision diagrams, or has it as it was met first.  Here it is written anew, once
+by its prime implicants and once by its prime implicates: ``b & !d | d`` is ``b | d``, and ``F b & G F c | F b & G F d``
+is ``F b & (G F c | G F d)``.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final, Literal
+
+from tltlc.automaton.diagrams import FALSE, TRUE, OutOfSteps
+from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.infinite import conjunction, disjunction
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.infinite.work import Work
+from tltlc.logic.formula import Formula, not_
+
+_MOST_TERMS: Final = 48
+_MOST_STEPS: Final = 20_000
+"""What has more prime implicants or implicates, or takes more steps of its diagrams, is not written by them."""
+
+_Term = frozenset[int]
+"""Literals: twice the variable of a formula, and 1 more for its negation."""
+
+_Op = Literal["or", "and"]
+"""What joins terms: ``or`` for implicants, which are conjunctions, ``and`` for implicates."""
+
+
+class _TooManyTerms(Exception):
+    pass
+
+
+class Factoring:
+    """Other ways to write formulas in normal form over ``atoms``, equal on every infinite trace."""
+
+    def __init__(self, atoms: Sequence[str]) -> None:
+        self._after = After(atoms, Letters(Work(0)))
+        nothing: _Term = frozenset()
+        self._terms: dict[tuple[_Op, int], tuple[_Term, ...]] = {
+            ("or", FALSE): (),
+            ("or", TRUE): (nothing,),
+            ("and", TRUE): (),
+            ("and", FALSE): (nothing,),
+        }
+        self._beside: dict[tuple[_Op, int], _Term] = {}
+
+    def forms(self, formula: Formula) -> Iterator[Formula]:
+        """The formula by its prime implicants, and by its prime implicates, unless these are too many."""
+        ways: tuple[_Op, ...] = ("or", "and")
+        for op in ways:
+            try:
+                with self._after.diagrams.at_most(_MOST_STEPS):
+                    terms = self._needed(self._primes(self._after.obligation(formula), op), op)
+            except (_TooManyTerms, OutOfSteps):
+                continue
+            yield self._factored(terms, op)
+            if len(terms) < 2:
+                # One conjunction, both ways.
+                return
+
+    # --- terms ------------------------------------------------------------------------------------
+
+    def _primes(self, obligation: int, op: _Op) -> tuple[_Term, ...]:
+        """All prime implicants or implicates."""
+        found = self._terms.get((op, obligation))
+        if found is None:
+            diagrams = self._after.diagrams
+            variable = diagrams.variable[obligation]
+            absent, present = diagrams.absent[obligation], diagrams.present[obligation]
+            found = common = self._primes((diagrams.both if op == "or" else diagrams.either)(absent, present), op)
+            with_it, without = (present, absent) if op == "or" else (absent, present)
+            for literal, rest in ((2 * variable, with_it), (2 * variable + 1, without)):
+                new = (term for term in self._primes(rest, op) if not any(each <= term for each in common))
+                found += tuple(term | {literal} for term in new)
+            if len(found) > _MOST_TERMS:
+                raise _TooManyTerms
+            self._terms[op, obligation] = found
+        return found
+
+    def _needed(self, terms: Sequence[_Term], op: _Op) -> list[_Term]:
+        """The terms without the literals and terms that others make idle."""
+        kept = [self._without_idle(term, op) for term in terms]
+        for term in sorted(kept, key=len, reverse=True) if len(kept) > 1 else ():
+            others = [each for each in kept if each is not term]
+            implied = term.union(*(self._idle_beside(literal, op) for literal in term))
+            if any(each <= implied for each in others) or self._is_consensus(term, others, op):
+                kept = others
+        return kept
+
+    def _without_idle(self, term: _Term, op: _Op) -> _Term:
+        for literal in sorted(term) if len(term) > 1 else ():
+            if any(literal in self._idle_beside(other, op) for other in term):
+                term -= {literal}
+        return term
+
+    def _idle_beside(self, literal: int, op: _Op) -> _Term:
+        """Literals that make no difference in a term with this one: ``F b`` in a conjunction with ``F(a & X F b)``."""
+        found = self._beside.get((op, literal))
+        if found is None:
+            found = frozenset()
+            formula = self._after.formulas[literal // 2]
+            if formula.op != "atom":
+                own = [term for term in self._primes(self._after.obligation(formula), op) if literal in term]
+                found = frozenset.intersection(*own) - {literal} if own else found
+            self._beside[op, literal] = found
+        return found
+
+    def _is_consensus(self, term: _Term, others: Sequence[_Term], op: _Op) -> bool:
+        """Whether others say together what a term does, as ``a & b | !a & c`` does of ``b & c``."""
+        literals = frozenset().union(*others)
+        if not any(literal ^ 1 in literals for literal in literals):
+            return False
+        combine = self._after.diagrams.either if op == "or" else self._after.diagrams.both
+        without = self._obligation(others, op)
+        return combine(without, self._obligation([term], op)) == without
+
+    def _obligation(self, terms: Iterable[_Term], op: _Op) -> int:
+        return self._after.obligation(self._joined(terms, op))
+
+    # --- factors ----------------------------------------------------------------------------------
+
+    def _factored(self, terms: Sequence[_Term], op: _Op) -> Formula:
+        """The terms with the literals in front that all of them share.
+
+        Where there are none, those with the literal that most have are written so, with all other terms that end in
+        the same rests, and what is left stands beside them.
+        """
+        if len(terms) < 2:
+            return self._joined(terms, op)
+        shared = frozenset.intersection(*terms)
+        if shared:
+            return _inner(op, (self._term(shared, op), self._factored([term - shared for term in terms], op)))
+        counts = Counter(literal for term in terms for literal in term)
+        best = min(counts, key=lambda literal: (-counts[literal], literal))
+        if counts[best] == 1:
+            return self._joined(terms, op)
+        rests = [term - {best} for term in terms if best in term]
+        shared = frozenset.intersection(*rests)
+        rests = [rest - shared for rest in rests]
+        # All that stands before each of these rests stands before all of them.
+        before = (term - rests[0] for term in terms if rests[0] <= term)
+        factors = [factor for factor in before if all(factor | rest in terms for rest in rests)]
+        product = {factor | rest for factor in factors for rest in rests}
+        others = [term for term in terms if term not in product]
+        whole = _inner(op, (self._factored(factors, op), self._factored(rests, op)))
+        return _outer(op, (whole, self._factored(others, op))) if others else whole
+
+    def _joined(self, terms: Iterable[_Term], op: _Op) -> Formula:
+        return _outer(op, (self._term(term, op) for term in terms))
+
+    def _term(self, term: _Term, op: _Op) -> Formula:
+        return _inner(op, map(self._literal, sorted(term)))
+
+    def _literal(self, literal: int) -> Formula:
+        formula = self._after.formulas[literal // 2]
+        return not_(formula) if literal % 2 else formula
+
+
+def _outer(op: _Op, operands: Iterable[Formula]) -> Formula:
+    return disjunction(operands) if op == "or" else conjunction(operands)
+
+
+def _inner(op: _Op, operands: Iterable[Formula]) -> Formula:
+    return conjunction(operands) if op == "or" else disjunction(operands)

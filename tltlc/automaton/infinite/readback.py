@@ -1,0 +1,91 @@
+"""What remains in a state, written as in the source: with its operators, and its operands in their order."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.automaton.fspa import Text
+from tltlc.automaton.infinite.factoring import Factoring
+from tltlc.automaton.infinite.infinite import infinite_form, readable
+from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
+from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
+
+_MOST_PARTS: Final = 300
+"""A specification with more is written as the construction has it: nobody reads its labels."""
+
+_LONGEST_IN_ENGLISH: Final = 2_000
+"""Characters of a formula above which no sentence would be read."""
+
+
+def text_of(formula: Formula) -> Text:
+    """A formula over infinite traces in the three notations."""
+    plain = ascii_text(formula)
+    if len(plain) > _LONGEST_IN_ENGLISH:
+        return Text(plain, unicode_text(formula), f"Satisfy {plain}.")
+    return Text(plain, unicode_text(formula), english_text(without_constants(formula), endless=True))
+
+
+def without_constants(formula: Formula) -> Formula:
+    """A formula that is equal on every infinite trace, and a constant or with none in it."""
+    return Writer(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
+
+
+class Writer:
+    """Writes formulas of the construction's normal form in the words of ``source``: ``a -> F b`` for ``!a | F b``."""
+
+    def __init__(self, source: Formula) -> None:
+        self._place: dict[Formula, int] = {}
+        self._done: dict[Formula, Formula] = {}
+        self._readable: dict[Formula, Formula] = {}
+        self._sizes: dict[Formula, int] = {}
+        self._factoring: Factoring | None = None
+        parts = list(source.walk())
+        has_constants = _has_constants(source)
+        self._source = source if len(parts) <= _MOST_PARTS else None
+        for place, part in enumerate(parts if self._source else ()):
+            form = readable(infinite_form(part), self._readable)
+            if form not in (TRUE, FALSE):
+                self._place.setdefault(form, place)
+                # Parts that the source says in more words than need be are not taken from it.
+                if part.op == "not" or (has_constants and _has_constants(part)):
+                    continue
+                if self._size(part) <= self._size(self._done.get(form, form)):
+                    self._done[form] = part
+        self._last = len(parts)
+
+    def formula(self, label: Formula) -> Formula:
+        """The formula, equal on every infinite trace: the shortest way to write it that was found."""
+        ways = [self._written(label)]
+        if self._source and label.op in ("and", "or"):
+            self._factoring = self._factoring or Factoring(self._source.atoms())
+            ways += map(self._written, self._factoring.forms(label))
+        distinct = list(dict.fromkeys(ways))
+        return min(distinct, key=lambda way: len(ascii_text(way))) if len(distinct) > 1 else distinct[0]
+
+    def _written(self, label: Formula) -> Formula:
+        plain = readable(label, self._readable)
+        for node in plain.bottom_up(known=self._done):
+            ordered = node
+            if node.op in ("and", "or"):
+                ordered = rebuild(node, tuple(sorted(node.args, key=self._place_of)))
+            words = self._done.get(ordered)
+            self._done[node] = words or rebuild(ordered, tuple(self._done[argument] for argument in ordered.args))
+        return self._done[plain]
+
+    def _place_of(self, formula: Formula) -> int:
+        """Where in the source the formula first stands, or a part of it."""
+        found = self._place.get(formula)
+        if found is None:
+            found = self._place[formula] = min(map(self._place_of, formula.args), default=self._last)
+        return found
+
+    def _size(self, formula: Formula) -> int:
+        """The operators and atoms in the formula as it is written."""
+        for node in formula.bottom_up(known=self._sizes):
+            self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
+        return self._sizes[formula]
+
+
+def _has_constants(formula: Formula) -> bool:
+    """Whether ``true`` or ``false`` stands in a formula, which over infinite traces none needs."""
+    return not {TRUE, FALSE}.isdisjoint(formula.walk())

@@ -1,0 +1,1 @@
+"""Records, source texts and the places in them."""

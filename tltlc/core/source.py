@@ -1,0 +1,71 @@
+"""Source texts and the places in them that diagnostics point at."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from tltlc.core.record import record
+
+
+@record
+class Span:
+    """A half-open range of character offsets, ``start <= end``, into one source text."""
+
+    start: int
+    end: int
+
+    def to(self, other: Span) -> Span:
+        """The smallest span that covers this one and ``other``."""
+        return Span(min(self.start, other.start), max(self.end, other.end))
+
+    def covers(self, other: Span) -> bool:
+        """Whether the other span lies in this one, or is the same."""
+        return self.start <= other.start and other.end <= self.end
+
+
+class SourceFile:
+    """A text and the name under which messages speak of it (a path, or ``<stdin>``).
+
+    A lone carriage return is kept as a newline: all later stages then see the lines that an editor shows,
+    and offsets stay the same.
+    """
+
+    __slots__ = ("_line_starts", "name", "text")
+
+    def __init__(self, name: str, text: str) -> None:
+        self.name = name
+        if "\r" in text:
+            import re
+
+            text = re.sub("\r(?!\n)", "\n", text)
+        self.text = text
+        starts = [0]
+        position = text.find("\n")
+        while position >= 0:
+            starts.append(position + 1)
+            position = text.find("\n", position + 1)
+        self._line_starts = starts
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SourceFile) and (self.name, self.text) == (other.name, other.text)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.text))
+
+    def __repr__(self) -> str:
+        return f"SourceFile(name={self.name!r})"
+
+    def position(self, offset: int) -> tuple[int, int]:
+        """Line and column of a character offset, both from 1; columns count characters."""
+        line = bisect_right(self._line_starts, offset)
+        return line, offset - self._line_starts[line - 1] + 1
+
+    def line(self, number: int) -> str:
+        """The text of a line (from 1), without its line end."""
+        start = self._line_starts[number - 1]
+        end = self._line_starts[number] if number < len(self._line_starts) else len(self.text)
+        return self.text[start:end].rstrip("\r\n")
+
+    def slice(self, span: Span) -> str:
+        """The text that a span covers."""
+        return self.text[span.start : span.end]

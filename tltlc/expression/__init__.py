@@ -1,0 +1,1 @@
+"""Arithmetic over signals and params: its tree, evaluation, JSON and Python."""

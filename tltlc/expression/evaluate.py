@@ -1,0 +1,102 @@
+"""The value of an expression at one sample, in IEEE double precision.
+
+The order of operations is part of the meaning, since every monitor must agree to the last bit:
+operands from left to right; ``x ^ 2`` is ``x * x`` and ``x ^ 3`` is ``x * x * x``, any other power the
+C library's ``pow``; ``clamp(x, low, high)`` is ``min(max(x, low), high)``; of equal operands ``min`` and
+``max`` give the first; a case whose condition is false is not computed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import reduce
+from operator import add, ge, gt, le, lt, mul, neg, sub, truediv
+from typing import Final
+
+from tltlc.expression.tree import Condition, Const, Expression, Param, Signal, When
+
+MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
+"""The constant exponents that mean a product, and of how many factors."""
+
+
+def evaluate(expression: Expression, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
+    """The value of an expression; ``signals`` and ``params`` hold finite numbers in SI units.
+
+    The value may be infinite or NaN where a product or sum is too large.
+
+    Raises:
+        ZeroDivisionError: a divisor is 0.
+        OverflowError: ``exp`` or a power is too large.
+        ValueError: a root or a power that no real number has.
+        KeyError: a signal or param is missing.
+    """
+    if isinstance(expression, Const):
+        return expression.value
+    if isinstance(expression, Signal):
+        return float(signals[expression.name])
+    if isinstance(expression, Param):
+        return float(params[expression.name])
+    if isinstance(expression, When):
+        for condition, value in expression.cases:
+            if _holds(condition, signals, params):
+                return evaluate(value, signals, params)
+        return evaluate(expression.otherwise, signals, params)
+    if expression.op == "^" and isinstance(exponent := expression.args[1], Const):
+        factors = MULTIPLIED_EXPONENTS.get(exponent.value)
+        if factors is not None:
+            base = evaluate(expression.args[0], signals, params)
+            return math.prod([base] * (factors - 1), start=base)
+    return _FUNCTIONS[expression.op](*[evaluate(argument, signals, params) for argument in expression.args])
+
+
+def _holds(condition: Condition, signals: Mapping[str, float], params: Mapping[str, float]) -> bool:
+    if condition.op == "not":
+        return not _part_holds(condition.args[0], signals, params)
+    if condition.op == "and":
+        return all(_part_holds(part, signals, params) for part in condition.args)
+    if condition.op == "or":
+        return any(_part_holds(part, signals, params) for part in condition.args)
+    left, right = (_part_value(part, signals, params) for part in condition.args)
+    return _COMPARISONS[condition.op](left, right)
+
+
+def _part_holds(part: Expression | Condition, signals: Mapping[str, float], params: Mapping[str, float]) -> bool:
+    assert isinstance(part, Condition), "and, or, not take conditions"
+    return _holds(part, signals, params)
+
+
+def _part_value(part: Expression | Condition, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
+    assert not isinstance(part, Condition), "comparisons take expressions"
+    return evaluate(part, signals, params)
+
+
+def _sum(*terms: float) -> float:
+    return reduce(add, terms)
+
+
+def _product(*factors: float) -> float:
+    return reduce(mul, factors)
+
+
+def _clamp(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)
+
+
+_FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
+    "+": _sum,
+    "-": sub,
+    "*": _product,
+    "/": truediv,
+    "^": math.pow,
+    "neg": neg,
+    "min": min,
+    "max": max,
+    "abs": abs,
+    "clamp": _clamp,
+    "sqrt": math.sqrt,
+    "exp": math.exp,
+    "tanh": math.tanh,
+}
+
+_COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {"<": lt, "<=": le, ">": gt, ">=": ge}

@@ -1,0 +1,41 @@
+"""Expressions to and from the JSON of an artefact, node by node."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+
+
+def to_json(expression: Expression | Condition) -> dict[str, Any]:
+    """The JSON object of an expression: ``{"op": "+", "args": […]}``, ``{"signal": "health"}``, …"""
+    if isinstance(expression, Const):
+        return {"const": expression.value}
+    if isinstance(expression, Signal):
+        return {"signal": expression.name}
+    if isinstance(expression, Param):
+        return {"param": expression.name}
+    if isinstance(expression, When):
+        cases = [[to_json(condition), to_json(value)] for condition, value in expression.cases]
+        return {"when": cases, "otherwise": to_json(expression.otherwise)}
+    return {"op": expression.op, "args": [to_json(argument) for argument in expression.args]}
+
+
+def from_json(node: dict[str, Any]) -> Expression:
+    """The expression of a JSON object that fits the artefact's schema."""
+    if "const" in node:
+        return Const(float(node["const"]))
+    if "signal" in node:
+        return Signal(node["signal"])
+    if "param" in node:
+        return Param(node["param"])
+    if "when" in node:
+        cases = tuple((_condition(condition), from_json(value)) for condition, value in node["when"])
+        return When(cases, from_json(node["otherwise"]))
+    return Op(node["op"], tuple(from_json(argument) for argument in node["args"]))
+
+
+def _condition(node: dict[str, Any]) -> Condition:
+    if node["op"] in ("and", "or", "not"):
+        return Condition(node["op"], tuple(_condition(argument) for argument in node["args"]))
+    return Condition(node["op"], tuple(from_json(argument) for argument in node["args"]))

@@ -1,0 +1,169 @@
+"""Expressions as Python source, for monitors that compute them many times a second.
+
+The source computes to the last bit what :func:`tltlc.expression.evaluate.evaluate` computes, and raises
+the same errors.  It uses the names ``pow``, ``sqrt``, ``exp``, ``tanh`` of the module ``math``.  No name
+of a signal or param enters it: the caller says which Python name stands for each.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Final, cast
+
+from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
+
+INDENT: Final = "    "
+
+_MAX_DEPTH: Final = 40
+"""Python's own parser bounds how deep brackets nest, so deeper parts are functions of their own."""
+
+# How tightly a piece of Python text binds, loosest first.
+_CASES, _OR, _AND, _NOT, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(9)
+
+
+def compile_expressions(
+    expressions: Sequence[Expression], signals: Sequence[str], params: Mapping[str, float]
+) -> tuple[Callable[[Sequence[float]], float], ...]:
+    """One function per expression; each takes a sample, the values of ``signals`` (floats) in order.
+
+    ``params`` are fixed here.  Values and errors as for :func:`tltlc.expression.evaluate.evaluate`.  The source names
+    in
+    each function only the signals that it reads, so that it grows with the expressions and not with their product.
+    """
+    places = {name: index for index, name in enumerate(signals)}
+    constants = {name: f"p{index}" for index, name in enumerate(params)}
+    space: dict[str, object] = {name: getattr(math, name) for name in ("pow", "sqrt", "exp", "tanh")}
+    space.update(zip(constants.values(), map(float, params.values()), strict=True))
+    lines: list[str] = []
+    for index, expression in enumerate(expressions):
+        lines += _function(index, expression, places, constants)
+    exec(compile("\n".join([*lines, ""]), "<expressions>", "exec"), space)
+    functions = [space[f"atom{index}"] for index in range(len(expressions))]
+    return tuple(cast("Callable[[Sequence[float]], float]", function) for function in functions)
+
+
+def _function(
+    index: int, expression: Expression, places: Mapping[str, int], constants: Mapping[str, str]
+) -> Iterator[str]:
+    """The lines of the function ``atomINDEX`` and of those that it calls."""
+    read = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, Signal)}
+    fixed = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, Param)}
+    writer = Writer(read, fixed, f"_{index}_")
+    body = writer.assignment("value", expression, INDENT)
+    yield from writer.parts
+    yield f"def atom{index}(sample):"
+    yield from (f"{INDENT}{variable} = sample[{places[name]}]" for name, variable in read.items())
+    yield from body
+    yield f"{INDENT}return value"
+
+
+class Writer:
+    """Writes expressions; ``signals`` and ``params`` map their names to those of Python variables in scope.
+
+    ``parts`` collects the source of the functions, named ``PREFIXpart0``, …, that deep expressions need beside them.
+    Variables that it needs are named ``PREFIXbase``, ``PREFIXbase2``, ….
+    """
+
+    def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str, typed: bool = False) -> None:
+        self._signals, self._params, self._prefix, self._typed = signals, params, prefix, typed
+        self._count = self._powers = 0
+        self.parts: list[str] = []
+
+    def assignment(self, name: str, expression: Expression, indent: str) -> list[str]:
+        """Lines that compute the expression and assign it to a variable; a ``when`` becomes an ``if``."""
+        return self._assignment(name, expression, indent, 0)
+
+    def _assignment(self, name: str, expression: Expression, indent: str, depth: int) -> list[str]:
+        if not isinstance(expression, When) or depth > 10:
+            return [f"{indent}{name} = {self._text(expression, _CASES, 0)}"]
+        lines: list[str] = []
+        for position, (condition, value) in enumerate(expression.cases):
+            lines.append(f"{indent}{'elif' if position else 'if'} {self._condition(condition, _CASES, 0)}:")
+            lines += self._assignment(name, value, indent + INDENT, depth + 1)
+        lines.append(f"{indent}else:")
+        return lines + self._assignment(name, expression.otherwise, indent + INDENT, depth + 1)
+
+    def _text(self, node: Expression, room: int, depth: int) -> str:
+        """The text of an expression, in brackets where it binds more loosely than ``room``."""
+        if isinstance(node, Const):
+            return _bracketed(repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, room)
+        if isinstance(node, Signal):
+            return self._signals[node.name]
+        if isinstance(node, Param):
+            return self._params[node.name]
+        if depth > _MAX_DEPTH:
+            return self._part(node)
+        if isinstance(node, When):
+            return _bracketed(self._cases(node, depth + 1), _CASES, room)
+        text, binding = self._operation(node, depth + 1)
+        return _bracketed(text, binding, room)
+
+    def _operation(self, node: Op, depth: int) -> tuple[str, int]:
+        left = node.args[0]
+        if node.op in ("+", "-"):
+            texts = [self._text(left, _SUM, depth), *(self._text(term, _PRODUCT, depth) for term in node.args[1:])]
+            return f" {node.op} ".join(texts), _SUM
+        if node.op in ("*", "/"):
+            texts = [self._text(left, _PRODUCT, depth), *(self._text(factor, _SIGN, depth) for factor in node.args[1:])]
+            return f" {node.op} ".join(texts), _PRODUCT
+        if node.op == "neg":
+            return f"-{self._text(left, _UNIT, depth)}", _SIGN
+        if node.op == "^":
+            return self._power(left, node.args[1], depth)
+        texts = [self._text(argument, _CASES, depth) for argument in node.args]
+        if node.op == "clamp":
+            return f"min(max({texts[0]}, {texts[1]}), {texts[2]})", _UNIT
+        return f"{node.op}({', '.join(texts)})", _UNIT
+
+    def _power(self, base: Expression, exponent: Expression, depth: int) -> tuple[str, int]:
+        factors = MULTIPLIED_EXPONENTS.get(exponent.value, 0) if isinstance(exponent, Const) else 0
+        if not factors:
+            return f"pow({self._text(base, _CASES, depth)}, {self._text(exponent, _CASES, depth)})", _UNIT
+        if isinstance(base, (Signal, Param)):
+            return " * ".join([self._text(base, _UNIT, depth)] * factors), _PRODUCT
+        # Each nesting has a variable of its own: the base of a power may hold another power.
+        self._powers += 1
+        name = f"{self._prefix}base{self._powers if self._powers > 1 else ''}"
+        first = f"({name} := {self._text(base, _CASES, depth + 1)})"
+        self._powers -= 1
+        return " * ".join([first, *[name] * (factors - 1)]), _PRODUCT
+
+    def _cases(self, node: When, depth: int) -> str:
+        """A ``when`` inside an expression: conditional expressions, the last one innermost."""
+        cases = [
+            f"{self._text(value, _OR, depth)} if {self._condition(condition, _OR, depth)} else "
+            for condition, value in node.cases
+        ]
+        return "".join(cases) + self._text(node.otherwise, _CASES, depth)
+
+    def _condition(self, node: Expression | Condition, room: int, depth: int) -> str:
+        assert isinstance(node, Condition), "and, or, not and cases take conditions"
+        if depth > _MAX_DEPTH:
+            return self._part(node)
+        if node.op in ("and", "or"):
+            binding = _AND if node.op == "and" else _OR
+            text = f" {node.op} ".join(self._condition(part, binding + 1, depth + 1) for part in node.args)
+            return _bracketed(text, binding, room)
+        if node.op == "not":
+            return _bracketed(f"not {self._condition(node.args[0], _NOT, depth + 1)}", _NOT, room)
+        left, right = (cast("Expression", side) for side in node.args)
+        text = f"{self._text(left, _SUM, depth + 1)} {node.op} {self._text(right, _SUM, depth + 1)}"
+        return _bracketed(text, _COMPARISON, room)
+
+    def _part(self, node: Expression | Condition) -> str:
+        """A call of a new function that computes the node."""
+        name = f"{self._prefix}part{self._count}"
+        self._count += 1
+        is_condition = isinstance(node, Condition)
+        body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)
+        values = [*self._signals.values(), *self._params.values()]
+        heading = ", ".join(f"{value}: float" if self._typed else value for value in values)
+        result = f" -> {'bool' if is_condition else 'float'}" if self._typed else ""
+        self.parts.append(f"def {name}({heading}){result}:\n{INDENT}return {body}")
+        return f"{name}({', '.join(values)})"
+
+
+def _bracketed(text: str, binding: int, room: int) -> str:
+    return text if binding >= room else f"({text})"

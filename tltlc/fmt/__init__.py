@@ -1,5 +1,0 @@
-"""The layout of source texts: one way to write each of them, in four styles of operators."""
-
-from tltlc.fmt.format import format_source as format_source
-from tltlc.fmt.format import format_text as format_text
-from tltlc.fmt.style import STYLES as STYLES

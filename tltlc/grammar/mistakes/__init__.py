@@ -1,0 +1,1 @@
+"""Guesses at what a text with syntax errors was meant to say."""

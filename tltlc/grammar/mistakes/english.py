@@ -1,0 +1,451 @@
+"""Plain English where the language has another form: `if`, `while`, `before`, a bound behind its formula."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.keywords import CASES, CLAUSES, CONDITIONS, OPERATORS, UNITS_ELSEWHERE
+from tltlc.grammar.lexer import Token
+from tltlc.grammar.mistakes.one_reading import (
+    QUANTIFIERS,
+    TEMPORAL,
+    UNCLEAR,
+    clause_asked,
+    has,
+    has_always_before,
+    is_clear_here,
+    is_clear_time_here,
+    is_clear_word,
+    is_of_one_step,
+)
+from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, Place, declares_clock, outside, shown
+from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_of, operand, reworded, span_of
+
+_FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
+_JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
+"""Fillers that say something behind another word, as `next to` and `not either`, with the operators beside them."""
+_COMPARISONS: Final = {
+    ("at", "least"): ">=",
+    ("at", "most"): "<=",
+    **dict.fromkeys((("more", "than"), ("greater", "than"), ("above",), ("over",), ("exceeds",)), ">"),
+    **dict.fromkeys((("less", "than"), ("below",), ("under",)), "<"),
+}
+
+Forms = Mapping[str, str]
+"""What stands for some English, by the clause it stands in, or anywhere else; with a keyword, for the whole clause."""
+
+_CONDITION: Final = {"reach": "{a} and {b}", "avoid": "{a} and {b}", "": "{b} implies {a}"}
+_SEQUENCE: Final = {"": "{a} then {b}"}
+_FORMS: Final[dict[str, Forms]] = {
+    **dict.fromkeys((*CONDITIONS, "during"), _CONDITION),
+    # The weak operators: what is kept or avoided must not become a goal.
+    "before": {
+        "keep": "require {a} weak_until {b}",
+        "avoid": "require (not {a}) weak_until {b}",
+        **_SEQUENCE,
+    },
+    "after": {
+        "keep": "{b} implies always {a}",
+        "avoid": "require always ({b} implies always not {a})",
+        "": "{b} then {a}",
+    },
+    "followed": {"keep": "{a} implies next eventually {b}", **_SEQUENCE},
+    "unless": {"reach": "{a} or {b}", "keep": "{a} or {b}", "avoid": "{a} and not {b}", "": "{a} weak_until {b}"},
+    "without": {"": "{a} and not {b}"},
+    "but": {"": "{a} and {b}"},
+    "xor": {"": "not ({a} iff {b})"},
+    "xnor": {"": "{a} iff {b}"},
+    "nor": {"": "not ({a} or {b})"},
+    "nand": {"": "not ({a} and {b})"},
+}
+"""What `a WORD b` is."""
+
+_IN_TIME: Final = {
+    "reach": "require eventually within {b} {a}",
+    "avoid": "require not eventually within {b} {a}",
+    "then": "{c} and F[1,{end}] {a}",
+    "": "eventually within {b} {a}",
+}
+_FOR_TIME: Final = {
+    # Past the end of a trace `always for` asks nothing: one step would meet it.
+    "reach": "(always for {b} {a}) and next after {less} {a}",
+    "keep": "require always for {b} {a}",
+    "avoid": "require always for {b} not {a}",
+    "then": "{c} then (always for {b} {a}) and next after {less} {a}",
+    "": "always for {b} {a}",
+}
+_AFTER_TIME: Final = {
+    "reach": "require next after {b} eventually {a}",
+    "keep": "require weak_next after {b} always {a}",
+    "avoid": "require weak_next after {b} always not {a}",
+    "then": "{c} and next after {b} eventually {a}",
+    "": "next after {b} {a}",
+}
+_TIMES: Final[dict[str, Forms]] = {
+    **dict.fromkeys(("within", "in", "before", "by"), _IN_TIME),
+    "for": _FOR_TIME,
+    "after": _AFTER_TIME,
+}
+"""What `a WORD TIME` and `WORD TIME a` are; under `then`, what `c then a WORD TIME` is, as a time is that of its goal.
+
+With `and`, it begins where `c` is reached.  ``{end}`` is the time as the end of a bound in brackets, ``{less}`` one
+step less.
+"""
+_TIMED: Final = {form for forms in _TIMES.values() for form in forms.values()}
+
+_PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} implies {a}"}
+_PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
+"""What `WORD b, a` and `WORD b then a` are."""
+
+_FROM_THEN_ON: Final = {
+    "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
+    "avoid": "`avoid a and b` forbids `a` wherever `b` holds, `keep b implies always not a` from then on, too",
+}
+"""What `if b, keep a` and `if b, avoid a` may be."""
+_REASONS: Final = {
+    ("if", "reach"): " for both at one step, `{b} then {a}` for one after the other",
+    ("when", "reach"): " for both at one step, `{b} then {a}` for one after the other",
+    ("while", "reach"): " for both at one step; a clause `keep {b}` asks for it at every step",
+    ("for", "reach"): "; past the end of play `always for` asks nothing, so the last step is asked for, too",
+}
+_WHERE: Final = ": where `{b}` holds, `{a}` must, too"
+_ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
+
+
+def plain_english(place: Place) -> Diagnostic | None:
+    """``reach if b then a``, ``keep a while b``, ``reach a within 20 steps``."""
+    if not place.wants_operator or place.before is None:
+        return None
+    for at, elsewhere in ((place.stop.index - 1, _PREFIXES), (place.stop.index, _FORMS)):
+        word, timed = place.tokens[at], at + 1 < len(place.tokens) and place.tokens[at + 1].type == "NUMBER"
+        forms = _TIMES.get(word.text) if timed else elsewhere.get(word.text)
+        if forms is None or word.type not in ("NAME", "WHEN"):
+            continue
+        if place.tokens[0].type == "PREDICATE":
+            return place.error("TLT0101", f"{shown(word)} is no operator", CASES, span=word.span)
+        if word.text == "without" and _kind(place) in ("reach", "keep"):
+            return _without(place)
+        find = _timed if timed else _untimed
+        return _prefixed(place, at, forms, timed=timed) if at < place.stop.index else find(place, forms)
+    return None
+
+
+def compared(place: Place) -> Diagnostic | None:
+    """``coins is more than 3``, ``health above 50%``."""
+    at = place.stop.index
+    if not place.wants_operator or place.found.type != "NAME":
+        return None
+    words = [token.text for token in place.tokens[at : at + 3]]
+    start = words[0] in ("is", "are")
+    for phrase, sign in _COMPARISONS.items():
+        length = start + len(phrase)
+        if tuple(words[start:length]) != phrase:
+            continue
+        value = place.tokens[at + length].type
+        if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
+            title, span = f"{shown(place.found)} is no operator", span_of(place.tokens[at : at + length])
+            return place.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
+    return None
+
+
+def filler(place: Place) -> Diagnostic | None:
+    """``reach the exit``, ``avoid being seen``."""
+    at = place.stop.index
+    for index in (at - 1, at):
+        word = place.tokens[index]
+        if place.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
+            title, next_ = f"{shown(word)} says nothing here", place.tokens[index + 1]
+            if next_.type == "NAME" and _is_clear_filler(place, index):
+                return reworded(place, index, index + 2, next_.text, title, " alone") or place.error(
+                    "TLT0101", title, "leave it out", span=word.span
+                )
+            if next_.type == "NAME":
+                help_ = "say it with a predicate, as in `near(a)`"
+                if word.text in ("either", "both"):
+                    help_ = "say what it joins by brackets: `not (a or b)`, `c and (a or b)`"
+                return place.error("TLT0101", f"{shown(word)} is no operator", help_, span=word.span)
+    return None
+
+
+def _is_clear_filler(place: Place, at: int) -> bool:
+    """Whether a word can be left out: it stands alone, or first, before operators that join what it speaks of."""
+    word, kind = place.tokens[at].text, _kind(place)
+    if word not in _JOINED:
+        return True
+    # `reach both a and b` may be met one after the other, and `avoid both` may forbid each of the two.
+    if at != formula_start(place) or (word == "both" and kind not in ("keep", "require")):
+        return False
+    return not has(place, at, formula_stop(place), INFIX - {*_JOINED[word]})
+
+
+def conditional(place: Place) -> Diagnostic | None:
+    """A line of a spec that begins with ``if`` or ``when``."""
+    forms = {"": "keep {b} implies {a}"}
+    return _prefixed(place, 0, forms, timed=False) if place.tokens[0].text in _PREFIXES else None
+
+
+def _without(place: Place) -> Diagnostic:
+    """``reach a without b``: `avoid` asks for what follows, which must be one operand."""
+    help_ = "`avoid`, which begins a clause of its own and speaks of every step"
+    at = place.stop.index
+    goals = _goals(place, at)
+    sides = ((goals[-1], at), (at + 1, formula_stop(place)))
+    alone = len(goals) == 1 and is_clear_word(place, "without", *sides, _kind(place))
+    write = "avoid" if alone else None
+    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}", write=write)
+
+
+def _untimed(place: Place, forms: Forms) -> Diagnostic:
+    """``a WORD b``."""
+    at, kind = place.stop.index, _kind(place)
+    begin, stop = _goals(place, at)[-1], formula_stop(place)
+    behind = at + 1 + (place.tokens[at + 1].text == "by")
+    end = next((index for index in outside(place.tokens, behind, stop) if place.tokens[index].type == "THEN"), stop)
+    form = forms.get(kind, forms[""])
+    said = _Said(operand(place, begin, at), operand(place, behind, end))
+    word = place.found.text
+    is_clear = (
+        (end == stop or (kind == "reach" and word not in _OF_THE_REST))
+        and (begin == formula_start(place) or word != "unless")
+        and not (" then " in form and kind == "keep")
+        and is_clear_word(place, word, (begin, at), (behind, end), kind)
+        and is_clear_here(place, word)
+    )
+    return _told(place, at, (begin, end), form, said if is_clear else None)
+
+
+def _timed(place: Place, forms: Forms) -> Diagnostic:
+    """``a WORD TIME``."""
+    at, kind = place.stop.index, _kind(place)
+    goals, stop = _goals(place, at), formula_stop(place)
+    begin = goals[-1]
+    time, behind, is_clear_unit = _time(place, at + 1)
+    if len(goals) > 1:
+        before = operand(place, goals[-2], begin - 1)
+        is_clear = not has(place, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
+        form, start = forms["then"], goals[-2]
+    elif kind in forms and kind:
+        before, form, start, is_clear = "", forms[kind], begin, True
+    else:
+        # The time is that of the last operand alone.
+        last = last_of(place, INFIX, begin)
+        start = begin = begin if last is None else last + 1
+        before, form, is_clear = "", forms[""], _is_clear_time(place, begin, forms)
+        is_clear = is_clear and place.tokens[begin].type not in _UNARY
+        is_clear = is_clear and not has(place, formula_start(place), at, TEMPORAL | QUANTIFIERS)
+    if kind != "keep":
+        is_clear = is_clear and place.tokens[begin].type not in _UNARY
+    is_clear = is_clear and is_clear_unit and behind == stop and _is_clear_operand(place, begin, at)
+    said = _Said(operand(place, begin, at), time, before)
+    return _told(place, at, (start, stop), form, said if is_clear else None)
+
+
+def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
+    """``WORD b, a`` and ``WORD TIME a``."""
+    if timed:
+        return _prefixed_time(place, at, forms)
+    stop, form = formula_stop(place), forms.get(_kind(place), forms[""])
+    split = _split(place, at + 1, stop)
+    behind = split + (place.tokens[split].text in _SEPARATORS)
+    if _kind(place) == "reach":
+        # What follows is the next goal.
+        stop = next((i for i in outside(place.tokens, behind, stop) if place.tokens[i].type == "THEN"), stop)
+    said = _Said(operand(place, behind, stop), operand(place, at + 1, split))
+    previous = place.tokens[at - 1].type if at > formula_start(place) else None
+    is_clear = previous in _BEFORE_CONDITIONS.get(_kind(place), (None, "AND", "OR", "IMPLIES"))
+    is_clear = is_clear and is_clear_here(place, place.tokens[at].text)
+    is_clear = is_clear and not has(place, formula_start(place), split, TEMPORAL)
+    is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, behind, stop, TEMPORAL))
+    # `if a then b until c` may be a rule until `c`; a keyword would take the `until` and the `or` behind it, too.
+    is_clear = is_clear and not has(place, behind, stop, UNCLEAR)
+    asked = place.tokens[behind].text
+    if asked in _FROM_THEN_ON:
+        title = (
+            f"{shown(place.tokens[at])} is no operator" if at else f"no clause begins with {shown(place.tokens[at])}"
+        )
+        code = "TLT0101" if at else "TLT0107"
+        return place.error(code, title, _FROM_THEN_ON[asked], span=place.tokens[at].span)
+    if asked in OPERATORS:
+        is_clear = is_clear and asked == "reach" and place.tokens[at].text != "while"
+        is_clear = is_clear and not has(place, behind, stop, INFIX)
+    wrapped = form if previous in (None, "THEN") else f"({form})"
+    return _told(place, at, (at, stop), wrapped, said if is_clear else None)
+
+
+def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
+    stop, kind, first = formula_stop(place), _kind(place), formula_start(place)
+    time, behind, is_clear_unit = _time(place, at + 1)
+    before, start = "", at
+    is_clear = is_clear_unit and _is_clear_operand(place, behind, stop)
+    if at == first:
+        form = forms.get(kind, forms[""])
+        is_own = form != forms[""]
+        is_clear = is_clear and (is_own or (_is_clear_time(place, at, forms) and not has(place, behind, stop, INFIX)))
+    elif kind == "reach" and place.tokens[at - 1].type == "THEN":
+        start = _goals(place, at)[-2]
+        form, before = forms["then"], operand(place, start, at - 1)
+        is_clear = is_clear and not has(place, start, at - 1, UNCLEAR | TEMPORAL)
+    else:
+        form = forms[""]
+        is_clear = is_clear and _is_clear_time(place, at, forms)
+        is_clear = is_clear and not has(place, first, stop, {*TEMPORAL, "AND", "OR"})
+    said = _Said(operand(place, behind, stop), time, before)
+    return _told(place, at, (start, stop), form, said if is_clear else None)
+
+
+@record
+class _Said:
+    """What was written: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``."""
+
+    a: str
+    b: str
+    c: str = ""
+
+    def put_in(self, form: str) -> str:
+        """The form with these in their places, empty where it needs another time than there is."""
+        number, _, unit = self.b.partition(" ")
+        steps = unit in ("step", "steps") and number.isdecimal()
+        less = f"{int(number) - 1} steps" if steps else ""
+        if "{less}" in form and not less:
+            return ""
+        return form.format(a=self.a, b=self.b, c=self.c, end=number if steps else self.b, less=less)
+
+
+def _told(place: Place, at: int, part: tuple[int, int], form: str, said: _Said | None) -> Diagnostic:
+    """The error at the word ``at``, with what to write in place of a part of the tokens.
+
+    ``said`` is None where that cannot be read in one way alone; then the help says how the form is written.
+    """
+    word, kind = place.tokens[at], _kind(place)
+    title = f"{shown(word)} is no operator" if at else f"no clause begins with {shown(word)}"
+    code = "TLT0101" if at else "TLT0107"
+    start, stop = part
+    timed = form in _TIMED
+    if _is_clause(form):
+        start = 0
+    text = said.put_in(form) if said and said.a and said.b and not (timed and _is_zero(said.b)) else ""
+    if word.text == "before" and form == _SEQUENCE[""]:
+        # `b` may be a goal that comes later, or what must not happen first.
+        text = ""
+    if said and text:
+        reason = ((word.text == "for" or not timed) and _REASONS.get((word.text, kind))) or (
+            (_WHERE if _is_of_every_step(place, at) else _ONCE) if form == _CONDITION[""] else ""
+        )
+        found = reworded(place, start, stop, text, title, reason.format(a=said.a, b=said.b), code)
+        if found:
+            return found
+    return place.error(code, title, _in_general(place, at, form), span=word.span)
+
+
+def _in_general(place: Place, at: int, form: str) -> str:
+    """How a form is written, with letters for what stands in it."""
+    word, timed, prefixed = place.tokens[at].text, form in _TIMED, at == 0 or at < place.stop.index
+    said = _Said("a", "20 steps" if timed else "b", "c")
+    infix = "followed by" if word == "followed" else word
+    english = f"{word} {said.b}, a" if prefixed else f"a {infix} {said.b}"
+    if form == _CONDITION[""] and not _is_of_every_step(place, at):
+        return (
+            f"`{english}` is `b implies a` where it is about one step, a clause `keep b implies a` where it is about "
+            "every one, and `a and b` where both are asked for"
+        )
+    if word == "before" and form == _SEQUENCE[""]:
+        return (
+            "`a then b` asks for `a` and later for `b`; where `b` is not asked for, `require (not b) until a` asks for "
+            "`a` first"
+        )
+    if "{c}" in form:
+        english = f"c then {english}"
+    kind, written = _kind(place), said.put_in(form)
+    asks = clause_asked(place, at)
+    if asks != kind and asks in _FORMS.get(word, {}) and not timed:
+        # What is written for this clause alone would say something else there.
+        form = _FORMS[word][asks]
+        written = said.put_in(form if _is_clause(form) else f"{asks} {form}")
+        return f"`{asks} {english}` is written `{written}`"
+    if at and _is_clause(form):
+        english = f"{kind} {english}"
+    return f"`{english}` is written `{written}`"
+
+
+_UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
+_BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
+    "reach": (None, "AND", "OR", "THEN"),
+    "avoid": (None, "AND", "OR"),
+}
+"""What may stand before `if` in these clauses, None for nothing."""
+_OF_THE_REST: Final = ("after", "unless", "but")
+"""Words that can be about all goals that follow, or about the next one."""
+
+
+def _is_clear_time(place: Place, begin: int, forms: Forms) -> bool:
+    """Whether a time can be that of the operand which begins here, and of no more."""
+    clause = place.tokens[0].text if place.start == "clause" else ""
+    previous = place.tokens[begin - 1].type if begin > formula_start(place) else None
+    if clause in ("reach", "avoid"):
+        return False
+    is_kept = clause == "keep" or has_always_before(place)
+    # A step that must be there makes a goal of what is kept.
+    if is_kept and (forms is _AFTER_TIME or (previous is None and (clause == "keep" or forms is _FOR_TIME))):
+        return False
+    within = forms is _IN_TIME
+    return previous in (None, "IMPLIES") and is_clear_time_here(place, may_be_negated=within, may_be_kept=True)
+
+
+def _is_clear_operand(place: Place, start: int, stop: int) -> bool:
+    """Whether a time can be that of all of these tokens."""
+    is_one = is_of_one_step(place, start, stop) and not has(place, start, stop, UNCLEAR)
+    return is_one and place.tokens[start].text not in OPERATORS
+
+
+def _goals(place: Place, at: int) -> list[int]:
+    """Where the goals of `reach` begin that stand before ``at``; elsewhere where the formula begins."""
+    start = formula_start(place)
+    if _kind(place) != "reach":
+        return [start]
+    thens = (index for index in outside(place.tokens, start, at) if place.tokens[index].type == "THEN")
+    return [start, *(index + 1 for index in thens)]
+
+
+def _is_of_every_step(place: Place, at: int) -> bool:
+    """Whether a condition stands where it is asked for at each step."""
+    is_kept = place.tokens[0].text == "keep" and place.start == "clause"
+    return at == 0 or ((is_kept or has_always_before(place)) and is_clear_here(place, place.tokens[at].text))
+
+
+def _is_clause(form: str) -> bool:
+    return form.split()[0] in CLAUSES
+
+
+def _is_zero(time: str) -> bool:
+    return not float(time.split()[0])
+
+
+def _kind(place: Place) -> str:
+    """The keyword of the clause whose formula cannot be read; none inside brackets."""
+    return place.tokens[0].text if place.start == "clause" and not place.open_brackets else ""
+
+
+def _time(place: Place, at: int) -> tuple[str, int, bool]:
+    """A number with its unit, as it is written here, where it ends, and whether no other unit can be meant."""
+    unit = place.tokens[at + 1]
+    known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
+    is_clear = bool(known) or not declares_clock(place.source)
+    return f"{place.tokens[at].text} {known or 'steps'}", at + 1 + bool(known), is_clear
+
+
+_SEPARATORS: Final = ("then", ",", ":")
+
+
+def _split(place: Place, start: int, stop: int) -> int:
+    """Where a condition ends: at `then`, a comma or a colon; else behind a name with its arguments."""
+    for index in outside(place.tokens, start, stop):
+        if place.tokens[index].text in _SEPARATORS:
+            return index
+    name = start + (place.tokens[start].type == "NOT")
+    behind: Token | None = place.tokens[name + 1] if name + 1 < stop else None
+    if behind is None or behind.type != "LPAR":
+        return min(name + 1, stop)
+    return next((index + 1 for index in outside(place.tokens, name + 1, stop) if index > name + 1), stop)

@@ -1,0 +1,134 @@
+"""Cut the tokens of a text with errors into pieces: declarations, and the lines of a block.
+
+A piece begins at a keyword.  A keyword at the start of a line always begins one; within a line only
+behind something that can end a piece, so that ``reach level`` is one clause with a reserved word.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tltlc.core.source import SourceFile
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, SYNONYMS, TEST_ITEMS, closest
+from tltlc.grammar.lexer import BAD, Token
+from tltlc.grammar.tables import load
+
+_ENDS: Final = {"NAME", "NUMBER", "UNIT", "STRING", "TRUE", "FALSE", "RPAR", "RSQB", "RBRACE", "LBRACE", "LIMIT"}
+_STARTS: Final = {
+    "NAME",
+    "NUMBER",
+    "STRING",
+    "TRUE",
+    "FALSE",
+    "NOT",
+    "EVENTUALLY",
+    "ALWAYS",
+    "NEXT",
+    "WEAK_NEXT",
+    "ALL",
+    "ANY",
+}
+_PREFIXES: Final = (_STARTS - {"NAME", "STRING"}) | {"WHEN"}
+"""What can begin a formula, but not go on with one."""
+_OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
+
+
+def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[Token]]:
+    """The tokens cut into declarations: at their keywords, and behind the brace that closes a block."""
+    piece: list[Token] = []
+    depth = 0
+    for index, token in enumerate(tokens):
+        if piece and _begins(source, tokens, index, DECLARATIONS, depth == 0):
+            yield piece
+            piece, depth = [], 0
+        piece.append(token)
+        if token.type == "LBRACE":
+            depth += 1
+        elif token.type == "RBRACE" and depth > 0:
+            depth -= 1
+            if depth == 0:
+                yield piece
+                piece = []
+    if piece:
+        yield piece
+
+
+def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str]) -> Iterator[list[Token]]:
+    """The body of a block cut into its lines."""
+    piece: list[Token] = []
+    for index, token in enumerate(tokens):
+        if piece and _begins(source, tokens, index, keywords, True):
+            yield piece
+            piece = []
+        piece.append(token)
+    if piece:
+        yield piece
+
+
+def block(piece: Sequence[Token]) -> str | None:
+    """``spec`` or ``test`` where a piece is one in braces, misspelt or not: ``spec NAME = …`` is none."""
+    head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
+    return closest(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
+
+
+def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
+    """Whether a token is the first one on its line."""
+    return index == 0 or "\n" in source.text[tokens[index - 1].end : tokens[index].start]
+
+
+def _begins(
+    source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str], within_lines: bool
+) -> bool:
+    """Whether a piece begins at this token, which is not the first."""
+    token, before = tokens[index], tokens[index - 1]
+    first = is_first_on_line(source, tokens, index)
+    if token.text in keywords and (token.type != "NAME" or keywords is TEST_ITEMS):
+        if token.type == "ENTITY" and before.type == "COLON":
+            return False
+        if token.type == "LIMIT" and before.text == "at" and not (first and tokens[index - 2].type != "JUDGE"):
+            return False
+        if token.type == "LIMIT" and _is_behind_number(source, tokens, index):
+            return False
+        return first or (within_lines and before.type in _ENDS)
+    if keywords is CLAUSES and first and before.type in _ENDS - {"LIMIT"} and token.type in _PREFIXES:
+        return True
+    if first and _is_list_mark(source, tokens, index, keywords):
+        return True
+    # A word that is no keyword, at the start of a line and with another word behind it: a misspelt keyword.
+    if not first or not within_lines or token.type not in ("NAME", BAD) or not token.text[0].isalpha():
+        return False
+    if index + 1 == len(tokens):
+        return False
+    following = tokens[index + 1]
+    if following.type == "COLON" and _is_like(token.text, keywords):
+        return True
+    if following.text in keywords and following.type != "NAME" and before.type in _ENDS:
+        return True
+    if following.type not in _STARTS or following.text in load().soft or is_first_on_line(source, tokens, index + 1):
+        return False
+    return before.type in _ENDS or closest(token.text, tuple(keywords)) is not None
+
+
+def _is_like(word: str, keywords: dict[str, str]) -> bool:
+    """Whether a word is most likely meant as a keyword."""
+    elsewhere = {word for words in SYNONYMS.values() for word, meant in words.items() if meant in keywords}
+    return word.lower() in elsewhere or closest(word, tuple(keywords)) is not None
+
+
+def _is_behind_number(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
+    """Whether `limit` stands behind its number, as in ``400 steps limit``."""
+    number = index - 1 - (tokens[index - 1].type == "UNIT")
+    has_own = index + 1 < len(tokens) and tokens[index + 1].type == "NUMBER"
+    return tokens[number].type == "NUMBER" and is_first_on_line(source, tokens, number) and not has_own
+
+
+def _is_list_mark(source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str]) -> bool:
+    """Whether a line begins as those of lists do, as in ``- reach a`` and ``1. reach a``."""
+    for place in (index, index + 1):
+        behind = place + 1
+        if tokens[place].text[0].isalpha() or behind == len(tokens) or is_first_on_line(source, tokens, behind):
+            return False
+        if tokens[behind].text in keywords:
+            return True
+    return False

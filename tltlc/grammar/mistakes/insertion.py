@@ -1,0 +1,47 @@
+"""Where a new declaration goes: on a line of its own, behind the imports or before everything else."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Edit
+from tltlc.grammar.tree import Comment, Import, Module
+
+
+def at_top(module: Module, line: str) -> Edit:
+    """The edit that adds a line behind the imports, or before the first declaration and its documentation."""
+    source = module.source
+    newline = "\r\n" if "\r\n" in source.text else "\n"
+    imports = [each for each in module.declarations if isinstance(each, Import)]
+    if imports:
+        start = imports[-1].span.end
+        end = _line_end(source, start)
+        if source.text[start:end].lstrip().startswith("//") or not source.text[start:end].strip():
+            return Edit(Span(end, end), f"{newline}{line}")
+        # The line goes on, perhaps with a spec of several lines.
+        return Edit(Span(start, start), f"{newline}{line}{newline}")
+    first = min((each.span.start for each in module.declarations), default=len(source.text))
+    _, column = source.position(documented(source, first, module.comments))
+    start = documented(source, first, module.comments) - column + 1
+    return Edit(Span(start, start), f"{line}{newline}")
+
+
+def documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
+    """Where the documentation of a place begins, with other comments in it; the place itself where there is none."""
+    first = start
+    for index in reversed(range(bisect_right(comments, start, key=lambda each: each.span.end))):
+        comment = comments[index]
+        if source.text[comment.span.end : start].strip():
+            break
+        start = comment.span.start
+        if comment.text.startswith("///"):
+            first = start
+    return first
+
+
+def _line_end(source: SourceFile, offset: int) -> int:
+    """Return the offset at which the line of ``offset`` ends."""
+    number, column = source.position(offset)
+    return offset - column + 1 + len(source.line(number))

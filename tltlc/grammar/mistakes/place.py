@@ -1,0 +1,179 @@
+"""The place where a text cannot be read on, and what could stand there, in plain words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import pairwise
+from typing import Final
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
+from tltlc.grammar import lalr
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
+from tltlc.grammar.lexer import END, Token
+from tltlc.grammar.tables import load
+
+KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
+NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
+"""The keywords that begin each kind of piece, and what messages call it; any other start is a formula."""
+
+OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
+CLOSING: Final = frozenset(OPENING.values())
+COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST"}
+ARITHMETIC: Final = {"PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER", *COMPARISONS}
+UNTILS: Final = {"UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
+INFIX: Final = {"AND", "OR", "IMPLIES", "IFF", "THEN", *UNTILS}
+BEFORE_ONE: Final = {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "NOT"}
+OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
+_KINDS: Final = {"NAME": "a name", "NUMBER": "a number", "STRING": "a text in quotes", "UNIT": "a unit"}
+_FEW: Final = 4
+"""How many things that could stand at a place a title names."""
+
+
+class Place:
+    """Where reading ended: the token that fits nowhere, the tokens around it, and what could stand there.
+
+    ``tokens`` are those of one piece, read as a ``start`` until ``stop``.
+    """
+
+    def __init__(
+        self, source: SourceFile, tokens: Sequence[Token], stop: lalr.UnexpectedTokenError, start: str
+    ) -> None:
+        self.source = source
+        self.tokens = tokens
+        self.stop = stop
+        self.start = start
+
+    @property
+    def found(self) -> Token:
+        """The token that fits nowhere."""
+        return self.tokens[self.stop.index]
+
+    @property
+    def before(self) -> Token | None:
+        """The token in front of it, if there is one."""
+        return self.tokens[self.stop.index - 1] if self.stop.index else None
+
+    @property
+    def at_end(self) -> bool:
+        """Whether the piece ends too early."""
+        return self.found.type == END
+
+    @cached_property
+    def allowed(self) -> set[str]:
+        """The terminals that could stand here."""
+        tables = load()
+        return lalr.accepted(tables, lalr.reached(tables, self.start, self.tokens[: self.stop.index]))
+
+    @property
+    def wants_operand(self) -> bool:
+        """Whether a formula or a number could begin here."""
+        return self.allowed >= OPERAND
+
+    @property
+    def wants_operator(self) -> bool:
+        """Whether a formula could end or go on here."""
+        return "AND" in self.allowed
+
+    @cached_property
+    def open_brackets(self) -> list[Token]:
+        """The brackets that are open here, outermost first."""
+        stack: list[Token] = []
+        for token in self.tokens[: self.stop.index]:
+            if token.type in OPENING:
+                stack.append(token)
+            elif stack and token.type == OPENING[stack[-1].type]:
+                stack.pop()
+        return stack
+
+    def form(self) -> str | None:
+        """The form of the piece as a help, by its keyword."""
+        form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
+        return f"the form is {form}" if form else None
+
+    def error(
+        self,
+        code: str,
+        title: str,
+        help_: str | None,
+        message: str = "",
+        span: Span | None = None,
+        *,
+        write: str | None = None,
+    ) -> Diagnostic:
+        """An error at the token that was found; at the end of a piece, at its last token.
+
+        Its fix is to ``write`` something else there, where that is given and no comment stands there.
+        """
+        if span is None:
+            span = self.before.span if self.at_end and self.before else self.found.span
+        fixes = (instead(self.source, span, write),) if write is not None and not self._has_comment(span) else ()
+        return Diagnostic(code, title, (Label(self.source, span, message),), help_, fixes=fixes)
+
+    def _has_comment(self, span: Span) -> bool:
+        """Whether a comment stands between the tokens of a span."""
+        text = self.source.text
+        inside = [token for token in self.tokens if span.start <= token.start and token.end <= span.end]
+        return any("//" in text[one.end : other.start] for one, other in pairwise(inside))
+
+    def expectation(self) -> str:
+        """``expected … after …, found …``."""
+        before = f" after {shown(self.before)}" if self.before else ""
+        found = "" if self.at_end else f", found {shown(self.found)}"
+        return f"expected {self.wanted()}{before}{found}"
+
+    def wanted(self) -> str:
+        """What could stand here, in plain words."""
+        if self.wants_operand:
+            if self.before and self.before.type in ARITHMETIC:
+                return "a value"
+            return "an expression" if self.tokens[0].type in ("PREDICATE", "PARAM", "SIGNAL") else "a formula"
+        allowed = set(self.allowed)
+        items = []
+        if self.wants_operator:
+            items.append("an operator")
+            allowed -= INFIX | ARITHMETIC | {"UNIT", "LPAR"}
+        items += [text for kind, text in _KINDS.items() if kind in allowed]
+        signs = _spellings({**load().soft, **load().signs})
+        items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]
+        words = _spellings(load().words)
+        named = [f"`{words[kind]}`" for kind in sorted(allowed) if kind in words]
+        if len(named) <= _FEW:
+            items += named
+        if END in allowed and len(items) < 2:
+            items.append(f"the end of the {NOUNS.get(self.start, 'formula')}")
+        items = items[:_FEW] or [f"a {NOUNS.get(self.start, 'formula')}"]
+        return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} or {items[-1]}"
+
+
+def outside(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
+    """The indices from ``start`` up to ``stop`` of the tokens outside brackets, with the brackets themselves."""
+    depth = 0
+    for index in range(start, stop):
+        depth -= tokens[index].type in CLOSING
+        if depth <= 0:
+            yield index
+        depth += tokens[index].type in OPENING
+
+
+def touch(left: Token, right: Token) -> bool:
+    """Whether two tokens stand side by side, without a blank."""
+    return left.end == right.start
+
+
+def shown(token: Token | None) -> str:
+    """A token as it stands in the text, short enough for a title."""
+    text = token.text if token else ""
+    return f"`{text}`" if len(text) <= 30 else f"`{text[:29]}…`"
+
+
+def _spellings(terminals: dict[str, str]) -> dict[str, str]:
+    """One spelling of each terminal, in ASCII where there is one."""
+    return {terminal: text for text, terminal in sorted(terminals.items(), key=lambda item: item[0].isascii())}
+
+
+def declares_clock(source: SourceFile) -> bool:
+    """Whether the file seems to declare a clock, so that a number of time may be one of steps or of seconds."""
+    return re.search(r"^[ \t]*clock[ \t]+[0-9.]", source.text, re.MULTILINE) is not None

@@ -1,0 +1,129 @@
+"""Read a text with errors piece by piece: one error for each broken declaration, clause or line of a test."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar import checks, lalr, nesting, tree
+from tltlc.grammar.builder import Builder
+from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
+from tltlc.grammar.lexer import END, Token, Tokens
+from tltlc.grammar.mistakes import messages
+from tltlc.grammar.mistakes.fragments import block, declarations, is_first_on_line, lines
+from tltlc.grammar.tables import load
+
+MAX_ERRORS: Final = 200
+"""How many errors are enough: a text with more is no specification."""
+
+
+def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
+    """What can be read of a text, and an error for each piece that cannot."""
+    reader = _Reader(source, lexed)
+    for piece in declarations(source, lexed.tokens[:-1]):
+        reader.read_declaration(piece)
+        if len(reader.diagnostics) >= MAX_ERRORS:
+            break
+    return tuple(reader.declarations), tuple(reader.diagnostics)
+
+
+class _Reader:
+    """Reads pieces one after the other and keeps what comes out."""
+
+    def __init__(self, source: SourceFile, lexed: Tokens) -> None:
+        self.declarations: list[tree.Declaration] = []
+        self.diagnostics: list[Diagnostic] = []
+        self._source = source
+        self._docs = lexed.docs
+
+    def read_declaration(self, piece: list[Token]) -> None:
+        """Read the tokens of one declaration; a broken block still gives its good clauses."""
+        before = len(self.diagnostics)
+        kind = block(piece)
+        if kind:
+            declaration = self._read_block(piece, kind)
+        else:
+            declaration = None if self._refuse_deep(piece) else self._read("declaration", piece)
+        if declaration is None:
+            return
+        kept, found = nesting.drop_deep(self._source, [declaration])
+        self.diagnostics += found
+        self.declarations += kept
+        if len(self.diagnostics) == before:
+            self.diagnostics += checks.check(self._source, kept)
+        else:
+            self.diagnostics += checks.check_clauses(self._source, kept)
+
+    def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
+        """A spec or a test in braces: its head, then each line of its body for itself."""
+        brace = next(index for index, token in enumerate(piece) if token.type == "LBRACE")
+        closed = piece[-1].type == "RBRACE"
+        closing = Token("RBRACE", "}", piece[-1].end, piece[-1].end)
+        if not closed:
+            self.diagnostics.append(messages.never_closed(self._source, piece[brace]))
+        head = self._read("declaration", [*piece[: brace + 1], closing])
+        keywords, start = (CLAUSES, "clause") if kind == "spec" else (TEST_ITEMS, "test_item")
+        items: list[Any] = []
+        for line in lines(self._source, piece[brace + 1 : len(piece) - closed], keywords):
+            items += self._read_line(line, start)
+            if len(self.diagnostics) >= MAX_ERRORS:
+                break
+        span = piece[0].span.to(piece[-1].span)
+        if isinstance(head, tree.SpecDecl):
+            return replace(head, clauses=tuple(items), span=span)
+        if isinstance(head, tree.TestDecl):
+            return replace(head, items=tuple(items), span=span)
+        return None
+
+    def _read_line(self, line: list[Token], start: str) -> list[Any]:
+        """The clauses in one piece of a block: mostly one, two where an unknown word follows a whole clause."""
+        if self._refuse_deep(line):
+            return []
+        found = self._attempt(start, line)
+        if not isinstance(found, lalr.UnexpectedTokenError):
+            return [found]
+        at = found.index
+        is_whole = 0 < at < len(line) and END in lalr.accepted(load(), found.states)
+        if is_whole and line[at].type == "NAME" and is_first_on_line(self._source, line, at):
+            whole = self._attempt(start, line[:at])
+            # Its first token is what nobody expected.
+            self._refuse(line[at:], start, lalr.UnexpectedTokenError(0, [load().starts[start]]))
+            return [whole]
+        self._refuse(line, start, found)
+        return []
+
+    def _read(self, start: str, piece: list[Token]) -> Any:
+        """What the builder makes of a piece, or None after an error."""
+        result = self._attempt(start, piece)
+        if isinstance(result, lalr.UnexpectedTokenError):
+            self._refuse(piece, start, result)
+            return None
+        return result
+
+    def _attempt(self, start: str, piece: list[Token]) -> Any:
+        """What the builder makes of a piece, or the UnexpectedTokenError that it ends with."""
+        builder = Builder(self._source, self._docs)
+        try:
+            node = lalr.run(load(), start, _ended(piece), builder)
+        except lalr.UnexpectedTokenError as error:
+            return error
+        self.diagnostics += builder.diagnostics
+        return node
+
+    def _refuse(self, piece: list[Token], start: str, error: lalr.UnexpectedTokenError) -> None:
+        """Report a broken piece."""
+        self.diagnostics.append(messages.unexpected(self._source, _ended(piece), error, start))
+
+    def _refuse_deep(self, piece: list[Token]) -> bool:
+        """Report a piece whose brackets nest too deep; whether it is one."""
+        deep = nesting.deep_brackets(self._source, piece)
+        if deep:
+            self.diagnostics.append(deep)
+        return deep is not None
+
+
+def _ended(piece: list[Token]) -> list[Token]:
+    end = piece[-1].end
+    return [*piece, Token(END, "", end, end)]

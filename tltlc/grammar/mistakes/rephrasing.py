@@ -1,0 +1,102 @@
+"""Other words for what cannot be read: made of its own tokens, and offered only where they can be read."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Any, Final
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar import checks, lalr
+from tltlc.grammar.builder import Builder
+from tltlc.grammar.keywords import OPERATORS
+from tltlc.grammar.lexer import END, Token, tokenize
+from tltlc.grammar.mistakes.place import CLOSING, INFIX, OPENING, Place, outside
+from tltlc.grammar.tables import load
+from tltlc.grammar.tree import Clause
+
+LOOSE: Final = INFIX | {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "ALL", "ANY", "WHEN"}
+"""What makes several operands of a text, or takes what follows it."""
+_LONGEST: Final = 90
+"""Longer texts are no help."""
+
+
+def reworded(
+    place: Place, start: int, stop: int, text: str, title: str, reason: str = "", code: str = "TLT0101"
+) -> Diagnostic | None:
+    """An error at the tokens from ``start`` up to ``stop`` that says to write ``text`` there.
+
+    None where the piece could not be read then either.
+    """
+    if len(text) > _LONGEST or not _can_be_read(place, start, stop, text):
+        return None
+    span = span_of(place.tokens[start:stop])
+    return place.error(code, title, f"write `{text}`{reason}", span=span, write=text)
+
+
+def span_of(tokens: Sequence[Token]) -> Span:
+    """The span from the first to the last of some tokens."""
+    return tokens[0].span.to(tokens[-1].span)
+
+
+def written(place: Place, start: int, stop: int) -> str:
+    """Some tokens as they stand in the text, on one line."""
+    tokens = place.tokens[start:stop]
+    # A comment would swallow the rest of the line.
+    lines = place.source.slice(span_of(tokens)).splitlines() if tokens else []
+    return " ".join(" ".join(line.split("//")[0] for line in lines).split())
+
+
+def operand(place: Place, start: int, stop: int) -> str:
+    """Some tokens as an operand: a clause as its operator, and in brackets where they are several operands."""
+    operator = ""
+    if start < stop and place.tokens[start].text in OPERATORS:
+        operator = OPERATORS[place.tokens[start].text]
+        start += 1
+    text = written(place, start, stop)
+    several = any(place.tokens[index].type in LOOSE for index in outside(place.tokens, start, stop))
+    return f"{operator} {f'({text})' if several else text}".strip()
+
+
+def formula_start(place: Place) -> int:
+    """Where the formula begins that cannot be read on: behind a bracket, a clause's keyword, or `=`."""
+    if place.open_brackets:
+        return next(index for index, token in enumerate(place.tokens) if token is place.open_brackets[-1]) + 1
+    if place.start == "declaration":
+        return next((index + 1 for index, token in enumerate(place.tokens) if token.type == "EQUAL"), 0)
+    return 1 if place.start == "clause" else 0
+
+
+def formula_stop(place: Place) -> int:
+    """Behind the last token of that formula."""
+    depth = 0
+    for index in range(place.stop.index, len(place.tokens)):
+        depth += (place.tokens[index].type in OPENING) - (place.tokens[index].type in CLOSING)
+        if depth < 0 or place.tokens[index].type == END:
+            return index
+    return len(place.tokens) - 1
+
+
+def last_of(place: Place, kinds: Collection[str], start: int) -> int | None:
+    """The last token of these kinds outside brackets between ``start`` and the place, if there is one."""
+    found = [index for index in outside(place.tokens, start, place.stop.index) if place.tokens[index].type in kinds]
+    return found[-1] if found else None
+
+
+def _can_be_read(place: Place, start: int, stop: int, text: str) -> bool:
+    """Whether the piece with this text in place of some tokens has no error."""
+    tokens = place.tokens
+    whole = place.source.text
+    before, after = whole[tokens[0].start : tokens[start].start], whole[tokens[stop - 1].end : tokens[-1].end]
+    source = SourceFile("", f"{before}{text}{after}")
+    lexed = tokenize(source.text)
+    builder = Builder(source, lexed.docs)
+    try:
+        node: Any = lalr.run(load(), place.start, lexed.tokens, builder)
+    except lalr.UnexpectedTokenError:
+        return False
+    if isinstance(node, Clause):
+        return not [*builder.diagnostics, *checks.check_clause(source, node)]
+    if place.start == "declaration":
+        return not [*builder.diagnostics, *checks.check(source, (node,))]
+    return not builder.diagnostics and (place.start != "expression" or not [*checks.check_formula(source, node)])

@@ -1,0 +1,124 @@
+"""Signs and words that the language does not know, many of them from a word processor."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.keywords import CASES
+from tltlc.grammar.lexer import BAD
+from tltlc.grammar.mistakes.habits import equality
+from tltlc.grammar.mistakes.place import Place, shown
+from tltlc.grammar.mistakes.punctuation import left_out, unquoted
+from tltlc.grammar.mistakes.rephrasing import reworded
+from tltlc.grammar.tables import load
+
+_QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
+_SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
+"""What stands for a sign from elsewhere, beside what Unicode knows of its form."""
+_SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+_HELPS: Final = {
+    "#": "comments begin with `//`",
+    "%": "a percentage follows a number, as in `50%`",
+    "≠": "write `a < b or a > b`; a `bool` signal is an atom by itself",
+}
+
+
+def strange(place: Place) -> Diagnostic | None:
+    """A sign or word that the language does not know."""
+    token = place.found
+    if token.type != BAD:
+        return None
+    text = token.text
+    if text in ("==", "!="):
+        return equality(place)
+    if text.startswith('"'):
+        return place.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
+    if text.startswith("/*"):
+        span = Span(token.start, token.start + 2)
+        help_ = "comments begin with `//` and end with the line"
+        return place.error("TLT0104", "`/*` means nothing here", help_, span=span)
+    if len(text) > 1 or text.isalnum():
+        return _name(place)
+    if text in _QUOTES:
+        return _quotes(place)
+    if text == "?" and place.tokens[0].type == "PREDICATE":
+        return place.error("TLT0104", "`?` means nothing here", CASES)
+    if text == ".":
+        after = place.tokens[place.stop.index + 1]
+        number = after.type == "NUMBER" and after.start == token.end
+        write = f"0.{after.text}" if number else None
+        span = Span(token.start, after.end) if number else token.span
+        help_ = f"write `{write}`" if write else left_out(place)
+        return place.error("TLT0104", "`.` means nothing here", help_, span=span, write=write)
+    if text == ";":
+        after = place.tokens[place.stop.index + 1]
+        listed = "COMMA" in place.allowed and after.type == "NAME"
+        help_ = "write `,`" if listed else left_out(place)
+        return place.error("TLT0104", "`;` means nothing here", help_, write="," if listed else None)
+    title = f"{_sign(text)} means nothing here"
+    if text == "~":
+        return place.error("TLT0104", title, "for `not` write `not` or `!`", write="not")
+    like = _like(text)
+    if text in _HELPS or like is None:
+        return place.error("TLT0104", title, _HELPS.get(text) or _left_out(text))
+    return place.error("TLT0104", title, f"write `{like}`", write=like)
+
+
+def _name(place: Place) -> Diagnostic:
+    """``café`` and ``coins²``."""
+    from unicodedata import normalize
+
+    text = place.found.text
+    base = text.rstrip(_SUPERSCRIPTS)
+    if base != text and (not base or (base.isascii() and base.isidentifier())):
+        power = f"{base}^{normalize('NFKC', text[len(base) :])}"
+        title = f"{shown(place.found)} is no name" if base else f"`{text}` means nothing here"
+        return place.error("TLT0104", title, f"for a power write `{power}`", write=power)
+    plain = "".join(sign for sign in normalize("NFKD", text) if sign.isascii())
+    write = plain if plain.isidentifier() and len(plain) == len(text) else None
+    help_ = "names are ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
+    return place.error("TLT0104", f"{shown(place.found)} is no name", help_, write=write)
+
+
+def _quotes(place: Place) -> Diagnostic:
+    """``near('door')`` and typographic quotes."""
+    at, tokens = place.stop.index, place.tokens
+    last = next((index for index in range(at + 1, len(tokens)) if tokens[index].text in _QUOTES), None)
+    title = f"{_sign(place.found.text)} means nothing here"
+    if last is not None:
+        inner = place.source.slice(Span(place.found.end, tokens[last].start)).strip()
+        for text, reason in (
+            (unquoted(place, at, last + 1, inner), ": no quotes around names and formulas"),
+            (f'"{inner}"', ""),
+        ):
+            found = reworded(place, at, last + 1, text, title, reason, "TLT0104") if inner else None
+            if found:
+                return found
+    return place.error("TLT0104", title, 'texts stand in straight double quotes: "…"')
+
+
+def _sign(text: str) -> str:
+    """A sign, by its number and name where it cannot be seen."""
+    if text.isprintable() and not text.isspace():
+        return f"`{text}`"
+    from unicodedata import name
+
+    said = name(text, "").lower()
+    return f"`U+{ord(text):04X}`" + (f" ({said})" if said else "")
+
+
+def _like(text: str) -> str | None:
+    """What the language has instead of a sign that looks like one of its own."""
+    from unicodedata import normalize
+
+    plain = _SIGNS.get(text) or normalize("NFKC", text)
+    return plain if plain in load().signs or plain in load().units else None
+
+
+def _left_out(text: str) -> str:
+    """What to do about a sign that the language has nothing like."""
+    from unicodedata import category
+
+    return "write `-` for a difference, `_` in a name" if category(text) == "Pd" else "leave it out"

@@ -1,0 +1,240 @@
+"""The command line: finds a command, runs it, and turns every way to fail into a message and an exit status.
+
+A command is a module of :mod:`tltlc.interfaces.cli.commands`; other distributions add theirs through the
+entry-point group ``tltlc.commands``, each entry a click command.  Neither is loaded before it is named.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from keyword import iskeyword
+from typing import Any, Final, NoReturn
+
+import click
+
+from tltlc.interfaces.cli import exits, plugins
+from tltlc.interfaces.cli.numbers import FiniteRange, WholeRange
+from tltlc.io import resources
+from tltlc.io.limits import COMMAND, Process
+from tltlc.io.resources import OutOfTimeError
+
+BUILT_IN: Final = {
+    "compile": "Compile the specs of a file to artefacts and monitors.",
+    "import": "Make an artefact of another tool's automaton (HOA).",
+    "check": "Report what is wrong in source files, and write nothing.",
+    "lint": "Report what is likely to be a mistake in specs that compile.",
+    "fmt": "Lay out source files, and spell operators in one style.",
+    "render": "Draw the automaton of a spec.",
+    "monitor": "Run a spec over a recorded trace and judge it.",
+    "test": "Run the test blocks of source files.",
+    "watch": "Check, lint and test source files whenever one changes.",
+    "witness": "Show a spec by traces: shortest ones, or every edge.",
+    "mine": "Propose specs from recorded traces.",
+    "diff": "Say how the specs of two files differ.",
+    "breaking": "Report what changed that hosts or recorded baselines notice.",
+    "conformance": "Write the cases that an engine's monitors must pass.",
+    "lsp": "Serve editors: errors as you type, meaning, completion, layout.",
+    "serve": "Show a page on which to try specs.",
+    "list": "List the predicates, targets, levels or error codes there are.",
+    "explain": "Say what a spec asks for, or what an error code means.",
+    "new": "Create a starter project that compiles.",
+    "completion": "Print the completion script of a shell.",
+}
+
+BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
+"""The commands whose work ends with the files that they read; others bound the parts of theirs that do."""
+
+OF_THE_RUNTIME: Final = {
+    "demonstrate": "Have the scripted expert play a level, and record it.",
+    "play": "Play a level with the keyboard, and record it.",
+    "record": "Record demonstrations that meet a spec, for an agent to imitate.",
+    "replay": "Show recorded episodes: how they went, plans, films, signals.",
+    "train": "Train an agent until it meets a spec.",
+    "evaluate": "Have a trained policy play, and report how often it meets the spec.",
+    "inspect": "Show what a policy was trained for, or export it as ONNX.",
+    "regress": "Report which levels still play as designed, and where and why not.",
+    "baseline": "Record the figures that a suite is judged against.",
+    "table1": "Train and play what the paper's Table I is of, and print ours beside it.",
+}
+"""Commands that come with tltlc and need an extra; they are entry points like those of others."""
+
+ENTRY_POINTS: Final = "tltlc.commands"
+"""The group of commands of other distributions."""
+
+COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
+
+
+class CommandLine(click.Group):
+    """The group of all commands."""
+
+    def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
+        """Run and exit; messages go to standard error, and never is there a traceback."""
+        exits.heard.clear()
+        for stream in (sys.stdout, sys.stderr):
+            if hasattr(stream, "reconfigure"):
+                # A terminal that cannot show ∧ gets an escape, not a crash.
+                stream.reconfigure(errors="backslashreplace")
+        # The process is this command, and nothing else, where the arguments are its own.
+        extra.update(obj=args is None, prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
+        try:
+            status = super().main(None if args is None else list(args), **extra) or 0
+            sys.stdout.flush()
+        except (Exception, OutOfTimeError) as error:
+            status = exits.report(_of_completion(error))
+        exits.flush()
+        sys.exit(status)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """As click does, but `-:NAME` is no option; the help where nothing is asked for, which is wrong usage."""
+        if not args and not ctx.resilient_parsing:
+            click.echo(ctx.get_help(), err=True)
+            raise exits.StopQuietlyError(exits.USAGE)
+        if any(text.startswith("-:") for text in args):
+            # A spec of standard input: click would take the hyphen for the start of options.
+            from tltlc.io.spec_file import STDIN_NAME
+
+            args = [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args]
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; click would answer these two with a status of its own.
+
+        What the command reads is noted, so that none of it is written over.
+        """
+        from tltlc.io.files import noted
+
+        try:
+            with noted():
+                return super().invoke(ctx)
+        except click.UsageError as error:
+            if error.ctx is None and ctx.invoked_subcommand is not None:
+                # click's parser of options does not know which command it serves.
+                command = self.get_command(ctx, ctx.invoked_subcommand)
+                if command is not None:
+                    error.ctx = click.Context(command, parent=ctx, info_name=ctx.invoked_subcommand)
+            raise
+        except BrokenPipeError:
+            raise exits.StopQuietlyError(exits.CLOSED_PIPE) from None
+        except KeyboardInterrupt:
+            raise exits.StopQuietlyError(exits.interrupted()) from None
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of the commands, those of other distributions last."""
+        return [*BUILT_IN, *sorted(plugin.name for plugin in plugins.find(ENTRY_POINTS) if plugin.name not in BUILT_IN)]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of that name, loaded."""
+        if cmd_name in BUILT_IN:
+            from importlib import import_module
+
+            # A reserved word of Python is no name for a module.
+            module = f"tltlc.interfaces.cli.commands.{cmd_name}{'_' if iskeyword(cmd_name) else ''}"
+            command: click.Command = import_module(module).command
+            return command
+        for plugin in plugins.find(ENTRY_POINTS):
+            if plugin.name == cmd_name:
+                loaded: click.Command = plugins.load(plugin, f"`tltlc {plugin.name}`")
+                return loaded
+        return None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """As click does, with a suggestion where there is no such command."""
+        if args[0].startswith("-") or self.get_command(ctx, args[0]):
+            return super().resolve_command(ctx, args)
+        from difflib import get_close_matches
+
+        close = get_close_matches(args[0], self.list_commands(ctx), n=1)
+        raise click.UsageError(
+            f"There is no command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""), ctx
+        )
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of commands, from the table above, so that showing it loads none of them."""
+        rows = list(BUILT_IN.items())
+        for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
+            if plugin.name not in BUILT_IN:
+                said = OF_THE_RUNTIME.get(plugin.name, f"A command of {plugin.module}, from {plugin.distribution}.")
+                extra = f" (needs the extra {', '.join(plugin.extras)})" if plugin.extras else ""
+                rows.append((plugin.name, f"{said[:-1]}{extra}."))
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
+        """Completions, from the table above."""
+        from click.shell_completion import CompletionItem
+
+        names = [CompletionItem(name, help=BUILT_IN.get(name)) for name in self.list_commands(ctx)]
+        return [item for item in names if item.value.startswith(incomplete)] + click.Command.shell_complete(
+            self, ctx, incomplete
+        )
+
+
+def _of_completion(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
+    """Wrong usage where click completes a line, and does not find the variables that a shell's script sets."""
+    if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
+        return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")
+    return error
+
+
+def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        from tltlc import __version__
+
+        click.echo(f"tltlc {__version__}")
+        ctx.exit()
+
+
+_HELP: Final = """\
+Compile plans for a game, written in temporal logic, to automata that judge and reward a player.
+
+\b
+Start here:
+  tltlc new my_game                                a project that compiles
+  tltlc compile my_game/first_level.tltl -o build  its automaton and its monitor
+  tltlc render my_game/first_level.tltl -o level.svg
+"""
+
+
+@click.group(
+    cls=CommandLine,
+    help=_HELP,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="`tltlc COMMAND --help` shows the options of a command, with examples.",
+)
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Show the version and exit."
+)
+@click.option(
+    "--max-cpu",
+    type=WholeRange(min=0, max=10**9),
+    metavar="SECONDS",
+    default=COMMAND.work_s,
+    show_default=True,
+    help="End the work on files after so much processor time; 0 for no end.",
+)
+@click.option(
+    "--max-memory",
+    type=FiniteRange(min=0, max=2**20),
+    metavar="GIB",
+    default=COMMAND.memory / 2**30,
+    show_default=True,
+    help="End the work on files where it takes more memory; 0 for no end.",
+)
+@click.pass_context
+def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:
+    """Compile plans for a game, written in temporal logic, to automata that judge and reward a player."""
+    if ctx.obj:
+        resources.permit(Process(memory=int(max_memory * 2**30), work_s=max_cpu))
+    if ctx.invoked_subcommand in BOUNDED:
+        ctx.with_resource(resources.bounded())
+
+
+if os.environ.get("TLTLC_DEBUG") == "1":
+    import faulthandler
+
+    # A crash or a hang below Python shows where it is.
+    faulthandler.enable()

@@ -1,0 +1,123 @@
+"""``tltlc breaking``: what changed since a revision, or beside a folder, that others notice."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.cli.settings import Settings, source_options, work_of
+from tltlc.io.spec_file import STDIN, split
+
+if TYPE_CHECKING:
+    from tltlc.tools.diff.breaking import Change, Version
+    from tltlc.tools.diff.revisions import Tree
+
+_OF_SERVICES: Final = ("github", "sarif")
+"""Formats for services that know the files of now alone."""
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc breaking specs --against main              every spec and library of a folder
+  tltlc breaking vault.tltl --against v1.2 --format github
+  tltlc breaking build/*.fspa.json --against ../released
+"""
+)
+@click.argument("paths", metavar="FILE_OR_FOLDER...", nargs=-1, required=True)
+@click.option(
+    "--against",
+    metavar="REV|DIR",
+    required=True,
+    help="A folder that holds the files as they were; or, where there is no such folder, a revision of git.",
+)
+@source_options
+def command(paths: tuple[str, ...], against: str, settings: Settings, format: str) -> int:  # noqa: A002
+    """Report what changed in specs, artefacts and libraries that a game or a recorded baseline notices.
+
+    An error is what breaks them: specs that are gone or stricter, signals that must be supplied now, predicates that
+    are judged otherwise.  A warning is what changes other numbers or behaviour, and a note what needs nothing to be
+    done.  The exit status is 1 where there is an error.  Imports of the old files are the old ones.
+    """
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.tools.diff.breaking import breaking
+    from tltlc.tools.diff.renamed_specs import followed
+    from tltlc.tools.diff.revisions import earlier
+
+    for path in paths:
+        if path == STDIN or split(path)[1] is not None:
+            raise click.UsageError(f"`{path}` is no path: name files and folders")
+    found: list[Diagnostic] = []
+    with Report(format) as report, earlier(against, paths) as old:
+
+        def shown(diagnostics: Iterable[Diagnostic], path: str) -> tuple[Diagnostic, ...]:
+            placed = old.placed(diagnostics, path, old.at(path)) if format in _OF_SERVICES else diagnostics
+            return old.renamed(placed)
+
+        changes: list[Change] = []
+        for path in dict.fromkeys(path for argument in paths for path in _files(argument, old)):
+            try:
+                changes.append(_change(path, old, settings))
+            except TltlError as error:
+                report.add(shown(error.diagnostics, path))
+        for change in followed(changes, work_of(settings)):
+            try:
+                of_file = shown(breaking(change, work_of(settings)), change.path)
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
+            report.add(of_file)
+            found += of_file
+            if not of_file and os.path.exists(change.path):  # noqa: PTH110 (as below)
+                report.say(f"{change.path}: nothing has changed that others notice")
+        counts = [sum(each.severity == severity for each in found) for severity in ("error", "warning", "note")]
+        report.say("{} breaking, {} changed, {} compatible".format(*counts))
+    return report.status
+
+
+def _files(argument: str, old: Tree) -> list[str]:
+    """The argument itself, or the files in a folder that hold specs now or did; error TLT0722 where there are none."""
+    from tltlc.interfaces.cli.folders import below
+    from tltlc.tools.diff.revisions import SOURCE_ENDINGS
+
+    folders = [folder for folder in (argument, old.at(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
+    if not folders:
+        return [argument]
+    # The old folder may lie in the new one.
+    found = {path for folder in folders for path in below(Path(folder), SOURCE_ENDINGS)}
+    inside = [path for path in sorted(found) if not old.holds(Path(argument, path))]
+    if not inside:
+        title = f"there is no spec, library or artefact in `{argument}`"
+        raise TltlError([Diagnostic("TLT0722", title, help="name another folder")])
+    return [str(Path(argument, path)) for path in inside]
+
+
+def _change(path: str, old: Tree, settings: Settings) -> Change:
+    """A file as it was and as it is; errors of either version."""
+    from tltlc.tools.diff.breaking import Change, Version
+
+    before = old.at(path)
+    is_there = os.path.exists(path)  # noqa: PTH110 (pathlib raises where a name is too long)
+    new = _version(path, settings) if is_there or before is None else Version()
+    if before is None:
+        return Change(path, Version(), new)
+    return Change(path, _version(before, replace(settings, libraries=old.libraries(settings.libraries))), new)
+
+
+def _version(path: str, settings: Settings) -> Version:
+    """A file as it stands, compiled."""
+    from tltlc.interfaces.cli.inputs import open_input
+    from tltlc.tools.diff.versions import of_artefact, of_library, of_specs
+
+    opened = open_input(path, settings)
+    if opened.program is None:
+        return of_artefact(path, opened.automata)
+    if opened.program.specs:
+        return of_specs(opened.program, opened.automata)
+    return of_library(path, (*settings.libraries, *opened.project.libraries), settings.params)

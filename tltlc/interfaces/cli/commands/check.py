@@ -1,0 +1,99 @@
+"""``tltlc check``: everything that compiling would say, and nothing written; with a level, whether it fits."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import click
+
+from tltlc.interfaces.cli import plugins
+from tltlc.interfaces.cli.settings import Settings, source_options
+
+LEVELS: Final = "tltlc.levels"
+"""Where a context keeps what checks levels. It is a click command, whose options join those of ``check --level``.
+
+Its callback is given ``levels`` (as on the command line), ``inputs`` (the compiled arguments), ``settings``, the
+``report``, and the values of its options.
+"""
+
+
+class Check(click.Command):
+    """The command; the options that only levels have are there once ``--level`` is given."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """As click does, with the options of levels where one is named."""
+        if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
+            ctx.meta[LEVELS] = plugins.of_levels("check", "`tltlc check --level`")
+        return super().parse_args(ctx, args)
+
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """The options of the command, and those of levels before its ``--help``."""
+        *own, help_ = super().get_params(ctx)
+        levels = ctx.meta.get(LEVELS)
+        return [*own, *(levels.params if levels else ()), help_]
+
+
+@click.command(
+    cls=Check,
+    epilog="""\b
+Examples:
+  tltlc check                                    every .tltl file in this folder, and below
+  tltlc check cover_and_hide.tltl
+  tltlc check levels                             those of another folder
+  tltlc check --format github levels             remarks on a pull request
+  tltlc check --format sarif levels > tltlc.sarif
+  tltlc check cover_and_hide.tltl --level vault.toml
+  tltlc check --level navigation:v1              a level against its own spec
+  tltlc check --level all --help                 the further options that levels have
+""",
+)
+@click.argument("specs", metavar="[SPEC_OR_FOLDER]...", nargs=-1)
+@click.option(
+    "--level",
+    "levels",
+    metavar="LEVEL[:VARIANT]",
+    multiple=True,
+    help="Tell whether this level has what the specs speak of (repeatable): a .toml file, the name of a level that "
+    "comes with tltlc, or `all` of those; without a variant, each of its variants.",
+)
+@source_options
+def command(
+    specs: tuple[str, ...],
+    levels: tuple[str, ...],
+    settings: Settings,
+    format: str,  # noqa: A002
+    **options: Any,
+) -> int:
+    """Report every error and warning of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
+
+    Of a folder, by default the current one, every .tltl file in it and below is checked.
+    With --level, also what a level does not have that a spec needs, and what nobody can reach in it; without a SPEC,
+    by the spec that the level is made for.  The exit status is 1 where there is an error, and 0 where there are
+    warnings at most.
+    """
+    from tltlc.diagnostics.diagnostic import TltlError
+    from tltlc.interfaces.cli.folders import every_source
+    from tltlc.interfaces.cli.inputs import open_input
+    from tltlc.interfaces.cli.report import Report, counted, tally
+    from tltlc.io.spec_file import split
+
+    context = click.get_current_context()
+    specs = specs or (() if levels else (".",))
+    inputs = []
+    with Report(format) as report:
+        every = every_source(specs, report)
+        for spec in every:
+            try:
+                opened = open_input(spec, settings)
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
+            report.add(opened.diagnostics)
+            inputs.append(opened)
+            if spec in specs and not opened.diagnostics:
+                report.say(f"{opened.name}: {counted(len(opened.automata), 'spec')}, nothing to report")
+        if len(every) > 1 or not set(every).issubset(specs):
+            report.say(f"{counted(len({split(each)[0] for each in every}), 'file')}: {tally(report.found)}")
+        if levels and (inputs or not specs):
+            context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
+    return report.status

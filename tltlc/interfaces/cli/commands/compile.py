@@ -1,0 +1,128 @@
+"""``tltlc compile``: all files of all specs are made first, and only then written."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
+from tltlc.interfaces.cli.settings import Settings, source_options
+
+if TYPE_CHECKING:
+    from tltlc.backends import Files
+    from tltlc.interfaces.cli.inputs import Input
+    from tltlc.interfaces.cli.report import Report
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc compile cover_and_hide.tltl                  three files beside you
+  tltlc compile cover_and_hide.tltl -o build -t json,svg
+  tltlc compile levels.tltl --spec level_1 --spec level_2
+  tltlc compile build/level_1.fspa.json -t python    from an artefact
+  tltlc compile levels -o Assets/Specs -t csharp --watch    every .tltl file in the folder, and below
+"""
+)
+@click.argument("specs", metavar="SPEC_OR_FOLDER...", nargs=-1, required=True)
+@output_option
+@target_option
+@click.option("--spec", "names", metavar="NAME", multiple=True, help="Only this spec of each file (repeatable).")
+@click.option(
+    "--watch", is_flag=True, help="Stay, and compile again whenever a file changes that was read, until Ctrl-C."
+)
+@source_options
+def command(
+    specs: tuple[str, ...],
+    folder: Path,
+    target_lists: tuple[str, ...],
+    names: tuple[str, ...],
+    watch: bool,
+    settings: Settings,
+    format: str,  # noqa: A002
+) -> int:
+    """Compile the specs of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
+
+    For each spec NAME this writes NAME.fspa.json, NAME.dot and NAME_monitor.py, or what -t asks for.
+    Nothing is written unless everything could be, and files that would not change stay untouched.  Of a folder, as of
+    . for the current one, every .tltl file in it and below is compiled.
+    """
+    from tltlc.interfaces.cli.folders import every_source, in_folders
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.io.resources import bounded
+
+    def compile_once(changed: tuple[str, ...] = ()) -> int:
+        with bounded(), Report(format) as report:
+            if changed:
+                report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
+            asked = targets_of(target_lists)
+            files: Files = {}
+            sources: dict[str, str] = {}
+            for opened in _opened(every_source(specs, report), settings, names, report):
+                if not opened.automata and opened.name not in in_folders(specs):
+                    report.say(f"{opened.name}: there is no spec in it")
+                made = files_of(opened.automata, asked, opened.project, report)
+                _check_apart(made, opened.name, sources, is_waiting=bool(changed))
+                files |= made
+            if report.status == exits.CLEAN:
+                write_and_tell(folder, files, report)
+        return report.status
+
+    def compile_and_tell(changed: tuple[str, ...]) -> None:
+        try:
+            status = compile_once(changed)
+        except click.UsageError as error:
+            # That two targets write one file may be a matter of what was just written in `tltl.toml`.
+            if not changed:
+                raise
+            status = exits.report(error)
+        # No file that changes would mend the command line.
+        if status in (exits.USAGE, exits.UNREADABLE) and not changed:
+            raise exits.StopQuietlyError(status)
+        if format == "text":
+            print("waiting for changes, until Ctrl-C", file=sys.stderr)
+
+    if watch:
+        from tltlc.interfaces.cli.watching import repeat
+        from tltlc.io.spec_file import STDIN, split
+
+        if any(split(spec)[0] == STDIN for spec in specs):
+            raise click.UsageError("--watch takes files: standard input does not change")
+        repeat(compile_and_tell, lambda: in_folders(specs))
+    return compile_once()
+
+
+def _opened(specs: list[str], settings: Settings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
+    """The arguments that have no errors, compiled; what is found in each is shown."""
+    from tltlc.diagnostics.diagnostic import TltlError
+    from tltlc.interfaces.cli.inputs import open_input
+
+    for spec in specs:
+        try:
+            opened = open_input(spec, settings, names)
+        except TltlError as error:
+            report.add(error.diagnostics)
+            continue
+        report.add(opened.diagnostics)
+        yield opened
+
+
+def _check_apart(made: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
+    """Note in ``sources`` which source makes which file; error TLT0700 if another one has made a file of that name.
+
+    ``is_waiting`` is whether the command goes on with the next change of a file.
+    """
+    from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+    for name in made:
+        if name in sources:
+            apart = "" if is_waiting else ", or compile each file into a folder of its own, with -o"
+            title = f"`{sources[name]}` and `{source}` both make `{name}`"
+            raise TltlError([Diagnostic("TLT0700", title, help=f"rename one of the specs{apart}")])
+        sources[name] = source

@@ -1,0 +1,47 @@
+"""``tltlc conformance``: specs, traces and expected rows, for monitors in any language to be checked against."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from tltlc.interfaces.cli.paths import OutputPath
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc conformance -o corpus
+  tltlc compile corpus/until/until.fspa.json -t python -o build
+  python build/until_monitor.py --full corpus/until/until.1.csv
+"""
+)
+@click.option(
+    "--output",
+    "-o",
+    "folder",
+    metavar="DIR",
+    type=OutputPath("folder"),
+    default="conformance",
+    show_default=True,
+    help="Write here.",
+)
+def command(folder: Path) -> int:
+    """Write specs and traces with what a monitor must say of them, to check an engine's build.
+
+    DIR/README.md says how; DIR/index.json is for programs.  The files are the same at each run.  DIR must be new, empty
+    or made by an earlier run.
+    """
+    from tltlc.interfaces.cli.folders import in_the_way, is_free
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.io.writing import write_files
+    from tltlc.tools.conformance.corpus import CASES, files, is_corpus
+
+    with Report() as report:
+        if not is_free(folder) and not is_corpus(folder):
+            raise in_the_way(folder, "name another folder with -o, or an empty one")
+        made = files()
+        write_files(folder, made, over_inputs=True)
+        report.say(f"wrote {len(CASES)} cases, {len(made)} files, to {folder}: see {folder / 'README.md'}")
+    return report.status

@@ -1,0 +1,115 @@
+"""``tltlc explain``: a spec in plain words, or the page of an error code."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from tltlc.interfaces.cli.settings import Settings, compile_options
+
+if TYPE_CHECKING:
+    from tltlc.tools.explain.explanation import Explanation
+
+_CODE: Final = re.compile(r"(?i)\A\s*(?:tlt)?[0-9]{1,4}\s*\Z")
+_CODE_LIKE: Final = re.compile(r"(?i)\A\s*tlt[0-9a-z]*\s*\Z")
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc explain cover_and_hide.tltl
+  tltlc explain levels.tltl:level_1 --format markdown
+  tltlc explain levels --format markdown > levels.md    every spec of a folder
+  tltlc explain TLT0201
+  tltlc explain TLT02     the codes that begin so
+  tltlc list codes        the codes there are to explain
+"""
+)
+@click.argument("what", metavar="SPEC[:NAME]|FOLDER|TLTnnnn")
+@click.option(
+    "--format",
+    type=click.Choice(("text", "markdown", "json")),
+    default="text",
+    help="How to write a spec's explanation (default: text).",
+)
+@compile_options
+def command(what: str, format: str, settings: Settings) -> int:  # noqa: A002
+    """Say what a spec asks for, or what an error code means and how to mend it.
+
+    Of a spec: its steps, what holds throughout, what breaks it, when it ends, its states, the shortest ways to succeed
+    and to fail.  SPEC is a file, an artefact, or - for standard input; without :NAME all its specs are explained, of a
+    folder those of every .tltl file in it and below.
+    """
+    if (_CODE.match(what) or _CODE_LIKE.match(what)) and not Path(what).exists():
+        return _code(what)
+    return _specs(what, format, settings)
+
+
+def _specs(argument: str, format: str, settings: Settings) -> int:  # noqa: A002
+    from tltlc.diagnostics.diagnostic import TltlError
+    from tltlc.interfaces.cli.folders import every_source
+    from tltlc.interfaces.cli.inputs import open_input
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.tools.explain.explanation import explain
+
+    explained: list[Explanation] = []
+    with Report(results=True) as report:
+        for path in every_source([argument], report):
+            try:
+                opened = open_input(path, settings)
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
+            report.add(opened.diagnostics)
+            formulas = {spec.name: spec.formula for spec in opened.program.specs} if opened.program else {}
+            explained += [explain(fspa, formulas.get(fspa.name)) for fspa in opened.automata]
+        if explained or not report.status:
+            _show(explained, format)
+    return report.status
+
+
+def _show(explained: list[Explanation], format: str) -> None:  # noqa: A002
+    if format == "json":
+        import json
+
+        from tltlc.tools.explain.values import values
+
+        click.echo(json.dumps({"specs": [values(each) for each in explained]}, indent=2, ensure_ascii=False))
+        return
+    if format == "markdown":
+        from tltlc.tools.explain.markdown import markdown as write
+    else:
+        from tltlc.tools.explain.text import text as write
+    click.echo("\n".join(write(each) for each in explained), nl=False)
+
+
+def _code(code: str) -> int:
+    """The page of a code; of the beginning of codes, each with its title."""
+    from tltlc.diagnostics import codes
+
+    wanted = re.sub(r"(?i)\A(?:tlt)?", "TLT", code.strip(), count=1)
+    if wanted not in codes.codes():
+        family = codes.family(wanted)
+        if not family:
+            *others, last = (f"`{each}`" for each in codes.nearest(wanted))
+            listed = f"{', '.join(others)} or {last}"
+            raise click.UsageError(
+                f"there is no error code `{code}`: did you mean {listed}?", click.get_current_context()
+            )
+        from tltlc.interfaces.cli.commands.list import show
+
+        show([{"name": each, "doc": codes.title(each)} for each in family])
+        return 0
+    text = codes.page(wanted)
+    if sys.stdout.isatty():
+        from rich.console import Console
+        from rich.markdown import Markdown
+
+        Console(width=min(Console().width, 100)).print(Markdown(text))
+    else:
+        print(text.rstrip("\n"))
+    return 0

@@ -1,0 +1,97 @@
+"""``tltlc fmt``: source files in their one layout."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import click
+
+from tltlc.io.project import FORMATTINGS
+
+if TYPE_CHECKING:
+    from tltlc.interfaces.cli.report import Report
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc fmt                            every .tltl file in this folder, and below
+  tltlc fmt levels                     those of another folder
+  tltlc fmt --check --diff levels      what would change; for continuous integration
+  tltlc fmt --style unicode heist.tltl
+  tltlc fmt - < heist.tltl             from standard input to standard output
+"""
+)
+@click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
+@click.option("--check", is_flag=True, help="Write nothing, list the files that would change; if any, exit with 1.")
+@click.option("--diff", is_flag=True, help="Write nothing, print what would change.")
+@click.option(
+    "--style",
+    type=click.Choice(FORMATTINGS),
+    help="How to spell operators: `eventually`, `F`, `<>` or `◇` (default: words, or that of tltl.toml).",
+)
+def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) -> int:
+    """Lay out source files: the same specs and comments, with one way to break lines and to spell operators.
+
+    Files are rewritten in place, without arguments those of the current folder; those that would not change are not
+    touched; - is from standard input to standard output.  A file with syntax errors is left as it is, and the exit
+    status is 1.
+    """
+    from tltlc.diagnostics.diagnostic import TltlError
+    from tltlc.interfaces.cli import exits
+    from tltlc.interfaces.cli.folders import every_source, leads_out
+    from tltlc.interfaces.cli.report import Report, counted
+    from tltlc.io.project import project_for
+
+    changed = same = 0
+    with Report(results=True) as report:
+        for path in every_source(paths or (".",), report):
+            try:
+                wanted = style or project_for(path).formatting
+                if not check and not diff and leads_out(path, paths or (".",)):
+                    report.say(f"{path} is left as it is: it is a link out of the folder")
+                    continue
+                is_same = _format(path, wanted, report, check=check, diff=diff)
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
+            changed, same = changed + (not is_same), same + is_same
+        if check:
+            report.say(f"{counted(changed, 'file')} would change, {same} would not")
+            report.status = report.status or (exits.FINDINGS if changed else exits.CLEAN)
+        elif same and not diff and paths != ("-",):
+            report.say(f"{counted(same, 'file')} had this layout already")
+    return report.status
+
+
+def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -> bool:
+    """Format one file, or say what would change; whether it is in that layout already."""
+    from pathlib import Path
+
+    from tltlc.interfaces.cli.inputs import check_text
+    from tltlc.interfaces.cli.report import wants_colour
+    from tltlc.io.files import MAX_SOURCE_BYTES, decode
+    from tltlc.io.spec_file import STDIN, read_data
+    from tltlc.io.writing import rewrite
+    from tltlc.tools.fmt import format_source
+
+    data, name = read_data(path, MAX_SOURCE_BYTES)
+    source = decode(data, name)
+    check_text(source)
+    formatted = format_source(source, style)
+    is_same = formatted.encode() == data
+    if check and not diff and not is_same:
+        print(source.name)
+    if diff and not is_same:
+        from tltlc.tools.fmt.changes import unified
+
+        sys.stdout.write(unified(source.name, data.decode(), formatted, color=wants_colour(sys.stdout)))
+    if not check and not diff:
+        if path == STDIN:
+            # The text is UTF-8, whatever the terminal says.
+            sys.stdout.buffer.write(formatted.encode())
+        elif not is_same:
+            rewrite(Path(path), formatted)
+            report.say(f"formatted {path}")
+    return is_same

@@ -1,0 +1,104 @@
+"""``tltlc import``: an automaton of another tool becomes an artefact."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
+from tltlc.interfaces.cli.settings import Settings, assignments, source_options
+
+if TYPE_CHECKING:
+    from tltlc.resolve.spec import Judge
+
+
+def _name(_: click.Context, __: click.Parameter, name: str | None) -> str | None:
+    from tltlc.io.spec_file import is_plain_name
+
+    if name is not None and not is_plain_name(name):
+        raise click.BadParameter(f"`{name}` is no word of ASCII letters, digits and _")
+    return name
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc import patrol.hoa --predicates game.tltl     three files beside you
+  tltlc import patrol.hoa --predicates game.tltl --atom "p0=near(post_1)" -t json,svg -o build
+  ltl2tgba -G -D -C "GFp0" | tltlc import - --predicates game.tltl --atom "p0=near(post_1)"
+"""
+)
+@click.argument("file", metavar="FILE.hoa")
+@click.option(
+    "--predicates",
+    metavar="LIB.tltl",
+    required=True,
+    help="What the atomic propositions mean: a file with signals and predicates; its specs do not matter.",
+)
+@click.option(
+    "--atom",
+    "given",
+    metavar="AP=PREDICATE",
+    multiple=True,
+    help="The predicate of an atomic proposition that is not called like one, e.g. `p0=near(exit)` (repeatable).",
+)
+@click.option("--name", metavar="NAME", callback=_name, help="Call the spec so (default: as the file does).")
+@click.option("--level", metavar="LEVEL", help="The level that it is for.")
+@click.option("--limit", metavar="STEPS", type=WholeRange(min=1), help="End each episode after this many steps.")
+@click.option(
+    "--judge", type=click.Choice(("goal", "limit")), help="When an episode is over (default: by the automaton)."
+)
+@output_option
+@target_option
+@source_options
+def command(
+    file: str,
+    predicates: str,
+    given: tuple[str, ...],
+    name: str | None,
+    level: str | None,
+    limit: int | None,
+    judge: Judge | None,
+    folder: Path,
+    target_lists: tuple[str, ...],
+    settings: Settings,
+    format: str,  # noqa: A002
+) -> int:
+    """Make an artefact of FILE.hoa, an automaton in the Hanoi format (- is standard input).
+
+    It must be deterministic and complete, with any acceptance of edges or states; Spot, Owl and Rabinizer write such
+    files.  Its atomic propositions are predicates of LIB.tltl, written as in a spec: "near(exit)".
+    """
+    from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
+    from tltlc.diagnostics.diagnostic import stop_at_errors
+    from tltlc.interfaces.cli.inputs import check_text
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.interfaces.cli.settings import check_libraries
+    from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
+    from tltlc.io.project import project_for
+    from tltlc.io.spec_file import read_text
+    from tltlc.resolve.options import ResolveOptions
+    from tltlc.tools.hoa.load import ImportOptions, load
+
+    atoms = assignments(given, "AP=PREDICATE", "--atom")
+    with Report(format) as report:
+        asked = targets_of(target_lists)
+        check_libraries(settings.libraries)
+        project = project_for(predicates)
+        source = read_text(file, MAX_ARTEFACT_BYTES)
+        library = read_source(predicates)
+        check_text(library)
+        resolve = ResolveOptions((*settings.libraries, *project.libraries), settings.params)
+        budget = settings.state_budget or DEFAULT_STATE_BUDGET
+        options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
+        with project.levelling():
+            fspa, found = load(source, library, options)
+        found = project.levelled(found)
+        stop_at_errors(found)
+        report.add(found)
+        advice = "name another folder with -o, or another spec with --name"
+        write_and_tell(folder, files_of([fspa], asked, project, report), report, advice)
+    return report.status

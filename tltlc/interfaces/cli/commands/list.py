@@ -1,0 +1,143 @@
+"""``tltlc list``: what there is to use: predicates, targets, levels, error codes."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import click
+
+from tltlc.diagnostics.diagnostic import TltlError
+
+Row = dict[str, str]
+
+LISTS = "tltlc.lists"
+"""The group of entry points that list what the compiler knows nothing of: functions that return rows."""
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc list predicates                   those of the standard library
+  tltlc list predicates --library mine    and those of a folder of yours
+  tltlc list targets --json
+  tltlc list levels                       those of the stealth game, and what their variants change
+  tltlc list codes
+"""
+)
+@click.argument("what", type=click.Choice(("predicates", "targets", "levels", "codes")))
+@click.option(
+    "--library",
+    "-L",
+    "libraries",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="List the predicates of this folder, too (repeatable).",
+)
+@click.option("--json", "as_json", is_flag=True, help="A JSON list, for programs.")
+def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
+    """List the predicates, targets, levels or error codes there are, each with a line on what it is."""
+    from tltlc.interfaces.cli.report import Report
+
+    with Report() as report:
+        rows = list(_predicates(libraries, report.add) if what == "predicates" else _LISTS[what]())
+        if as_json:
+            print(json.dumps(rows, indent=2, ensure_ascii=False))
+        else:
+            show(rows)
+    return report.status
+
+
+def show(rows: list[Row]) -> None:
+    """A table for a terminal, columns with tabs for a file."""
+    if sys.stdout.isatty():
+        _table(rows)
+    else:
+        _lines(rows)
+
+
+def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
+    """The predicates that each library declares, as they stand in its text; files that are broken are reported."""
+    from tltlc.grammar.parser import parse
+    from tltlc.grammar.tree import PredicateDecl
+    from tltlc.interfaces.cli.settings import check_libraries
+    from tltlc.io.files import may_be_file, read_source
+    from tltlc.io.project import project_for
+    from tltlc.resolve.imports import standard_library
+
+    check_libraries(libraries)
+    for folder in (*libraries, *project_for("-").libraries, standard_library()):
+        for path in sorted(filter(may_be_file, folder.glob("*.tltl"))):
+            try:
+                source = read_source(path)
+            except TltlError as error:
+                add(error.diagnostics)
+                continue
+            module, found = parse(source)
+            add(found)
+            for declaration in module.declarations:
+                if isinstance(declaration, PredicateDecl):
+                    signature = declaration.name
+                    if declaration.parameters:
+                        end = max(parameter.span.end for parameter in declaration.parameters)
+                        signature = " ".join(source.text[declaration.name_span.start : end].split()) + ")"
+                    yield {
+                        "name": declaration.name,
+                        "library": path.stem,
+                        "signature": signature,
+                        "doc": " ".join(declaration.doc.split()),
+                    }
+
+
+def _targets() -> Iterator[Row]:
+    from tltlc import backends
+
+    for name in backends.targets():
+        target = backends.target(name)
+        yield {"name": name, "files": ", ".join(f"NAME{ending}" for ending in target.endings), "doc": target.title}
+
+
+def _codes() -> Iterator[Row]:
+    from tltlc.diagnostics import codes
+
+    for code in codes.codes():
+        yield {"name": code, "doc": codes.title(code)}
+
+
+def _levels() -> Iterator[Row]:
+    """Those of the runtime; error TLT0730 where it is not installed."""
+    from tltlc.interfaces.cli import plugins
+    from tltlc.interfaces.cli.exits import missing_component
+
+    for plugin in plugins.find(LISTS):
+        if plugin.name == "levels":
+            listed: Callable[[], Iterator[Row]] = plugins.load(plugin, "`tltlc list levels`")
+            return listed()
+    raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[game]")
+
+
+_LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels": _levels, "codes": _codes}
+
+
+def _lines(rows: list[Row]) -> None:
+    """Columns of plain text, the last as long as it likes; the name stands in the signature where there is one."""
+    for row in rows:
+        print("\t".join(value for key, value in row.items() if not (key == "name" and "signature" in row)))
+
+
+def _table(rows: list[Row]) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD)
+    keys = [key for key in rows[0] if not (key == "name" and "signature" in rows[0])] if rows else []
+    for key in keys:
+        table.add_column(key, overflow="fold", style="bold" if key in ("name", "signature") else "")
+    for row in rows:
+        table.add_row(*(Text(row[key]) for key in keys))
+    Console().print(table)

@@ -1,0 +1,121 @@
+"""``tltlc new``: a starter project."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Final
+
+import click
+
+from tltlc.interfaces.cli import plugins
+from tltlc.interfaces.cli.paths import OutputPath
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc new my_game
+  tltlc test my_game
+  tltlc new my_vault --level vault
+  tltlc play my_vault/vault.toml
+"""
+)
+@click.argument("folder", metavar="NAME", type=OutputPath("folder"))
+@click.option(
+    "--level",
+    metavar="LEVEL",
+    help="Copy a level of the stealth game with its spec, assets and overlays: `vault`, which is small, or one that "
+    "`tltlc list levels` shows.",
+)
+def command(folder: Path, level: str | None) -> int:
+    """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.
+
+    With --level, create it with a level to be changed instead.
+    """
+    from tltlc.interfaces.cli.folders import in_the_way, is_free
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.io.writing import write_files
+
+    with Report() as report:
+        if not is_free(folder):
+            raise in_the_way(folder, "choose another name, or an empty folder")
+        files, next_ = _FILES, f"test {shlex.quote(str(folder))}"
+        if level is not None:
+            files = plugins.of_levels("new", "`tltlc new --level`")(level)
+            next_ = f"check --level {shlex.quote(str(folder / next(iter(files))))}"
+        for path in write_files(folder, files, advice="choose another place, e.g. `tltlc new my_game`"):
+            report.say(f"wrote {path}")
+        report.say(f"Next: tltlc {next_}")
+    return report.status
+
+
+_SPEC: Final = """\
+// What a playtester should manage in the first level.
+import stealth
+
+entity key, door
+exclusive near(key), near(door)
+
+/// Fetch the key, then leave by the door, alive.
+spec leave_with_key {
+    limit 200 steps
+    reach near(key) then near(door)
+    keep alive
+}
+
+test "the door alone is not enough" for leave_with_key {
+    step alive, near(door)
+    expect pending
+}
+
+test "key, then door" for leave_with_key {
+    step 3x alive
+    step alive, near(key)
+    step alive, near(door)
+    expect holding
+}
+"""
+
+_TRACE: Final = """\
+step,distance(key),distance(door),health
+1,8.0,12.0,1.0
+2,5.5,9.5,1.0
+3,3.0,7.5,0.9
+4,0.5,6.0,0.9
+5,2.5,4.0,0.9
+6,4.5,2.0,0.8
+7,6.0,0.4,0.8
+"""
+
+_PROJECT: Final = """\
+# Every key is optional.
+targets = ["json", "dot", "python"]   # `tltlc list targets` shows them all
+libraries = []                        # folders of your own predicate libraries
+
+[style]
+notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
+"""
+
+_README: Final = """\
+# A plan for a playtester
+
+`first_level.tltl` says what a player has to do in the first level; `first_level.csv` is a recorded trace.
+
+    tltlc check first_level.tltl                      is it right?
+    tltlc explain first_level.tltl                    what does it say?
+    tltlc lint first_level.tltl                       does it say what we meant?
+    tltlc test first_level.tltl                       do its examples come out?
+    tltlc compile first_level.tltl -o build           the automaton and its monitor
+    tltlc render first_level.tltl -o first_level.svg  a picture of it
+    tltlc monitor first_level.tltl first_level.csv    does the trace fulfil it?
+
+While you write: `tltlc watch` says all of that whenever you save, and `tltlc serve` opens a page to try specs on.
+"""
+
+_FILES: Final = {
+    "tltl.toml": _PROJECT,
+    "first_level.tltl": _SPEC,
+    "first_level.csv": _TRACE,
+    "README.md": _README,
+}

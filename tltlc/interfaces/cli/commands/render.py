@@ -1,0 +1,103 @@
+"""``tltlc render``: the picture of one automaton."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tltlc.interfaces.cli.paths import OutputPath, is_stdout
+from tltlc.interfaces.cli.settings import Settings, source_options
+
+if TYPE_CHECKING:
+    from tltlc.backends import Notation
+
+_TARGET_OF_ENDING = {
+    ".svg": "svg",
+    ".png": "png",
+    ".dot": "dot",
+    ".gv": "dot",
+    ".mmd": "mermaid",
+    ".mermaid": "mermaid",
+}
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc render cover_and_hide.tltl -o cover_and_hide.svg
+  tltlc render levels.tltl:level_1 -t png -o level_1.png
+  tltlc render cover_and_hide.tltl -t mermaid        on standard output
+"""
+)
+@click.argument("spec", metavar="SPEC[:NAME]")
+@click.option(
+    "--output",
+    "-o",
+    "path",
+    metavar="FILE",
+    type=OutputPath("file", stdout=True),
+    help="Write here, not on standard output (`-`).",
+)
+@click.option(
+    "--target",
+    "-t",
+    "target",
+    type=click.Choice(("svg", "png", "dot", "mermaid")),
+    help="The kind of picture (default: by the ending of FILE, else svg).",
+)
+@click.option(
+    "--notation",
+    type=click.Choice(("unicode", "ascii", "english")),
+    help="How formulas are written (default: unicode, or that of tltl.toml).",
+)
+@source_options
+def command(
+    spec: str,
+    path: Path | None,
+    target: str | None,
+    notation: Notation | None,
+    settings: Settings,
+    format: str,  # noqa: A002
+) -> int:
+    """Draw the automaton of a spec: states with what remains to be done, guards, distances, goal and trap.
+
+    SPEC is a file, an artefact, or - for standard input; :NAME picks one of several specs.
+    """
+    from tltlc import backends
+    from tltlc.interfaces.cli.inputs import open_input
+    from tltlc.interfaces.cli.report import Report
+    from tltlc.io.writing import write_file
+
+    path = None if is_stdout(path) else path
+    kind = target or _kind(path)
+    if path is None and kind == "png" and sys.stdout.isatty():
+        raise click.UsageError("a PNG is nothing for a terminal: name a file with -o")
+    with Report(format, results=path is None) as report:
+        opened = open_input(spec, settings)
+        report.add(opened.diagnostics)
+        options = backends.Options(
+            notation=notation or opened.project.notation,
+            report=lambda diagnostic: report.add((diagnostic,)),
+        )
+        for name, content in backends.emit(kind, opened.one(), options).items():
+            if path is not None:
+                if kind != "dot" and name.endswith(".dot"):
+                    path = path.with_suffix(".dot")  # the layout took too long, and this is the graph itself
+                write_file(path, content)
+                report.say(f"wrote {path}")
+            else:
+                sys.stdout.buffer.write(content.encode() if isinstance(content, str) else content)
+    return report.status
+
+
+def _kind(path: Path | None) -> str:
+    if path is None:
+        return "svg"
+    kind = _TARGET_OF_ENDING.get(path.suffix.lower())
+    if kind is None:
+        endings = ", ".join(_TARGET_OF_ENDING)
+        raise click.UsageError(f"the ending of `{path}` says no kind of picture: use one of {endings}, or -t")
+    return kind

@@ -1,0 +1,119 @@
+"""``tltlc serve``: the playground, on this machine or as a site."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.interfaces.cli.paths import OutputPath
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc serve --open               the playground in your browser
+  tltlc serve --port 8080
+  tltlc serve --static site        files for any web server, which need no tltlc there
+
+\b
+The page asks this machine and nobody else, and only the address that is printed can ask.  A spec may import what lies
+in the current folder and below, and the libraries of tltlc.
+"""
+)
+@click.option("--port", metavar="N", type=WholeRange(0, 65535), default=8765, help="Serve there (default: 8765).")
+@click.option("--open", "opening", is_flag=True, help="Open the page in a browser.")
+@click.option(
+    "--static",
+    "folder",
+    metavar="DIR",
+    type=OutputPath("folder"),
+    help="Write the page there, with the compiler in it, and serve nothing.",
+)
+@click.option(
+    "--pyodide",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    default=Path("node_modules/pyodide"),
+    help="The npm package that --static puts in (default: node_modules/pyodide).",
+)
+def command(port: int, opening: bool, folder: Path | None, pyodide: Path) -> int:
+    """Show a page on which to try specs: errors as one types, the automaton, traces to click through.
+
+    It stays until Ctrl-C, and is seen from this machine alone.
+    """
+    from tltlc.interfaces.cli.report import Report
+
+    with Report() as report:
+        if folder is not None:
+            if opening:
+                raise click.UsageError("--static writes files, which need a server to be opened: leave out --open")
+            _write(folder, pyodide)
+        else:
+            _serve(port, opening)
+    return report.status
+
+
+def _write(folder: Path, pyodide: Path) -> None:
+    from tltlc.interfaces.playground.site import site_files
+    from tltlc.io.writing import write_files
+
+    files = site_files(pyodide)
+    write_files(folder, files, "name another folder with --static")
+    size = sum(map(len, files.values())) / 1e6
+    print(f"wrote {len(files)} files, {size:.0f} MB, into {folder}; any web server can show them", file=sys.stderr)
+
+
+def _serve(port: int, opening: bool) -> None:
+    from tltlc.interfaces.playground.server import Server
+
+    with Server(port) as server, ExitStack() as stack:
+        print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
+        _report_ignored_project()
+        if opening:
+            _open(server.address, stack)
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            raise exits.StopQuietlyError(exits.interrupted()) from None
+
+
+def _report_ignored_project() -> None:
+    """Say that a project file above the current folder does not count: texts read nothing outside of that folder."""
+    from tltlc.io.project import project_file
+
+    try:
+        here = Path.cwd()
+    except FileNotFoundError:
+        return  # the current folder has been deleted
+    file = project_file(here)
+    if file is not None and file.parent != here:
+        way_out = f"to use it, start `tltlc serve` in {file.parent}"
+        print(f"{file} is ignored, because it is above this folder; {way_out}", file=sys.stderr, flush=True)
+
+
+def _open(address: str, stack: ExitStack) -> None:
+    """Have a browser open an address, by a file that stays until ``stack`` ends."""
+    from threading import Thread
+
+    from tltlc.diagnostics.diagnostic import TltlError
+    from tltlc.interfaces.playground.browser import leading_to
+
+    try:
+        file = stack.enter_context(leading_to(address))
+    except (OSError, TltlError):
+        print("no temporary file can be written: open the address yourself", file=sys.stderr, flush=True)
+        return
+    # Some browsers return when they are closed, and all of them need an answer before.
+    Thread(target=_start_browser, args=(file,), daemon=True).start()
+
+
+def _start_browser(file: str) -> None:
+    import webbrowser
+
+    if not webbrowser.open(file):
+        print("no browser was found: open the address yourself", file=sys.stderr, flush=True)

@@ -1,0 +1,77 @@
+"""``tltlc test``: the test blocks of files, and of all files of folders."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+import click
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.keywords import DECLARATIONS
+from tltlc.interfaces.cli.settings import Settings, source_options
+
+if TYPE_CHECKING:
+    from tltlc.monitor.tests import TestResult
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc test                         every .tltl file in this folder, and below
+  tltlc test cover_and_hide.tltl
+  tltlc test levels.tltl:level_1     only the tests of that spec
+  tltlc test levels                  those of another folder
+"""
+)
+@click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
+@source_options
+def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # noqa: A002
+    """Run test blocks: a line for each on standard output, and what went wrong on standard error.
+
+    Without arguments, those of the current folder.  The exit status is 1 where a test fails or a file has errors.
+    """
+    from tltlc.interfaces.cli.folders import sources
+    from tltlc.interfaces.cli.report import Report
+
+    passed = failed = unread = 0
+    with Report(format, results=True) as report:
+        for argument in paths or (".",):
+            before = passed + failed + unread
+            for path in sources(argument):
+                try:
+                    results = _run(path, settings, report.add)
+                except TltlError as error:
+                    report.add(error.diagnostics)
+                    unread += 1
+                    continue
+                for result in results:
+                    verdict = "passed" if result.passed else "FAILED"
+                    print(f"{verdict}  {_place(result)}  {result.test.title}", flush=True)
+                    passed, failed = passed + result.passed, failed + (not result.passed)
+                    report.add([result.failure] if result.failure else [])
+            if passed + failed + unread == before:
+                report.say(f"{argument}: no test block; the form is {DECLARATIONS['test']}")
+        print(f"{passed} passed, {failed} failed{_unread(unread)}")
+    return report.status
+
+
+def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
+    from tltlc.interfaces.cli.inputs import no_text, open_input
+    from tltlc.monitor.tests import run_tests
+
+    opened = open_input(path, settings)
+    add(opened.diagnostics)
+    if opened.program is None:
+        raise TltlError([no_text(opened.name)])
+    return run_tests(opened.program, opened.automata)
+
+
+def _unread(files: int) -> str:
+    """How many files have errors, so that none of their tests ran."""
+    return f", {files} {'file' if files == 1 else 'files'} with errors" if files else ""
+
+
+def _place(result: TestResult) -> str:
+    source, span = result.test.source, result.test.span
+    return f"{source.name}:{source.position(span.start)[0]}"

@@ -1,0 +1,134 @@
+"""``tltlc witness``: traces that show what a spec takes and what it does not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from tltlc.interfaces.cli.paths import OutputPath
+from tltlc.interfaces.cli.report import Report
+from tltlc.interfaces.cli.settings import Settings, source_options, work_of
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa
+    from tltlc.tools.witness.traces import Witness
+    from tltlc.tools.witness.transitions import Moves
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc witness cover_and_hide.tltl                                    two test blocks to paste into the file
+  tltlc witness levels.tltl:level_1 --rejecting --as csv > broken.csv
+  tltlc witness cover_and_hide.tltl --cover --as csv -o traces         every edge of the automaton
+"""
+)
+@click.argument("spec", metavar="SPEC[:NAME]")
+@click.option("--accepting", is_flag=True, help="A shortest trace that is accepted.")
+@click.option("--rejecting", is_flag=True, help="A shortest trace that breaks the spec, or else one that is rejected.")
+@click.option("--cover", is_flag=True, help="Traces that together take every edge that can be taken.")
+@click.option("--as", "kind", type=click.Choice(("test", "csv")), default="test", help="What to write (default: test).")
+@click.option(
+    "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), help="Write files here, one per trace."
+)
+@source_options
+def command(
+    spec: str,
+    accepting: bool,
+    rejecting: bool,
+    cover: bool,
+    kind: Literal["test", "csv"],
+    folder: Path | None,
+    settings: Settings,
+    format: str,  # noqa: A002
+) -> int:
+    """Show a spec by traces: as `test` blocks to paste into its file, or as CSV of the signals of a game.
+
+    Without options, a shortest trace that is accepted and a shortest one that breaks the spec.  Values of signals are
+    found that give the atoms their truth, and each trace is run before it is shown.  Over infinite traces a trace
+    is a prefix and a cycle, which is written once.
+    """
+    from tltlc.interfaces.cli.inputs import open_input
+    from tltlc.io.writing import write_files
+    from tltlc.tools.witness.transitions import Moves
+
+    if not (accepting or rejecting or cover):
+        accepting = rejecting = True
+    with Report(format, results=True) as report:
+        opened = open_input(spec, settings)
+        report.add(opened.diagnostics)
+        files: dict[str, str | bytes] = {}
+        for fspa in opened.automata:
+            traces = _traces(Moves(fspa), accepting, rejecting, cover, settings, report)
+            files.update(_written(fspa, traces, kind, report))
+        if folder is not None:
+            wrote = write_files(folder, files)
+            for path in wrote:
+                report.say(f"wrote {path}")
+            if len(wrote) < len(files):
+                report.say(f"unchanged: {len(files) - len(wrote)}")
+            return report.status
+        if kind == "csv" and len(files) > 1:
+            way_out = "write them to a folder with -o, or ask for one, by SPEC:NAME with --accepting or --rejecting"
+            raise click.UsageError(f"{len(files)} traces are no one CSV file: {way_out}", click.get_current_context())
+        click.echo("\n".join(str(text) for text in files.values()), nl=False)
+    return report.status
+
+
+def _traces(
+    moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: Settings, report: Report
+) -> list[Witness]:
+    """The traces that are asked for; what cannot be had is reported."""
+    from tltlc.tools.witness import captions as remarks
+    from tltlc.tools.witness import cover as covering
+    from tltlc.tools.witness import traces
+
+    fspa = moves.fspa
+    work = work_of(settings)
+    found: list[Witness] = []
+    with remarks.out_of_work(fspa):
+        for wanted, search, what in (
+            (accepting, traces.accepting, "accepted"),
+            (rejecting, traces.rejecting, "rejected"),
+        ):
+            trace = search(moves, work) if wanted else None
+            if trace is not None:
+                found.append(trace)
+            elif wanted:
+                report.add([remarks.no_trace(moves, what)])
+    if cover:
+        all_edges = covering.cover(moves)
+        found += all_edges.traces
+        report.add(remarks.untaken(fspa, all_edges.untaken))
+    return found
+
+
+def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
+    """The texts of the traces, by the names of their files."""
+    from tltlc.monitor import Monitor
+    from tltlc.tools.witness import captions as remarks
+    from tltlc.tools.witness import text as written
+    from tltlc.tools.witness.blocks import Blocks
+
+    if traces and not fspa.atoms:
+        report.add([remarks.no_atoms(fspa)])
+        return {}
+    if traces and kind == "csv" and not fspa.signals:
+        report.add([remarks.no_signals(fspa)])
+        return {}
+    covers = sum(trace.kind == "cover" for trace in traces)
+    found: dict[str, str] = {}
+    number, blocks, monitor = 0, Blocks(fspa), Monitor(fspa)
+    for trace in traces:
+        number += trace.kind == "cover"
+        which = f"cover_{number}" if trace.kind == "cover" else trace.kind
+        if kind == "csv":
+            found[f"{fspa.name}_{which}.csv"] = written.as_csv(fspa, trace, monitor)
+            if trace.cycle is not None:
+                report.say(f"{fspa.name}, {trace.kind}: {written.cycle_text(trace)}")
+        else:
+            title = remarks.title(fspa, trace, number, covers)
+            found[f"{fspa.name}_{which}.txt"] = written.as_test(fspa, trace, title, blocks)
+    return found

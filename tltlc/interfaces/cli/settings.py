@@ -1,0 +1,125 @@
+"""The options that every command on a source file shares, and what they come to beside a project file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from tltlc.core.record import EMPTY, record
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.render import FORMATS
+from tltlc.interfaces.cli.numbers import WholeRange
+from tltlc.io.files import is_dir
+
+if TYPE_CHECKING:
+    from tltlc.io.project import Project
+    from tltlc.pipeline import CompileOptions
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@record
+class Settings:
+    """What the command line says of where and how to compile; ``libraries`` before those of the project file."""
+
+    libraries: tuple[Path, ...] = ()
+    params: Mapping[str, str] = EMPTY
+    state_budget: int | None = None
+
+
+def source_options(command: Function) -> Function:
+    """Add ``--library --param --state-budget --format``; the command takes ``settings`` and ``format``."""
+    return compile_options(format_option(command))
+
+
+def compile_options(command: Function) -> Function:
+    """Add ``--library --param --state-budget``; the command takes ``settings``."""
+    from functools import wraps
+
+    @wraps(command)
+    def with_settings(
+        *args: Any, library: tuple[Path, ...], param: tuple[str, ...], state_budget: int | None, **rest: Any
+    ) -> Any:
+        params = assignments(param, "NAME=VALUE", "--param")
+        return command(*args, settings=Settings(library, params, state_budget), **rest)
+
+    for option in reversed(
+        (
+            click.option(
+                "--library",
+                "-L",
+                metavar="DIR",
+                type=click.Path(path_type=Path, readable=False),
+                multiple=True,
+                help="Look for imports in this folder, too (repeatable).",
+            ),
+            click.option(
+                "--param",
+                "-p",
+                metavar="NAME=VALUE",
+                multiple=True,
+                help="Set a param, e.g. `level_size=30 m` (repeatable).",
+            ),
+            click.option(
+                "--state-budget",
+                metavar="N",
+                type=WholeRange(min=1),
+                help="Give up on an automaton that needs more states, or as much more work (default: 50000).",
+            ),
+        )
+    ):
+        with_settings = option(with_settings)
+    return with_settings  # type: ignore[return-value]
+
+
+format_option = click.option(
+    "--format",
+    type=click.Choice(FORMATS),
+    default="text",
+    help="How to show errors and warnings (default: text).",
+)
+
+
+def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
+    """How to compile a file of a project; ``specs`` picks by name."""
+    from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
+    from tltlc.pipeline import CompileOptions
+
+    return CompileOptions(
+        library_dirs=(*settings.libraries, *project.libraries),
+        params=settings.params,
+        state_budget=settings.state_budget or DEFAULT_STATE_BUDGET,
+        specs=specs,
+    )
+
+
+def work_of(settings: Settings) -> int:
+    """The steps that a search or a comparison may take: as many as an automaton over infinite traces."""
+    from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
+    from tltlc.automaton.infinite.work import STEPS_PER_STATE
+
+    return STEPS_PER_STATE * (settings.state_budget or DEFAULT_STATE_BUDGET)
+
+
+def check_libraries(libraries: tuple[Path, ...]) -> None:
+    """Error TLT0001 for a library folder that is none."""
+    for folder in libraries:
+        if not is_dir(folder):
+            title = f"the library folder `{folder}` is not there"
+            raise TltlError([Diagnostic("TLT0001", title, help="name a folder that is there")])
+
+
+def assignments(written: tuple[str, ...], form: str, option: str) -> dict[str, str]:
+    """What ``NAME=VALUE`` says, of each; raises click.BadParameter where one is not of that ``form``, or set twice."""
+    found: dict[str, str] = {}
+    for text in written:
+        name, equals, value = map(str.strip, text.partition("="))
+        if not equals or not name or not value:
+            raise click.BadParameter(f"`{text}` is not of the form {form}", param_hint=option)
+        if name in found:
+            raise click.BadParameter(f"`{name}` is set twice", param_hint=option)
+        found[name] = value
+    return found

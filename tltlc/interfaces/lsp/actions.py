@@ -1,0 +1,53 @@
+"""Fixes that can be taken at once, as actions of the protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from lsprotocol import types
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.diagnostics import remark
+from tltlc.interfaces.lsp.edits import text_edit
+from tltlc.tools.lint.fixes import of_errors, of_findings
+from tltlc.tools.lint.rule import Finding
+
+
+def actions(
+    document: Document,
+    span: Span,
+    findings: tuple[Finding, ...],
+    encoding: str,
+    uri_of: Callable[[str], str],
+    edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
+) -> list[types.CodeAction]:
+    """What can be done about what is said of a place."""
+    uri = uri_of(document.source.name)
+
+    def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+        if source == document.source:
+            return document.said
+        return Document(source, document.project, {**document.texts, source.name: source.text}).said
+
+    near = [each for each in findings if _touches(each.diagnostic, document, span)]
+    told = [each for each in document.said if _touches(each, document, span)]
+    return [
+        types.CodeAction(
+            offer.fix.title,
+            kind=types.CodeActionKind.QuickFix,
+            diagnostics=[remark(offer.diagnostic, document, encoding, uri_of)],
+            edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in offer.fix.edits]}),
+            # Editors apply a preferred action unasked, so it must not be a guess.
+            is_preferred=offer.fix.applicability == "safe",
+        )
+        for offer in (*of_findings(near, document.module), *of_errors(told, document.source, errors))
+    ]
+
+
+def _touches(diagnostic: Diagnostic, document: Document, span: Span) -> bool:
+    return any(
+        label.source.name == document.source.name and label.span.start <= span.end and span.start <= label.span.end
+        for label in diagnostic.labels
+    )

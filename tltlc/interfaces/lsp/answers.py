@@ -1,0 +1,257 @@
+"""What editors ask, passed to the modules that know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from lsprotocol import types
+
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Edit
+from tltlc.grammar.tree import SpecDecl
+from tltlc.interfaces.lsp import (
+    actions,
+    completion,
+    durations,
+    folding,
+    formatting,
+    hover,
+    imports,
+    lenses,
+    references,
+    symbols,
+    tokens,
+)
+from tltlc.interfaces.lsp import file_renames as moves
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.edits import text_edit
+from tltlc.interfaces.lsp.names import Occurrence, Symbol
+from tltlc.interfaces.lsp.paths import name_of
+from tltlc.interfaces.lsp.positions import offset, range_of
+from tltlc.interfaces.lsp.session import Server
+from tltlc.interfaces.lsp.worker import LONGEST_S
+
+
+def _complete(server: Server, params: types.CompletionParams) -> types.CompletionList | None:
+    document, at = _place(server, params)
+    if document is None:
+        return None
+    return types.CompletionList(is_incomplete=False, items=completion.completions(document, at, server.encoding))
+
+
+def _hover(server: Server, params: types.HoverParams) -> types.Hover | None:
+    document, at = _place(server, params)
+    return hover.hover(document, at, server.analysis(document), server.encoding) if document else None
+
+
+def _definition(server: Server, params: types.DefinitionParams) -> types.Location | None:
+    document, at = _place(server, params)
+    if document is None:
+        return None
+    found = document.name_at(at)
+    if found is not None:
+        symbol = found.symbol
+        return types.Location(
+            server.texts.uri(symbol.source.name), range_of(symbol.source, symbol.span, server.encoding)
+        )
+    for span, source in imports.targets(document):
+        if span.start <= at <= span.end:
+            return types.Location(server.texts.uri(source.name), range_of(source, Span(0, 0), server.encoding))
+    return None
+
+
+def _links(server: Server, params: types.DocumentLinkParams) -> list[types.DocumentLink] | None:
+    document = server.texts.document(params.text_document.uri)
+    return imports.links(document, server.encoding, server.texts.uri) if document else None
+
+
+async def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
+    found = await _name_everywhere(server, params, references.may_have_references)
+    if found is None:
+        return None
+    return [
+        types.Location(server.texts.uri(document.source.name), range_of(document.source, each.span, server.encoding))
+        for document, places in references.references(found.symbol, server.texts)
+        for each in places
+        if params.context.include_declaration or not each.declares
+    ]
+
+
+def _highlight(server: Server, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight] | None:
+    document, at = _place(server, params)
+    found = document.name_at(at) if document else None
+    if document is None or found is None:
+        return None
+    return [
+        types.DocumentHighlight(
+            range_of(document.source, each.span, server.encoding),
+            types.DocumentHighlightKind.Write if each.declares else types.DocumentHighlightKind.Read,
+        )
+        for each in document.names
+        if each.symbol.is_same(found.symbol)
+    ]
+
+
+async def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
+    found = await _name_everywhere(server, params, references.may_have_references)
+    document = server.texts.document(params.text_document.uri)
+    if document is None or found is None:
+        return None
+    references.check_renamable(found.symbol, server.texts)
+    return types.PrepareRenamePlaceholder(range_of(document.source, found.span, server.encoding), found.symbol.name)
+
+
+async def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit | None:
+    found = await _name_everywhere(server, params, references.may_refuse_rename)
+    if found is None:
+        return None
+    return _workspace_edit(server, references.rename(found.symbol, params.new_name, server.texts))
+
+
+async def _move_files(server: Server, params: types.RenameFilesParams) -> types.WorkspaceEdit:
+    await server.texts.parse(moves.may_import)
+    moved = [(name_of(each.old_uri), name_of(each.new_uri)) for each in params.files]
+    return _workspace_edit(server, moves.edits_of_moves(moved, server.texts))
+
+
+def _format(server: Server, params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
+    document = server.texts.document(params.text_document.uri)
+    return formatting.formatting(document, server.encoding) if document else None
+
+
+def _actions(server: Server, params: types.CodeActionParams) -> list[types.CodeAction] | None:
+    document = server.texts.document(params.text_document.uri)
+    wanted = params.context.only
+    if document is None or (wanted is not None and not {"", types.CodeActionKind.QuickFix}.intersection(wanted)):
+        return None
+    analysis = server.analysis(document)
+    findings = analysis.findings if analysis else ()
+    place = _span(server, document, params.range)
+    return actions.actions(document, place, findings, server.encoding, server.texts.uri, server.workspace_edit)
+
+
+def _lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens]:
+    uri = params.text_document.uri
+    document = server.texts.document(uri)
+    # The last ones, so that the lines of the text do not move at each key.
+    analysis = server.last_analysis(document) if document else None
+    return lenses.lenses(document, uri, analysis, server.encoding) if document and analysis else []
+
+
+def _hints(server: Server, params: types.InlayHintParams) -> list[types.InlayHint] | None:
+    document = server.texts.document(params.text_document.uri)
+    return durations.hints(document, _span(server, document, params.range), server.encoding) if document else None
+
+
+def _folding(server: Server, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
+    document = server.texts.document(params.text_document.uri)
+    return folding.folds(document) if document else None
+
+
+def _tokens(server: Server, params: types.SemanticTokensParams) -> types.SemanticTokens | None:
+    document = server.texts.document(params.text_document.uri)
+    return types.SemanticTokens(tokens.tokens(document, server.encoding)) if document else None
+
+
+def _symbols(server: Server, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol] | None:
+    document = server.texts.document(params.text_document.uri)
+    return symbols.symbols(document, server.encoding) if document else None
+
+
+async def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+    await server.texts.parse(lambda text: True)
+    return [
+        each
+        for document in server.texts.all()
+        for each in symbols.found(document, params.query, server.encoding, server.texts.uri(document.source.name))
+    ]
+
+
+async def run_tests(server: Server, uri: str, spec: str) -> None:
+    """Say how the tests of a spec ended."""
+    analysis = await server.analysis_of(uri)
+    figures = next((each for each in analysis.figures if each.spec == spec), None) if analysis else None
+    document = server.texts.document(uri)
+    if figures is not None:
+        text = f"{spec}: {lenses.tests_text(figures)}"
+    elif document is None or not any(
+        isinstance(each, SpecDecl) and each.name == spec for each in document.module.declarations
+    ):
+        text = f"there is no spec `{spec}`, so there are no tests to run"
+    elif analysis is None and document.is_clean:
+        text = f"the tests of `{spec}` did not run: a text changed, or its automata take over {LONGEST_S:g} s"
+    else:
+        text = f"`{spec}` has errors, so its tests did not run"
+    kind = types.MessageType.Info if figures is not None and not figures.failed else types.MessageType.Warning
+    server.window_show_message(types.ShowMessageParams(kind, text))
+
+
+def _workspace_edit(server: Server, changed: list[tuple[Document, list[Edit]]]) -> types.WorkspaceEdit:
+    edits = {
+        server.texts.uri(document.source.name): [text_edit(document.source, edit, server.encoding) for edit in own]
+        for document, own in changed
+    }
+    return server.workspace_edit(edits)
+
+
+def _place(server: Server, params: Any) -> tuple[Document | None, int]:
+    """The document that a request is about, and the offset in it."""
+    document = server.texts.document(params.text_document.uri)
+    return document, offset(document.source, params.position, server.encoding) if document else 0
+
+
+def _span(server: Server, document: Document, asked: types.Range) -> Span:
+    start, end = (offset(document.source, each, server.encoding) for each in (asked.start, asked.end))
+    return Span(start, max(start, end))
+
+
+def _name(server: Server, params: Any) -> Occurrence | None:
+    document, at = _place(server, params)
+    return document.name_at(at) if document else None
+
+
+async def _name_everywhere(server: Server, params: Any, is_needed: Callable[[Symbol, str], bool]) -> Occurrence | None:
+    """The name at the place that a request is about, once the workspace is parsed as far as is needed for it."""
+    name = _name(server, params)
+    if name is not None:
+        await server.texts.parse(lambda text: is_needed(name.symbol, text))
+    # The text may have changed meanwhile.
+    return _name(server, params)
+
+
+FILES_AND_FOLDERS: Final = types.FileOperationRegistrationOptions(
+    [
+        types.FileOperationFilter(types.FileOperationPattern(glob, kind), "file")
+        for glob, kind in (
+            ("**", types.FileOperationPatternKind.Folder),
+            ("**/*.tltl", types.FileOperationPatternKind.File),
+        )
+    ]
+)
+"""Whose new names and ends matter."""
+
+ANSWERS: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
+    (types.TEXT_DOCUMENT_COMPLETION, _complete, types.CompletionOptions(trigger_characters=[".", '"', "("])),
+    (types.TEXT_DOCUMENT_HOVER, _hover, None),
+    (types.TEXT_DOCUMENT_DEFINITION, _definition, None),
+    (types.TEXT_DOCUMENT_DOCUMENT_LINK, _links, types.DocumentLinkOptions()),
+    (types.TEXT_DOCUMENT_REFERENCES, _references, None),
+    (types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, _highlight, None),
+    (types.TEXT_DOCUMENT_PREPARE_RENAME, _prepare_rename, None),
+    (types.TEXT_DOCUMENT_RENAME, _rename, types.RenameOptions(prepare_provider=True)),
+    (types.WORKSPACE_WILL_RENAME_FILES, _move_files, FILES_AND_FOLDERS),
+    (types.TEXT_DOCUMENT_FORMATTING, _format, None),
+    (
+        types.TEXT_DOCUMENT_CODE_ACTION,
+        _actions,
+        types.CodeActionOptions(code_action_kinds=[types.CodeActionKind.QuickFix]),
+    ),
+    (types.TEXT_DOCUMENT_CODE_LENS, _lenses, types.CodeLensOptions(resolve_provider=False)),
+    (types.TEXT_DOCUMENT_INLAY_HINT, _hints, types.InlayHintOptions(resolve_provider=False)),
+    (types.TEXT_DOCUMENT_FOLDING_RANGE, _folding, None),
+    (types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _tokens, tokens.LEGEND),
+    (types.TEXT_DOCUMENT_DOCUMENT_SYMBOL, _symbols, None),
+    (types.WORKSPACE_SYMBOL, _find_symbols, None),
+)
+"""The requests of the protocol, what answers them, and with which options."""

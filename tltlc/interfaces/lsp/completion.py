@@ -1,0 +1,301 @@
+"""What may be written at a place: keywords where they fit, names that are known there, units, verdicts, libraries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Final
+
+from lsprotocol import types
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, JUDGE, SEMANTICS, TEST_ITEMS, VERDICTS
+from tltlc.grammar.lexer import END, Token
+from tltlc.grammar.tables import load
+from tltlc.grammar.tree import Clause, LetDecl, Name, PredicateDecl, SignalDecl, SpecDecl
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted
+from tltlc.interfaces.lsp.declaration_text import declaration_text
+from tltlc.interfaces.lsp.paths import path_of
+from tltlc.interfaces.lsp.positions import range_of
+from tltlc.io.files import unsaved
+from tltlc.resolve import units
+from tltlc.resolve.imports import standard_library
+from tltlc.resolve.scope import FUNCTIONS, Binding
+
+Kind = types.CompletionItemKind
+_KINDS: Final = {
+    "signal": Kind.Field,
+    "param": Kind.Constant,
+    "predicate": Kind.Function,
+    "let": Kind.Function,
+    "entity": Kind.EnumMember,
+}
+_FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
+_HEADS: Final = ("signal", "param", "predicate", "let")
+_OF_TIME: Final = ("step", "steps")
+_NAMES: Final = {"NAME"}
+
+
+def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
+    """What could be written at an offset, the likelier before the rest."""
+    inside = quoted(document.source, offset)
+    if inside is not None:
+        before, span = inside
+        return _edits(_paths(document), document, span, encoding) if before == "import" else []
+    place = cursor(document.source, offset)
+    if place is None:
+        return []
+    found = {item.label: item for item in reversed([*_items(document, place)])}
+    return _edits(reversed(found.values()), document, place.word, encoding)
+
+
+def _edits(
+    items: Iterable[types.CompletionItem], document: Document, span: Span, encoding: str
+) -> list[types.CompletionItem]:
+    """The items in order, each in place of what is written of a word so far."""
+    at = range_of(document.source, span, encoding)
+    found = list(items)
+    for rank, item in enumerate(found):
+        item.text_edit = types.TextEdit(at, item.label)
+        item.sort_text = f"{rank:05}"
+    return found
+
+
+def _items(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
+    allowed = place.allowed if place.allowed is not None else _NAMES
+    if "UNIT" in allowed and place.last == "NUMBER":
+        yield from _units(place)
+    if "NAME" in allowed:
+        yield from _names(document, place)
+    yield from _keywords(allowed, place)
+
+
+# --- keywords and units -------------------------------------------------------------------------
+
+
+def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.CompletionItem]:
+    spellings: dict[str, str] = {}
+    for word, terminal in (*load().words.items(), *load().soft.items()):
+        if len(word) > len(spellings.get(terminal, "")):
+            spellings[terminal] = word
+    for terminal in sorted(set(allowed) - {END}):
+        if terminal in spellings and terminal != "TIMES":
+            word = spellings[terminal]
+            # `entity` is the type of a parameter, too.
+            form = _FORMS.get(word) if place.last != "COLON" else None
+            yield types.CompletionItem(word, kind=Kind.Keyword, detail=form.replace("`", "") if form else None)
+
+
+def _units(place: Cursor) -> Iterator[types.CompletionItem]:
+    counted = place.first == "limit" or any(token.text in ("within", "for", "after") for token in place.piece[-2:])
+    counted = counted or (any(token.type == "LSQB" for token in place.piece[-4:]) and place.start != "declaration")
+    known = [*_OF_TIME, *units.time_units()] if counted else [each for each in load().units if each not in _OF_TIME]
+    if place.first == "clock":
+        known = ["Hz", *units.time_units()]
+    for unit in known:
+        found = units.in_si(1.0, unit)
+        detail = units.described(found[1]) if found else "samples"
+        yield types.CompletionItem(unit, kind=Kind.Unit, detail=detail)
+
+
+# --- names --------------------------------------------------------------------------------------
+
+
+def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
+    """The names that fit by what stands in front of the place."""
+    first, before = place.first, place.piece[-1].text if place.piece else ""
+    if place.start == "clause" and first in ("level", "judge", "semantics", "tag"):
+        yield from _settings(document, first)
+    elif place.start == "test_item" and before == "expect":
+        yield from (types.CompletionItem(word, kind=Kind.EnumMember) for word in (*VERDICTS, "progress", "state"))
+    elif place.start == "declaration" and first == "import":
+        yield from _imports(document, place)
+    elif place.start == "declaration" and first == "test":
+        yield from (_spec_item(each, document) for each in document.module.declarations if isinstance(each, SpecDecl))
+    elif place.start == "declaration" and (len(place.piece) == 1 or first in ("entity", "clock")):
+        if first == "exclusive":
+            yield from _expression(document, place)
+    elif place.start == "declaration" and first in _HEADS and not _in_body(place.piece):
+        if place.last == "COLON":
+            yield from _types(first)
+        elif place.last in ("EQUAL", "LSQB", "COMMA") and _depth(place.piece, "LSQB"):
+            yield from _visible(document, ("param",))
+    elif place.last in ("ALL", "ANY"):
+        return
+    else:
+        yield from _expression(document, place)
+
+
+def _settings(document: Document, clause: str) -> Iterator[types.CompletionItem]:
+    words: Iterable[str] = {"judge": JUDGE, "semantics": SEMANTICS}.get(clause, ())
+    if clause == "tag":
+        tags = {name.name for each in _clauses(document) if isinstance(each.value, tuple) for name in each.value}
+        words = sorted(tags)
+    if clause == "level":
+        words = sorted({each.value.name for each in _clauses(document, "level") if isinstance(each.value, Name)})
+    yield from (types.CompletionItem(word, kind=Kind.EnumMember) for word in words)
+
+
+def _clauses(document: Document, kind: str = "tag") -> Iterator[Clause]:
+    for declaration in document.module.declarations:
+        if isinstance(declaration, SpecDecl):
+            yield from (clause for clause in declaration.clauses if clause.kind == kind)
+
+
+def _types(head: str) -> Iterator[types.CompletionItem]:
+    others = {"predicate": ("entity",), "let": ("entity", "formula"), "signal": ("entity",)}.get(head, ())
+    for name in (*units.TYPES, *others):
+        dimension = units.TYPES.get(name)
+        detail = f"in {units.si_unit(dimension)}" if dimension and units.si_unit(dimension) else None
+        yield types.CompletionItem(name, kind=Kind.TypeParameter, detail=detail)
+
+
+def _expression(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
+    call = _open_call(place.piece)
+    binding = document.scope.names.get(call[0]) if call else None
+    if call and call[0] == "in":
+        yield from _visible(document, ("entity",))
+        return
+    if call and binding and isinstance(binding.declaration, (SignalDecl, PredicateDecl, LetDecl)):
+        position, parameters = call[1], binding.declaration.parameters
+        if binding.kind == "signal" or (position < len(parameters) and parameters[position].type == "entity"):
+            yield from _local(place.piece)
+            yield from _visible(document, ("entity",))
+            return
+        for parameter in parameters[position:]:
+            if place.last in ("LPAR", "COMMA"):
+                detail = f"of {binding.name}" + (f", a {parameter.type}" if parameter.type else "")
+                yield types.CompletionItem(f"{parameter.name} = ", kind=Kind.Property, detail=detail)
+    yield from _local(place.piece)
+    if place.start == "test_item":
+        yield from _atoms(document, place.around)
+    yield from _visible(document, ("predicate", "let", "signal", "param"))
+    yield from (types.CompletionItem(name, kind=Kind.Operator, detail="function") for name in FUNCTIONS)
+    if call:
+        yield from _visible(document, ("entity",))
+
+
+def _visible(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
+    """The visible names of these kinds: kind by kind, those of the text itself before imported ones."""
+    scope = document.scope
+    found = [(name, each) for name, each in scope.names.items() if each.kind in kinds]
+    for name, binding in sorted(found, key=lambda item: (kinds.index(item[1].kind), item[1].via is not None)):
+        yield _name_item(name, binding)
+
+
+def _name_item(name: str, binding: Binding) -> types.CompletionItem:
+    declaration = binding.declaration
+    doc = "" if isinstance(declaration, Name) else declaration.doc
+    head = declaration_text(declaration, binding.scope.source, head=True)
+    detail = f"{head} (from {binding.via})" if binding.via else head
+    return types.CompletionItem(name, kind=_KINDS[binding.kind], detail=detail, documentation=doc or None)
+
+
+def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionItem:
+    doc = declaration.doc or None
+    return types.CompletionItem(declaration.name, kind=Kind.Class, detail="spec", documentation=doc)
+
+
+def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
+    """The atoms of the spec that the test around is for."""
+    name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
+    for spec in document.resolution.program.specs:
+        if spec.name == name:
+            for atom in spec.atoms:
+                yield types.CompletionItem(
+                    atom.name, kind=Kind.Event, detail=f"atom of {name}", documentation=atom.doc or None
+                )
+
+
+def _local(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
+    """The parameters of the declaration around, and the variables of quantifiers."""
+    names: dict[str, None] = {}
+    if piece and piece[0].text in ("predicate", "let"):
+        depth = 0
+        for before, token in pairwise(piece):
+            depth += (before.type == "LPAR") - (before.type == "RPAR")
+            if before.type == "EQUAL" and depth == 0:
+                break
+            if depth == 1 and before.type in ("LPAR", "COMMA") and token.type == "NAME":
+                names[token.text] = None
+    names.update((token.text, None) for before, token in pairwise(piece) if before.type in ("ALL", "ANY"))
+    yield from (types.CompletionItem(name, kind=Kind.Variable, detail="parameter") for name in names)
+
+
+def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
+    """The word before the innermost open bracket, and how many commas stand behind it."""
+    open_: list[tuple[str, int]] = []
+    for index, token in enumerate(piece):
+        if token.type == "LPAR":
+            before = piece[index - 1] if index else None
+            open_.append((before.text if before and before.type in ("NAME", "IN") else "", 0))
+        elif token.type == "RPAR" and open_:
+            open_.pop()
+        elif token.type == "COMMA" and open_:
+            open_[-1] = (open_[-1][0], open_[-1][1] + 1)
+    return open_[-1] if open_ and open_[-1][0] else None
+
+
+def _in_body(piece: tuple[Token, ...]) -> bool:
+    """Whether a place is behind the ``=`` of a declaration."""
+    depth = 0
+    for token in piece:
+        depth += (token.type in ("LPAR", "LSQB")) - (token.type in ("RPAR", "RSQB"))
+        if token.type == "EQUAL" and depth == 0:
+            return True
+    return False
+
+
+def _depth(piece: tuple[Token, ...], opening: str) -> int:
+    closing = {"LSQB": "RSQB"}[opening]
+    return sum((token.type == opening) - (token.type == closing) for token in piece)
+
+
+# --- imports ------------------------------------------------------------------------------------
+
+
+def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
+    if len(place.piece) == 1:
+        yield from _libraries(document)
+    elif place.last in ("LPAR", "COMMA"):
+        # What is being written cannot be read yet, so the file is imported as a whole.
+        alone = SourceFile(document.source.name, f"import {place.piece[1].text}")
+        yield from _visible(Document(alone, document.project, document.texts), tuple(_KINDS))
+
+
+def _libraries(document: Document) -> Iterator[types.CompletionItem]:
+    """The libraries that an import finds by name, those beside the text first."""
+    seen: dict[str, Path] = {}
+    for folder in (_folder(document), *document.project.libraries, standard_library()):
+        for path in _sources(folder, document):
+            if path.stem.isidentifier() and path.stem not in load().words and str(path) != document.source.name:
+                seen.setdefault(path.stem, folder)
+    for name, folder in seen.items():
+        detail = "standard library" if folder == standard_library() else str(folder)
+        yield types.CompletionItem(name, kind=Kind.Module, detail=detail)
+
+
+def _paths(document: Document) -> Iterator[types.CompletionItem]:
+    """The files beside a text, and in the folders below and above."""
+    here = _folder(document)
+    for folder, prefix in ((here, ""), (here.parent, "../")):
+        for path in _sources(folder, document):
+            if str(path) != document.source.name:
+                yield types.CompletionItem(f"{prefix}{path.name}", kind=Kind.File)
+
+
+def _sources(folder: Path, document: Document) -> list[Path]:
+    with unsaved(document.texts):
+        try:
+            found = set(folder.glob("*.tltl"))
+        except OSError:
+            found = set()
+    found |= {Path(name) for name in document.texts if Path(name).parent == folder and name.endswith(".tltl")}
+    return sorted(path for path in found if not path.stem.endswith("_tests"))
+
+
+def _folder(document: Document) -> Path:
+    name = path_of(document.source.name)
+    return Path() if name.startswith("<") else Path(name).parent

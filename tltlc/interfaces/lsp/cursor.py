@@ -1,0 +1,110 @@
+"""What could stand at a place of a text that is being written, by the parser's own tables."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Sequence
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
+from tltlc.grammar import lalr
+from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
+from tltlc.grammar.lexer import BAD, END, Token, tokenize
+from tltlc.grammar.mistakes.fragments import block, declarations, lines
+from tltlc.grammar.tables import load
+
+_BEGINS_WORD: Final = frozenset(f"{string.ascii_letters}_")
+_IN_WORD: Final = _BEGINS_WORD.union(string.digits, ".")
+_LINES: Final = {"spec": (CLAUSES, "clause"), "test": (TEST_ITEMS, "test_item")}
+_STATEMENTS: Final = ("clause", "test_item")
+
+
+@record
+class Cursor:
+    """A place in a text.
+
+    ``word`` covers what is written of a word up to the place; ``piece`` are the tokens of the declaration, clause or
+    line of a test before that word, which is read as a ``start``; ``around`` those of the block that it stands in;
+    ``allowed`` the terminals that could stand here, None where the piece is broken further up.
+    """
+
+    word: Span
+    start: str
+    piece: tuple[Token, ...]
+    around: tuple[Token, ...]
+    allowed: frozenset[str] | None
+
+    @property
+    def last(self) -> str:
+        """The type of the token in front of the word, empty at the start of a piece."""
+        return self.piece[-1].type if self.piece else ""
+
+    @property
+    def first(self) -> str:
+        """The word that the piece begins with."""
+        return self.piece[0].text if self.piece else ""
+
+
+def cursor(source: SourceFile, offset: int) -> Cursor | None:
+    """The place at an offset; None within comments and texts in quotes."""
+    before = source.text[:offset]
+    start = _word_start(before)
+    lexed = tokenize(before[:start])
+    tokens = lexed.tokens[:-1]
+    if lexed.comments and "\n" not in before[lexed.comments[-1].span.start :]:
+        return None
+    if tokens and tokens[-1].type == BAD and tokens[-1].text.startswith('"'):
+        return None
+    return _placed(SourceFile(source.name, before[:start]), tokens, Span(start, offset))
+
+
+def _word_start(text: str) -> int:
+    """The offset of the word at the end of a text; the end where no word stands there."""
+    start = end = len(text)
+    while start and text[start - 1] in _IN_WORD:
+        start -= 1
+    while start < end and text[start] not in _BEGINS_WORD:
+        start += 1
+    return start
+
+
+def quoted(source: SourceFile, offset: int) -> tuple[str, Span] | None:
+    """The word before a text in quotes around an offset, and what is written of that text up to there."""
+    tokens = tokenize(source.text[:offset]).tokens[:-1]
+    if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):
+        return None
+    return (tokens[-2].text if len(tokens) > 1 else ""), Span(tokens[-1].start + 1, offset)
+
+
+def _placed(source: SourceFile, tokens: Sequence[Token], word: Span) -> Cursor:
+    pieces = list(declarations(source, tokens))
+    piece = pieces[-1] if pieces else []
+    kind = block(piece) if piece else None
+    if kind and piece[-1].type != "RBRACE":
+        brace = next(index for index, token in enumerate(piece) if token.type == "LBRACE")
+        keywords, start = _LINES[kind]
+        body = list(lines(source, piece[brace + 1 :], keywords))
+        line = body[-1] if body else []
+        allowed = _accepted(start, line)
+        if allowed is not None and (not line or END in allowed):
+            allowed = allowed | (_accepted(start, []) or set()) | {"RBRACE"}
+        return Cursor(word, start, tuple(line), tuple(piece), _frozen(allowed))
+    allowed = _accepted("declaration", piece)
+    if allowed is not None and END in allowed:
+        allowed = allowed | (_accepted("declaration", []) or set())
+    return Cursor(word, "declaration", tuple(piece), (), _frozen(allowed))
+
+
+def _frozen(allowed: set[str] | None) -> frozenset[str] | None:
+    return None if allowed is None else frozenset(allowed)
+
+
+def _accepted(start: str, tokens: Sequence[Token]) -> set[str] | None:
+    """What may follow these tokens, read as a ``start``; None where they cannot be read so far."""
+    end = tokens[-1].end if tokens else 0
+    try:
+        lalr.run(load(), start, [*tokens, Token(BAD, "", end, end), Token(END, "", end, end)], object())
+    except lalr.UnexpectedTokenError as error:
+        return lalr.accepted(load(), error.states) if error.index == len(tokens) else None
+    return None

@@ -1,0 +1,143 @@
+"""Declarations as a reader sees them in passing: their text, what they mean, their range and unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+from textwrap import dedent
+from typing import Final, Union
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.grammar.tree import (
+    Declaration,
+    LetDecl,
+    Name,
+    ParamDecl,
+    Parameter,
+    PredicateDecl,
+    Quantified,
+    SignalDecl,
+    SpecDecl,
+)
+from tltlc.interfaces.lsp.names import Symbol
+from tltlc.logic.text.english import english_text
+from tltlc.resolve import formulas, units
+from tltlc.resolve.context import Context
+from tltlc.resolve.problem import ResolutionError
+from tltlc.resolve.spec import Spec
+from tltlc.resolve.values import Env, number_text, range_text
+
+_LONGEST: Final = 600
+"""Of a longer declaration, the head alone is shown."""
+
+_SUPPLIED: Final = {
+    "length": "metres",
+    "time": "seconds",
+    "speed": "metres per second",
+    "angle": "radians",
+    "bool": "true or false",
+}
+
+
+def declaration_text(
+    declaration: Union[Declaration, Name, Parameter, Quantified], source: SourceFile, *, head: bool = False
+) -> str:
+    """A declaration as it is written; only what stands in front of its ``=`` or ``{`` where that is asked for."""
+    if isinstance(declaration, Name):
+        return f"entity {declaration.name}"
+    if isinstance(declaration, Quantified):
+        names = ", ".join(each.name for each in declaration.entities)
+        return f"{'all' if declaration.all else 'any'} {declaration.variable} in ({names})"
+    span = declaration.span
+    text = dedent(source.slice(span))
+    if not head and len(text) <= _LONGEST:
+        return text
+    if isinstance(declaration, SpecDecl):
+        return f"spec {declaration.name}"
+    if isinstance(declaration, (PredicateDecl, LetDecl)):
+        text = source.slice(Span(span.start, declaration.body.span.start)).rstrip().removesuffix("=")
+    return " ".join(text.split())
+
+
+def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
+    """What is to be known of a name that is no spec's."""
+    declaration = symbol.declaration
+    lines = [_code(declaration_text(declaration, symbol.source))]
+    doc = getattr(declaration, "doc", "")
+    lines += [doc] if doc else []
+    lines += _facts(symbol, env)
+    lines += [f"From `{via}`."] if via else []
+    return "\n\n".join(lines)
+
+
+def spec_markdown(declaration: SpecDecl, spec: Spec | None, source: SourceFile, figures: str | None) -> str:
+    """What is to be known of a spec: what it asks for, and its size where that is known by now."""
+    lines = [_code(declaration_text(declaration, source, head=True))]
+    lines += [declaration.doc] if declaration.doc else []
+    if spec is not None:
+        lines.append(english_text(spec.formula, endless=spec.semantics == "infinite"))
+        settings = [f"limit {spec.limit_steps} steps"] if spec.limit_steps else []
+        settings += [f"level {spec.level}"] if spec.level else []
+        settings += [f"tags {', '.join(spec.tags)}"] if spec.tags else []
+        lines += [", ".join(settings)] if settings else []
+    lines += [figures] if figures else []
+    return "\n\n".join(lines)
+
+
+def _code(text: str) -> str:
+    return f"```tltl\n{text}\n```"
+
+
+def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
+    """The type, range, unit and value, and in English what a ``let`` stands for."""
+    declaration, context = symbol.declaration, env.context
+    if isinstance(declaration, SignalDecl):
+        yield from _signal(declaration, context)
+    elif isinstance(declaration, ParamDecl):
+        param = context.params.get(declaration.name)
+        if param is not None:
+            dimension = units.TYPES[param.type]
+            unit = units.si_unit(dimension)
+            value = number_text(param.value) + (f" {unit}" if unit else "")
+            yield f"{_article(param.type)} constant, {value}{_range(param.low, param.high, param.type)}."
+    elif isinstance(declaration, PredicateDecl):
+        low, high = (declaration.interval.low, declaration.interval.high) if declaration.interval else (None, None)
+        shown = f"[{symbol.source.slice(low.span)}, {symbol.source.slice(high.span)}]" if low and high else "[-1, 1]"
+        yield f"An atom, with values in {shown}: it holds where the value is above 0."
+    elif isinstance(declaration, LetDecl) and not declaration.parameters:
+        sentence = _english(declaration, env)
+        if sentence:
+            yield sentence
+    elif isinstance(declaration, Name):
+        yield "An object of the level."
+
+
+def _signal(declaration: SignalDecl, context: Context) -> Iterator[str]:
+    info = context.signal_infos.get(declaration.name)
+    if info is None:
+        return
+    text = f"{_article(info.type)} signal, supplied by the game as {_SUPPLIED.get(info.type, 'a plain number')}"
+    yield f"{text}{_range(info.low, info.high, info.type)}."
+
+
+def _english(declaration: LetDecl, env: Env) -> str | None:
+    binding = env.scope.names.get(declaration.name)
+    if binding is None:
+        return None
+    try:
+        formula = formulas.formula(declaration.body, env.within(binding.scope, {}))
+    except ResolutionError:
+        return None
+    return english_text(formula)
+
+
+def _article(type_: str) -> str:
+    return f"{'An' if type_[0] in 'aeiou' else 'A'} {type_}"
+
+
+def _range(low: float | None, high: float | None, type_: str) -> str:
+    """What follows on a range; nothing where there is none."""
+    if type_ == "bool" or (low is None and high is None):
+        return ""
+    ends = -inf if low is None else low, inf if high is None else high
+    return "; its range is " + range_text(*ends, units.TYPES[units.value_type(type_) or "number"])

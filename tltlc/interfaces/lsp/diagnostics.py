@@ -1,0 +1,86 @@
+"""Diagnostics of the compiler as those of the protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from lsprotocol import types
+
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.shortening import shortened
+from tltlc.grammar.tree import Import
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.positions import range_of
+
+_SEVERITIES: Final = {
+    "error": types.DiagnosticSeverity.Error,
+    "warning": types.DiagnosticSeverity.Warning,
+    "note": types.DiagnosticSeverity.Information,
+}
+_UNNECESSARY: Final = {"TLT0421", "TLT0422", "TLT0425", "TLT0427"}
+"""Remarks on what may be left out, which editors show faded."""
+
+
+def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[str], str]) -> types.Diagnostic:
+    """A diagnostic, where it is to be seen in a document: of an imported file, at the import that leads there."""
+    diagnostic = shortened(diagnostic)
+    main = label_in(diagnostic, document)
+    place = main.span if main else _import_of(diagnostic, document)
+    message = diagnostic.title
+    if main is not None and main.message:
+        message += f": {main.message}"
+    if diagnostic.help:
+        message += f"\n{diagnostic.help}"
+    others = [
+        types.DiagnosticRelatedInformation(
+            types.Location(uri_of(label.source.name), range_of(label.source, label.span, encoding)),
+            label.message or ("here" if main else diagnostic.title),
+        )
+        for label in diagnostic.labels
+        if label is not main
+    ]
+    return types.Diagnostic(
+        range_of(document.source, place, encoding),
+        message,
+        severity=_SEVERITIES[diagnostic.severity],
+        code=diagnostic.code,
+        source="tltlc",
+        related_information=others or None,
+        tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
+    )
+
+
+def label_in(diagnostic: Diagnostic, document: Document) -> Label | None:
+    """The first place of a diagnostic that lies in a document."""
+    return next((label for label in diagnostic.labels if label.source.name == document.source.name), None)
+
+
+def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
+    """A diagnostic of a project file, where it is to be seen in that."""
+    diagnostic = shortened(diagnostic)
+    label = diagnostic.labels[0]
+    return types.Diagnostic(
+        range_of(label.source, label.span, encoding),
+        "\n".join(filter(None, (diagnostic.title, diagnostic.help))),
+        severity=_SEVERITIES[diagnostic.severity],
+        code=diagnostic.code,
+        source="tltlc",
+    )
+
+
+def _import_of(diagnostic: Diagnostic, document: Document) -> Span:
+    """The import that leads to the file that a diagnostic is about; the beginning where none is known."""
+    names = {label.source.name for label in diagnostic.labels}
+    for declaration, loaded in document.resolution.modules[-1].imports:
+        waiting, seen = [loaded], set()
+        while waiting:
+            each = waiting.pop()
+            if each.module.source.name in names:
+                return declaration.target_span
+            if id(each) not in seen:
+                seen.add(id(each))
+                waiting += [target for _, target in each.imports]
+    first = next((each for each in document.module.declarations if isinstance(each, Import)), None)
+    return first.target_span if first and names else Span(0, 0)

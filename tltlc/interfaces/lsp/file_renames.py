@@ -1,0 +1,72 @@
+"""Files and folders that get other names: their imports lead where they led before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from os.path import dirname, normpath, relpath
+from pathlib import Path, PurePath
+
+from tltlc.diagnostics.diagnostic import Edit
+from tltlc.grammar.quotes import quoted
+from tltlc.grammar.tables import load
+from tltlc.grammar.tree import Import
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.paths import is_below, path_of
+from tltlc.interfaces.lsp.workspace import Workspace
+from tltlc.resolve.imports import STANDARD_LIBRARY_NAME
+
+Moves = Sequence[tuple[str, str]]
+"""Paths of files and folders, each with the one that it gets."""
+
+
+def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
+    """What is to be written in place of the imports that would lead nowhere, document by document."""
+    found = [
+        (document, list(_edits(document, moves))) for document in workspace.all() if may_import(document.source.text)
+    ]
+    return [(document, edits) for document, edits in found if edits]
+
+
+def may_import(text: str) -> bool:
+    """Whether a source text may import others."""
+    return "import" in text
+
+
+def _edits(document: Document, moves: Moves) -> Iterator[Edit]:
+    here = path_of(document.source.name)
+    for declaration, loaded in document.resolution.modules[-1].imports:
+        there = path_of(loaded.module.source.name)
+        if loaded.module.source.name.startswith(STANDARD_LIBRARY_NAME):
+            continue
+        if (_moved(here, moves), _moved(there, moves)) != (here, there):
+            folder = dirname(_moved(here, moves))  # noqa: PTH120
+            target = _target(declaration, _moved(there, moves), folder, document.project.libraries)
+            written = document.source.slice(declaration.target_span)
+            if target is not None and target != written and not _leads(declaration, folder, _moved(there, moves)):
+                yield Edit(declaration.target_span, target)
+
+
+def _moved(path: str, moves: Moves) -> str:
+    for old, new in moves:
+        if is_below(path, old):
+            return new + path[len(old) :]
+    return path
+
+
+def _leads(declaration: Import, folder: str, there: str) -> bool:
+    """Whether a path leads there as it is written."""
+    return declaration.is_path and normpath(PurePath(folder, declaration.target)) == there
+
+
+def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
+    """How a file is imported into one of a folder: by its name where it was so and can be, else by its path.
+
+    None for a path that no source can hold.
+    """
+    if not declaration.is_path:
+        for place in (folder, *map(str, libraries)):
+            if is_below(there, place):
+                parts = PurePath(there).relative_to(place).with_suffix("").parts
+                if all(part.isidentifier() and part.isascii() and part not in load().words for part in parts):
+                    return ".".join(parts)
+    return quoted(PurePath(relpath(there, folder)).as_posix())

@@ -1,0 +1,25 @@
+"""The layout of ``tltlc fmt`` for a document."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.edits import difference, text_edit
+from tltlc.tools.fmt import format_source
+
+
+def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None:
+    """The edit that lays a document out in the style of its project; None where its syntax is broken.
+
+    Raises:
+        TltlError: TLT0004, the text is too large, or would be.
+    """
+    try:
+        after = format_source(document.source, document.project.formatting)
+    except TltlError as error:
+        if any(each.code == "TLT0004" for each in error.diagnostics):
+            raise
+        return None
+    return [text_edit(document.source, edit, encoding) for edit in difference(document.source, after)]

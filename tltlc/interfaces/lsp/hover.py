@@ -1,0 +1,126 @@
+"""What is to be known of the word under the pointer."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from lsprotocol import types
+
+from tltlc.core.source import Span
+from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
+from tltlc.grammar.tree import Binary, Clause, Expr, SpecDecl, Unary
+from tltlc.grammar.walk import parts
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.declaration_text import spec_markdown, symbol_markdown
+from tltlc.interfaces.lsp.durations import durations, steps_text
+from tltlc.interfaces.lsp.lenses import figures_text
+from tltlc.interfaces.lsp.positions import range_of
+from tltlc.logic import formula as build
+from tltlc.logic.text.english import english_text
+from tltlc.resolve import formulas
+from tltlc.resolve.problem import ResolutionError
+
+_FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
+_ASKING: Final = ("reach", "keep", "avoid", "require")
+_LARGEST: Final = 2000
+"""Of a formula with more parts, no sentence is made."""
+
+
+def hover(document: Document, offset: int, analysis: Analysis | None, encoding: str) -> types.Hover | None:
+    """What is to be known of the name, keyword or operator at an offset."""
+    found = (
+        _name(document, offset, analysis)
+        or _operator(document, offset)
+        or _duration(document, offset)
+        or _keyword(document, offset)
+    )
+    if found is None:
+        return None
+    text, span = found
+    content = types.MarkupContent(types.MarkupKind.Markdown, text)
+    return types.Hover(content, range_of(document.source, span, encoding))
+
+
+def _name(document: Document, offset: int, analysis: Analysis | None) -> tuple[str, Span] | None:
+    found = document.name_at(offset)
+    if found is None:
+        return None
+    symbol = found.symbol
+    if isinstance(symbol.declaration, SpecDecl):
+        spec = next((each for each in document.resolution.program.specs if each.name == symbol.name), None)
+        figures = next((each for each in analysis.figures if each.spec == symbol.name), None) if analysis else None
+        shown = f"{figures_text(figures)}." if figures else None
+        return spec_markdown(symbol.declaration, spec, document.source, shown), found.span
+    via = None if symbol.source.name == document.source.name else symbol.source.name.rpartition("/")[2]
+    return symbol_markdown(symbol, document.resolution.env, via), found.span
+
+
+def _keyword(document: Document, offset: int) -> tuple[str, Span] | None:
+    """The form of a declaration, clause or line of a test, and what this clause asks for."""
+    token = document.token_at(offset)
+    if token is None or token.text not in _FORMS:
+        return None
+    clause = _clause_at(document, token.span)
+    lines = [_FORMS[token.text]]
+    meaning = _meaning_of_clause(document, clause) if clause else None
+    return "\n\n".join([*lines, *([meaning] if meaning else [])]), token.span
+
+
+def _duration(document: Document, offset: int) -> tuple[str, Span] | None:
+    period = document.resolution.env.context.clock_s
+    for number, steps in durations(document):
+        if number.span.start <= offset < number.span.end:
+            return f"{steps_text(steps)} of {period:g} s.", number.span
+    return None
+
+
+def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
+    """What the part of a formula means that an operator makes."""
+    for declaration in document.module.declarations:
+        if not isinstance(declaration, SpecDecl) or not declaration.span.start <= offset < declaration.span.end:
+            continue
+        for clause in declaration.clauses:
+            if clause.kind in _ASKING and clause.span.start <= offset < clause.span.end:
+                return _part(document, clause, offset)
+    return None
+
+
+def _part(document: Document, clause: Clause, offset: int) -> tuple[str, Span] | None:
+    assert not isinstance(clause.value, tuple)
+    for part in parts(clause.value):
+        if isinstance(part, (Unary, Binary)) and part.op_span.start <= offset < part.op_span.end:
+            if part.op == "then" and clause.kind == "reach":
+                meaning = _meaning_of_clause(document, clause)
+            else:
+                meaning = _meaning(document, part)
+            return (meaning, part.op_span) if meaning else None
+    return None
+
+
+def _meaning(document: Document, part: Expr) -> str | None:
+    try:
+        found = formulas.formula(part, document.resolution.env)
+    except ResolutionError:
+        return None
+    return _sentence(found)
+
+
+def _meaning_of_clause(document: Document, clause: Clause) -> str | None:
+    for spec in document.resolution.program.specs:
+        own = [each.formula for each in spec.parts if clause.span.covers(each.span)]
+        if own and spec.source.name == document.source.name:
+            return _sentence(build.and_(*own), endless=spec.semantics == "infinite")
+    return None
+
+
+def _sentence(formula: build.Formula, *, endless: bool = False) -> str | None:
+    large = sum(1 for _ in formula.walk()) > _LARGEST
+    return None if large else english_text(formula, endless=endless)
+
+
+def _clause_at(document: Document, span: Span) -> Clause | None:
+    for declaration in document.module.declarations:
+        if isinstance(declaration, SpecDecl) and declaration.span.covers(span):
+            return next((each for each in declaration.clauses if each.keyword_span == span), None)
+    return None

@@ -1,0 +1,25 @@
+"""Where the imports of a text lead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from lsprotocol import types
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.positions import range_of
+
+
+def targets(document: Document) -> Iterator[tuple[Span, SourceFile]]:
+    """What stands behind each ``import`` that leads somewhere, and the file."""
+    for declaration, loaded in document.resolution.modules[-1].imports:
+        yield declaration.target_span, loaded.module.source
+
+
+def links(document: Document, encoding: str, uri_of: Callable[[str], str]) -> list[types.DocumentLink]:
+    """The imports as links."""
+    return [
+        types.DocumentLink(range_of(document.source, span, encoding), target=uri_of(source.name))
+        for span, source in targets(document)
+    ]

@@ -1,0 +1,197 @@
+"""Every place of a module where a name stands, and what it stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal, Union
+
+from tltlc.core.record import EMPTY, record
+from tltlc.core.source import SourceFile, Span
+from tltlc.grammar import tree
+from tltlc.grammar.lexer import Token
+from tltlc.grammar.parser import parse_formula
+from tltlc.grammar.walk import children
+from tltlc.resolve.scope import Binding, Declared, Scope
+
+Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
+MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
+"""Of these, declarations of one name in several files of a program are one."""
+
+_FORMULAS = ("reach", "keep", "avoid", "require")
+
+
+@record
+class Symbol:
+    """What a name stands for, and where it is declared: ``span`` of ``source``."""
+
+    kind: Kind
+    name: str
+    declaration: Union[Declared, tree.SpecDecl, tree.Parameter, tree.Quantified]
+    source: SourceFile
+    span: Span
+
+    @property
+    def key(self) -> tuple[str, str, int]:
+        """The same for all uses of one declaration."""
+        return self.kind, self.source.name, self.span.start
+
+    def is_same(self, other: Symbol) -> bool:
+        """Whether both stand for one thing, where the files of both are parts of one program."""
+        if self.kind in MERGED:
+            return (self.kind, self.name) == (other.kind, other.name)
+        return self.key == other.key
+
+
+@record
+class Occurrence:
+    """A place where a name stands; ``span`` covers what is declared, without the alias of an import in front."""
+
+    span: Span
+    symbol: Symbol
+    declares: bool = False
+
+
+def occurrences(scope: Scope, tokens: Sequence[Token]) -> tuple[Occurrence, ...]:
+    """Every name of a module that stands for something, in the order of the text."""
+    walk = _Walk(scope, tokens)
+    for declaration in scope.module.declarations:
+        walk.declaration(declaration)
+    return tuple(sorted(walk.found, key=lambda each: each.span.start))
+
+
+def symbol_of(binding: Binding) -> Symbol:
+    """What a visible name stands for."""
+    return Symbol(binding.kind, binding.name, binding.declaration, binding.scope.source, binding.span)
+
+
+_Locals = Mapping[str, Symbol]
+
+
+class _Walk:
+    """Collects names, declaration by declaration."""
+
+    def __init__(self, scope: Scope, tokens: Sequence[Token]) -> None:
+        self.found: list[Occurrence] = []
+        self._scope = scope
+        self._starts = {token.start: index for index, token in enumerate(tokens)}
+        self._tokens = tokens
+        self._visible: Mapping[str, Binding] = scope.names
+        self._unaliased = {each.name: each for each in scope.names.values()}
+        self._label_start: int | None = None
+        """In the label of a state, where its text begins: the spans of its formula count from there."""
+        self._specs: dict[str, Symbol] = {}
+        for each in scope.module.declarations:
+            if isinstance(each, tree.SpecDecl):
+                self._specs.setdefault(each.name, Symbol("spec", each.name, each, scope.source, each.name_span))
+
+    def declaration(self, declaration: tree.Declaration) -> None:
+        """Collect the names of a declaration."""
+        match declaration:
+            case tree.Import():
+                for name in declaration.names or ():
+                    binding = self._scope.names.get(name.name)
+                    if binding is not None and binding.scope is not self._scope:
+                        self._note(name.span, symbol_of(binding))
+            case tree.SignalDecl() | tree.ParamDecl() | tree.PredicateDecl() | tree.LetDecl():
+                self._declared(declaration.name, declaration.name_span)
+                self._head(declaration)
+            case tree.EntityDecl():
+                for name in declaration.names:
+                    self._declared(name.name, name.span)
+            case tree.ExclusiveDecl():
+                self._expressions(declaration.atoms)
+            case tree.SpecDecl():
+                self._note(declaration.name_span, self._specs[declaration.name], declares=True)
+                for clause in declaration.clauses:
+                    if clause.kind in _FORMULAS and not isinstance(clause.value, tuple):
+                        self._expressions([clause.value])
+            case tree.TestDecl():
+                if declaration.spec.name in self._specs:
+                    self._note(declaration.spec.span, self._specs[declaration.spec.name])
+                for item in declaration.items:
+                    if isinstance(item, tree.TestStep):
+                        self._expressions(item.atoms)
+                    elif item.kind == "state":
+                        self._label(item)
+
+    def _head(self, declaration: tree.SignalDecl | tree.ParamDecl | tree.PredicateDecl | tree.LetDecl) -> None:
+        """The parameters, the range, and the value or body."""
+        local: dict[str, Symbol] = {}
+        for parameter in () if isinstance(declaration, tree.ParamDecl) else declaration.parameters:
+            if parameter.default is not None:
+                self._expressions([parameter.default], dict(local))
+            symbol = Symbol("parameter", parameter.name, parameter, self._scope.source, parameter.name_span)
+            self._note(parameter.name_span, symbol, declares=True)
+            local[parameter.name] = symbol
+        interval = None if isinstance(declaration, tree.LetDecl) else declaration.interval
+        if interval is not None:
+            self._expressions([interval.low, interval.high])
+        if isinstance(declaration, tree.ParamDecl):
+            self._expressions([declaration.value])
+        elif isinstance(declaration, (tree.PredicateDecl, tree.LetDecl)):
+            self._expressions([declaration.body], local)
+
+    def _label(self, item: tree.TestExpect) -> None:
+        """The names in the label of a state: a formula where it is no English, in which no aliases stand."""
+        text = self._tokens[self._starts[item.span.start] + 2]
+        formula, _ = parse_formula(SourceFile(self._scope.source.name, text.text[1:-1]))
+        if formula is not None:
+            aliased, self._visible, self._label_start = self._visible, self._unaliased, text.start + 1
+            self._expressions([formula])
+            self._visible, self._label_start = aliased, None
+
+    def _expressions(self, expressions: Iterable[tree.Expr], local: _Locals = EMPTY) -> None:
+        waiting = [(expression, local) for expression in expressions]
+        while waiting:
+            part, around = waiting.pop()
+            if isinstance(part, tree.Name):
+                self._used(part.name, part.span, around)
+            elif isinstance(part, tree.Call):
+                self._used(part.name, part.name_span, around)
+                self._keywords(part)
+            elif isinstance(part, tree.Quantified):
+                for name in part.entities:
+                    self._used(name.name, name.span, around)
+                around = self._with_variable(part, around)
+            waiting += [(child, around) for child in children(part)]
+
+    def _with_variable(self, part: tree.Quantified, around: _Locals) -> _Locals:
+        """The local names in the body of a quantifier, whose variable is the token behind its first one."""
+        index = self._starts.get(part.span.start) if self._label_start is None else None
+        if index is None or index + 1 >= len(self._tokens):
+            return around
+        span = self._tokens[index + 1].span
+        symbol = Symbol("variable", part.variable, part, self._scope.source, span)
+        self._note(span, symbol, declares=True)
+        return {**around, part.variable: symbol}
+
+    def _keywords(self, call: tree.Call) -> None:
+        binding = self._visible.get(call.name)
+        declaration = binding.declaration if binding else None
+        if binding is None or not isinstance(declaration, (tree.SignalDecl, tree.PredicateDecl, tree.LetDecl)):
+            return
+        parameters = {each.name: each for each in declaration.parameters}
+        for argument in call.arguments:
+            parameter = parameters.get(argument.name or "")
+            if parameter is not None:
+                start = argument.span.start
+                symbol = Symbol("parameter", parameter.name, parameter, binding.scope.source, parameter.name_span)
+                self._note(Span(start, start + len(parameter.name)), symbol)
+
+    def _declared(self, name: str, span: Span) -> None:
+        binding = self._scope.names.get(name)
+        if binding is not None:
+            self._note(span, symbol_of(binding), declares=True)
+
+    def _used(self, name: str, span: Span, local: _Locals) -> None:
+        if name in local:
+            self._note(span, local[name])
+            return
+        binding = self._visible.get(name)
+        if binding is not None:
+            self._note(Span(span.end - len(binding.name), span.end), symbol_of(binding))
+
+    def _note(self, span: Span, symbol: Symbol, *, declares: bool = False) -> None:
+        if self._label_start is not None:
+            span = Span(self._label_start + span.start, self._label_start + span.end)
+        self.found.append(Occurrence(span, symbol, declares))

@@ -1,0 +1,112 @@
+"""What an editor sends, also where it is wrong: requests are answered, all else is logged, and what follows counts."""
+
+from __future__ import annotations
+
+import json
+import logging
+from typing import Any, Final
+
+from cattrs import transform_error
+from lsprotocol import types
+from pygls.exceptions import (
+    JsonRpcException,
+    JsonRpcInvalidParams,
+    JsonRpcInvalidRequest,
+    JsonRpcParseError,
+    JsonRpcServerNotInitialized,
+)
+from pygls.protocol import LanguageServerProtocol
+
+from tltlc.interfaces.lsp.frames import Fault, Frame
+
+LOG: Final = logging.getLogger("tltlc.interfaces.lsp")
+"""Goes to standard error, which editors show in a log of the server."""
+_ANSWERS: Final = {"result", "error"}
+_OF_NOTEBOOKS: Final = "notebookDocument/"
+
+
+class Protocol(LanguageServerProtocol):
+    """The library's protocol, which looks at a message as a whole, so that it can answer those that are wrong."""
+
+    def take(self, frame: Frame) -> None:
+        """Have a message answered, or say what is wrong with one."""
+        if isinstance(frame, Fault):
+            if frame.is_answered:
+                self.refuse(None, JsonRpcInvalidRequest(frame.text))
+            else:
+                LOG.warning("%s", frame.text)
+            return
+        try:
+            message = json.loads(frame.data)
+        except (ValueError, RecursionError) as error:
+            # ValueError is that of broken JSON, of bytes that are no text, and of numbers with thousands of digits.
+            self.refuse(None, JsonRpcParseError.of(error))
+        else:
+            self.handle_message(message)
+
+    def handle_message(self, message: Any) -> None:
+        """Have a message answered."""
+        try:
+            understood = self._understood(message)
+        except JsonRpcException as error:
+            self.refuse(message, error)
+        else:
+            super().handle_message(understood)
+
+    def refuse(self, message: Any, error: JsonRpcException) -> None:
+        """Say what is wrong with a message: to who waits for an answer, or cannot be known; else in the log."""
+        content = message if isinstance(message, dict) else {}
+        LOG.warning("a message was refused (method: %s): %s", content.get("method"), error)
+        if ("id" in content or "method" not in content) and not content.keys() & _ANSWERS:
+            number = content.get("id")
+            told = {"code": error.code, "message": error.message}
+            self._send_data({"jsonrpc": self.VERSION, "id": number if _is_id(number) else None, "error": told})
+
+    def _understood(self, message: Any) -> Any:
+        if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
+            raise JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0")
+        if "method" in message:
+            self._check_request(message)
+        elif not _is_id(message.get("id", "")) and message["id"] is not None:
+            raise JsonRpcInvalidRequest("an id is a number or a text")
+        elif "id" not in message or not message.keys() & _ANSWERS:
+            raise JsonRpcInvalidRequest("this is neither a request nor an answer")
+        try:
+            understood = self.structure_message(message)
+        except JsonRpcException as error:
+            raise JsonRpcInvalidParams("; ".join(transform_error(error.__cause__ or error))) from None
+        if isinstance(understood, types.ExecuteCommandRequest) and understood.params.arguments is None:
+            # So that the library counts them.
+            understood.params.arguments = []
+        if isinstance(understood, types.DidChangeTextDocumentNotification):
+            uri = understood.params.text_document.uri
+            if uri not in self.workspace.text_documents:
+                raise JsonRpcInvalidParams(f"a document was changed that is not open: {uri}")
+        return understood
+
+    def _check_request(self, message: dict[str, Any]) -> None:
+        """Whether a request, or what an editor tells, has a form, and comes at a time, at which it can be looked at."""
+        method = message["method"]
+        if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
+            raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")
+        if method == types.CANCEL_REQUEST and not _cancels(message.get("params")):
+            raise JsonRpcInvalidParams("an id is a number or a text")
+        if method.startswith(_OF_NOTEBOOKS):
+            raise JsonRpcInvalidRequest("notebooks are not supported, as the server has said at its start")
+        if method == types.INITIALIZE and self._workspace is not None:
+            raise JsonRpcInvalidRequest("the server is initialized already")
+        if method not in (types.INITIALIZE, types.EXIT) and self._workspace is None:
+            raise JsonRpcServerNotInitialized(f"`{method}` came before `{types.INITIALIZE}`")
+        if method != types.EXIT and self._shutdown:
+            raise JsonRpcInvalidRequest(f"`{method}` came after `{types.SHUTDOWN}`")
+        if self.get_message_type(method) is None:
+            # What is unknown may have none, and the library says that it is unknown.
+            message.setdefault("params", None)
+
+
+def _cancels(params: Any) -> bool:
+    return isinstance(params, dict) and _is_id(params.get("id"))
+
+
+def _is_id(number: Any) -> bool:
+    return isinstance(number, (int, str))

@@ -1,0 +1,213 @@
+"""The server itself: how it starts and ends, and what editors tell it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
+from inspect import iscoroutinefunction
+from io import BufferedReader
+from typing import Any, BinaryIO, Final, cast
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+from pygls.io_ import StdoutWriter
+
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.shortening import shortened
+from tltlc.interfaces.lsp.answers import ANSWERS, FILES_AND_FOLDERS, run_tests
+from tltlc.interfaces.lsp.frames import Frames
+from tltlc.interfaces.lsp.lenses import RUN_TESTS
+from tltlc.interfaces.lsp.paths import name_of
+from tltlc.interfaces.lsp.protocol import LOG, Protocol
+from tltlc.interfaces.lsp.session import Server
+
+_REFUSED: Final = -32803
+"""The protocol's code of a request that failed for a reason that the user is to read."""
+_PIECE: Final = 1 << 16
+"""Bytes that are read at once."""
+_NOBODY_READS: Final = 141
+
+
+def serve() -> bool:
+    """Speak with an editor over standard input and output until it leaves; whether it took its leave in order."""
+    # Copies of the two: whatever else prints, prints to standard error.
+    lines_in, lines_out = os.fdopen(os.dup(0), "rb"), _Line(os.fdopen(os.dup(1), "wb"))
+    os.dup2(2, 1)
+    # Of the library's log, only faults: editors may cancel what is answered already, and tell what nobody asked for.
+    logging.getLogger("pygls").setLevel(logging.ERROR)
+    for part in ("pygls.protocol.json_rpc", "pygls.server"):
+        logging.getLogger(part).addFilter(_is_unforeseen)
+    for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            # A thread waits for the editor's next line, and Python would wait for the thread.
+            signal.signal(number, lambda number, _: os._exit(128 + number))
+    server = create()
+    cast("Protocol", server.protocol).set_writer(StdoutWriter(cast("BinaryIO", lines_out)))
+    # At the message `exit` the library raises SystemExit.
+    with suppress(SystemExit):
+        try:
+            asyncio.run(_listen(server, lines_in))
+        finally:
+            server.worker.abandon()
+            server.shutdown()  # type: ignore[no-untyped-call]
+    return server.was_shut_down
+
+
+async def _listen(server: Server, file: BufferedReader) -> None:
+    """Take messages until nothing more comes."""
+    frames, protocol = Frames(), cast("Protocol", server.protocol)
+    loop = asyncio.get_running_loop()
+    data = b"?"
+    while data:
+        data = await loop.run_in_executor(server.thread_pool, file.read1, _PIECE)
+        for frame in frames.feed(data) if data else frames.end():
+            try:
+                protocol.take(frame)
+            except Exception as error:
+                LOG.exception("a message was not understood")
+                server.report_server_error(error, JsonRpcException)
+            # What a message has begun, such as an answer, goes on before the next one is looked at.
+            await asyncio.sleep(0)
+
+
+class _Line:
+    """Output to the editor.  The process ends when the editor has stopped reading.
+
+    After ``exit`` the file is closed; answers that were still being made are dropped.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+
+    def write(self, data: bytes) -> None:
+        if not self._file.closed:
+            self._file.write(data)
+
+    def flush(self) -> None:
+        if self._file.closed:
+            return
+        try:
+            self._file.flush()
+        except OSError:
+            os._exit(_NOBODY_READS)
+
+    def close(self) -> None:
+        self.flush()
+        self._file.close()
+
+
+def _is_unforeseen(record: logging.LogRecord) -> bool:
+    """Whether a line of the log is about more than a message that was refused."""
+    error = record.exc_info[1] if record.exc_info else None
+    return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
+
+
+def create() -> Server:
+    """A server with all that it answers."""
+    server = Server()
+    for method, handler, options in (*_TOLD, *ANSWERS):
+        server.feature(method, options)(_guarded(server, handler))
+    server.command(RUN_TESTS)(partial(run_tests, server))
+    return server
+
+
+def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[[Any], Any]:
+    """A handler that turns what it refuses into the protocol's answer; the user looks at what it is asked about."""
+    if iscoroutinefunction(handler):
+
+        async def answer_in_steps(params: Any) -> Any:
+            with _refusals(server, params):
+                return await handler(server, params)
+
+        return answer_in_steps
+
+    def answer(params: Any) -> Any:
+        with _refusals(server, params):
+            return handler(server, params)
+
+    return answer
+
+
+@contextmanager
+def _refusals(server: Server, params: Any) -> Iterator[None]:
+    try:
+        yield
+    except TltlError as error:
+        found = shortened(error.diagnostics[0])
+        text = f"{found.title}; {found.help}" if found.help else found.title
+        raise JsonRpcException(f"{text} ({found.code})", _REFUSED) from None
+    finally:
+        # Only now: what is closed or changed waits no more, so that nothing gives way to it.
+        document = getattr(params, "text_document", None)
+        if document is not None:
+            server.queue.looked_at(document.uri)
+
+
+# --- what editors tell --------------------------------------------------------------------------
+
+
+def _initialized(server: Server, _: types.InitializedParams) -> None:
+    root = server.workspace.root_uri
+    server.texts.folders = [name_of(uri) for uri in server.workspace.folders or ([root] if root else [])]
+    capabilities = server.client_capabilities.workspace
+    watching = capabilities.did_change_watched_files if capabilities else None
+    if watching and watching.dynamic_registration:
+        watchers = [types.FileSystemWatcher("**/*.tltl"), types.FileSystemWatcher("**/tltl.toml")]
+        options = types.DidChangeWatchedFilesRegistrationOptions(watchers)
+        registration = types.Registration("tltlc-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
+        server.client_register_capability(types.RegistrationParams([registration]))
+
+
+def _shut_down(server: Server, _: None) -> None:
+    server.shut_down()
+
+
+def _opened(server: Server, params: types.DidOpenTextDocumentParams) -> None:
+    item = params.text_document
+    server.changed(server.texts.put(item.uri, item.version, item.text))
+
+
+def _changed(server: Server, params: types.DidChangeTextDocumentParams) -> None:
+    if params.content_changes:
+        item = params.text_document
+        server.changed(server.texts.put(item.uri, item.version, params.content_changes[-1].text))
+
+
+def _closed(server: Server, params: types.DidCloseTextDocumentParams) -> None:
+    touched = server.texts.close(params.text_document.uri)
+    server.closed(params.text_document.uri)
+    server.changed(touched)
+
+
+def _watched_files_changed(server: Server, params: types.DidChangeWatchedFilesParams) -> None:
+    # Of what is open, the text in the editor counts, saved or not.
+    if not all(server.texts.is_open(each.uri) for each in params.changes):
+        _files_changed(server, params)
+
+
+def _files_changed(server: Server, _: Any) -> None:
+    server.changed(server.texts.refresh())
+    server.used_otherwise(server.texts.opened())
+
+
+def _folders_changed(server: Server, _: types.DidChangeWorkspaceFoldersParams) -> None:
+    server.texts.folders = [name_of(uri) for uri in server.workspace.folders]
+
+
+_TOLD: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
+    (types.INITIALIZED, _initialized, None),
+    (types.SHUTDOWN, _shut_down, None),
+    (types.TEXT_DOCUMENT_DID_OPEN, _opened, None),
+    (types.TEXT_DOCUMENT_DID_CHANGE, _changed, None),
+    (types.TEXT_DOCUMENT_DID_CLOSE, _closed, None),
+    (types.WORKSPACE_DID_CHANGE_WATCHED_FILES, _watched_files_changed, None),
+    # Of a folder with sources in it that goes, watchers of files are not told.
+    (types.WORKSPACE_DID_RENAME_FILES, _files_changed, FILES_AND_FOLDERS),
+    (types.WORKSPACE_DID_DELETE_FILES, _files_changed, FILES_AND_FOLDERS),
+    (types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS, _folders_changed, None),
+)

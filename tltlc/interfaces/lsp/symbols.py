@@ -1,0 +1,89 @@
+"""The declarations of a text, for outlines and for the search by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from lsprotocol import types
+
+from tltlc.core.source import Span
+from tltlc.grammar import tree
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.declaration_text import declaration_text
+from tltlc.interfaces.lsp.positions import range_of
+
+Kind = types.SymbolKind
+_KINDS: Final = {
+    tree.SignalDecl: Kind.Field,
+    tree.ParamDecl: Kind.Constant,
+    tree.PredicateDecl: Kind.Function,
+    tree.LetDecl: Kind.Function,
+    tree.SpecDecl: Kind.Class,
+}
+
+
+def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
+    """The declarations in order; the clauses of a spec below it."""
+    source = document.source
+    found = []
+    for declaration in document.module.declarations:
+        below = [_clause(each, document, encoding) for each in _clauses(declaration)]
+        head = declaration_text(declaration, source, head=True)
+        for name, kind, span, own in _named(declaration):
+            found.append(
+                types.DocumentSymbol(
+                    name,
+                    kind,
+                    range_of(source, span, encoding),
+                    range_of(source, own, encoding),
+                    detail=head if len(head) <= 80 else None,
+                    children=below or None,
+                )
+            )
+    return found
+
+
+def found(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
+    """The declarations whose names have the letters of a query in order; all of them where it is empty."""
+    source = document.source
+    return [
+        types.WorkspaceSymbol(types.Location(uri, range_of(source, own, encoding)), name, kind)
+        for declaration in document.module.declarations
+        if not isinstance(declaration, tree.Import)
+        for name, kind, _, own in _named(declaration)
+        if _has_letters(name.lower(), query.lower())
+    ]
+
+
+def _has_letters(name: str, query: str) -> bool:
+    left = iter(name)
+    return all(letter in left for letter in query)
+
+
+def _named(declaration: tree.Declaration) -> Iterator[tuple[str, types.SymbolKind, Span, Span]]:
+    """Name, kind, and the spans of the declaration and of its name."""
+    match declaration:
+        case tree.Import():
+            yield declaration.target, Kind.Module, declaration.span, declaration.target_span
+        case tree.EntityDecl():
+            for name in declaration.names:
+                yield name.name, Kind.EnumMember, name.span, name.span
+        case tree.TestDecl():
+            yield declaration.title or "test", Kind.Event, declaration.span, declaration.spec.span
+        case tree.SignalDecl() | tree.ParamDecl() | tree.PredicateDecl() | tree.LetDecl() | tree.SpecDecl():
+            yield declaration.name, _KINDS[type(declaration)], declaration.span, declaration.name_span
+
+
+def _clauses(declaration: tree.Declaration) -> tuple[tree.Clause, ...]:
+    return declaration.clauses if isinstance(declaration, tree.SpecDecl) and declaration.block else ()
+
+
+def _clause(clause: tree.Clause, document: Document, encoding: str) -> types.DocumentSymbol:
+    text = " ".join(document.source.slice(clause.span).split())
+    return types.DocumentSymbol(
+        text if len(text) <= 80 else f"{text[:79]}…",
+        Kind.Property,
+        range_of(document.source, clause.span, encoding),
+        range_of(document.source, clause.keyword_span, encoding),
+    )

@@ -1,0 +1,186 @@
+"""The texts that are open in the editor, and the files around them."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable, Iterator
+
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.paths import is_below, name_of, path_of, uri_of
+from tltlc.io.files import is_file, may_be_file, noted, read_source, unsaved, walk
+from tltlc.io.limits import WORKSPACE, WORKSPACE_PARSED
+from tltlc.io.project import Project, project_for
+from tltlc.resolve.imports import standard_library
+
+
+class Workspace:
+    """Open texts by name, and what was made of them; ``folders`` are those that the editor shows."""
+
+    def __init__(self) -> None:
+        self.folders: list[str] = []
+        self._open: dict[str, tuple[str, int | None, str]] = {}
+        self._documents: dict[str, Document] = {}
+
+    # --- what the editor tells ----------------------------------------------------------------
+
+    def put(self, uri: str, version: int | None, text: str) -> list[str]:
+        """A text was opened or changed; the URIs of the open documents for which that matters, its own first."""
+        name = name_of(uri)
+        self._open[name] = (uri, version, text)
+        return [uri, *self._forget(name)]
+
+    def close(self, uri: str) -> list[str]:
+        """A text was closed: its file counts again; the URIs of open documents for which that matters."""
+        name = name_of(uri)
+        self._open.pop(name, None)
+        return self._forget(name)
+
+    def refresh(self) -> list[str]:
+        """Files have changed: the URIs of open documents that are made of one of them."""
+        return self._drop([name for name, made in self._documents.items() if not made.is_current()])
+
+    # --- what there is ------------------------------------------------------------------------
+
+    def document(self, uri: str) -> Document | None:
+        """A document as it stands now: the open one, or the file; None where there is neither."""
+        return self.named(name_of(uri))
+
+    def named(self, name: str) -> Document | None:
+        """As :meth:`document`, by name."""
+        opened = self._open.get(name)
+        found = self._documents.get(name)
+        # Of what is open the editor tells; closed files may change unseen.
+        if found is not None and (opened is not None or found.is_current()):
+            return found
+        with noted() as notes:
+            # A named pipe would keep the server waiting for its other end.
+            if opened is None and not is_file(name):
+                return None
+            try:
+                source = SourceFile(name, opened[2]) if opened else read_source(name)
+            except TltlError:
+                return None
+            project, _ = self.project(name)
+        found = self._documents[name] = Document(source, project, self.texts(), notes)
+        return found
+
+    def version(self, uri: str) -> int | None:
+        """The version of an open document."""
+        opened = self._open.get(name_of(uri))
+        return opened[1] if opened else None
+
+    def uri(self, name: str) -> str:
+        """The URI of a file, as the editor writes it where it is open."""
+        opened = self._open.get(path_of(name))
+        return opened[0] if opened else uri_of(name)
+
+    def is_open(self, uri: str) -> bool:
+        """Whether the editor holds the text."""
+        return name_of(uri) in self._open
+
+    def opened(self) -> list[str]:
+        """The URIs of the open documents."""
+        return [uri for uri, _, _ in self._open.values()]
+
+    def imported(self, uri: str) -> list[str]:
+        """The URIs of the other open documents that a document imports, directly or through others."""
+        document = self.document(uri)
+        names = document.reads - {document.source.name} if document else ()
+        return [self._open[name][0] for name in sorted(names) if name in self._open]
+
+    def texts(self) -> dict[str, str]:
+        """The texts of the open documents, by path."""
+        return {name: text for name, (_, _, text) in self._open.items()}
+
+    def project(self, name: str) -> tuple[Project, tuple[Diagnostic, ...]]:
+        """The project of a file, by its nearest ``tltl.toml``, and what is wrong with that."""
+        try:
+            with unsaved(self.texts()):
+                return project_for(name if not name.startswith("<") else "-"), ()
+        except TltlError as error:
+            return Project(), error.diagnostics
+
+    def is_own(self, name: str) -> bool:
+        """Whether a file is one of the workspace, and no library from elsewhere."""
+        path = path_of(name)
+        if path.startswith("<"):
+            return True
+        if is_below(path, str(standard_library().absolute())) and not self._shows(str(standard_library().absolute())):
+            return False
+        return path in self._open or self._shows(path)
+
+    def all(self) -> Iterator[Document]:
+        """The documents of the workspace: open ones, and the files of its folders.
+
+        Raises:
+            TltlError: TLT0004, the folders are too large to look through.
+        """
+        size = 0
+        for name in self._names():
+            document = self.named(name)
+            if document is not None:
+                size += len(document.source.text)
+                if size > WORKSPACE.size:
+                    raise _too_large(f"{WORKSPACE.size >> 20} MiB of sources")
+                yield document
+
+    async def parse(self, is_needed: Callable[[str], bool]) -> None:
+        """Parse the texts of the workspace that are needed, so that :meth:`all` soon gives what is made of them.
+
+        Other requests are answered between two files.
+
+        Raises:
+            TltlError: TLT0004, there is too much to look through, or to parse.
+        """
+        size = 0
+        for document in self.all():
+            await asyncio.sleep(0)
+            if is_needed(document.source.text):
+                size += len(document.source.text)
+                if size > WORKSPACE_PARSED.size:
+                    raise _too_large(f"{WORKSPACE_PARSED.size >> 20} MiB of sources that may matter here")
+                _ = document.names
+
+    def _names(self) -> list[str]:
+        names = dict.fromkeys(self._open)
+        count = 0
+        for folder in self.folders:
+            for place, folders, files in walk(folder):
+                count += len(folders) + len(files)
+                if count > (WORKSPACE.values or 0):
+                    raise _too_large(f"{WORKSPACE.values:,} files and folders")
+                folders[:] = sorted(each for each in folders if not each.startswith(".") and each != "node_modules")
+                paths = [os.path.join(place, file) for file in sorted(files) if _is_source(file)]  # noqa: PTH118
+                names.update(dict.fromkeys(filter(may_be_file, paths)))
+        return [*names]
+
+    def _shows(self, path: str) -> bool:
+        return any(is_below(path, folder) for folder in self.folders)
+
+    def _forget(self, name: str) -> list[str]:
+        """Drop what was made of a text, and of those that import it; the URIs of these."""
+        self._documents.pop(name, None)
+        return self._drop(
+            [other for other, made in self._documents.items() if made.depends_on(name) or _is_project(name)]
+        )
+
+    def _drop(self, names: list[str]) -> list[str]:
+        for name in names:
+            del self._documents[name]
+        return [self._open[name][0] for name in names if name in self._open]
+
+
+def _is_source(file: str) -> bool:
+    return file.endswith(".tltl") and not file.startswith(".")
+
+
+def _too_large(what: str) -> TltlError:
+    title = f"the folders in the editor hold more than {what}"
+    return TltlError([Diagnostic("TLT0004", title, help="open a smaller folder in the editor")])
+
+
+def _is_project(name: str) -> bool:
+    return os.path.basename(name) == "tltl.toml"  # noqa: PTH119

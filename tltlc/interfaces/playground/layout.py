@@ -1,0 +1,264 @@
+"""Places for the states of a small automaton and for the texts of its edges, none of them upon another.
+
+Between two columns of states is one of texts.  An edge passes each column on a level of its own, above which its text
+stands, so that it runs through no state and no text.  Traps stand in a row below; edges fall down to them from their
+states, or in a lane beside those that stand lower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from math import inf
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.interfaces.playground.curves import Curve, Point, bent, fallen, straight
+from tltlc.interfaces.playground.ordering import Ends, Node, chain, columns_of, mean, neighbours, ordered
+
+_SWEEPS: Final = 12
+_GAP, _NARROW_GAP = 30.0, 12.0
+"""Between two nodes of a column, where one is a state and where none is."""
+_LEAST_BEND, _MOST_BEND = 36.0, 110.0
+"""Between two columns, where edges change their levels."""
+_LANE: Final = 20.0
+
+Size = tuple[float, float]
+"""Width and height."""
+
+
+@record
+class Box:
+    """What has to be placed: a state, with what stands over and under it.
+
+    ``span`` is the width of all that, ``below`` says that it belongs in the row below.
+    """
+
+    width: float
+    height: float
+    over: float = 0.0
+    under: float = 0.0
+    span: float = 0.0
+    below: bool = False
+
+
+@record
+class Layout:
+    """The middles of states and texts, the ways of edges, and the size of it all."""
+
+    middles: Mapping[int, Point]
+    texts: Mapping[Ends, Point]
+    ways: Mapping[Ends, Curve]
+    width: float
+    height: float
+
+
+def layout(boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
+    """Places, from a corner on, for boxes, of which 0 is the first one, and for edges, which have texts of these sizes.
+
+    Loops have no places, nor have the texts of edges to what is below: those stand over and under the boxes.  What is
+    below has no edges to others.
+    """
+    return _Places(boxes, texts, corner).layout()
+
+
+class _Places:
+    """Columns from left to right, levels from top to bottom, and then the ways of edges."""
+
+    def __init__(self, boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point) -> None:
+        self.boxes, self.texts = boxes, texts
+        above = [state for state in boxes if not boxes[state].below]
+        inside = [(a, b) for a, b in texts if a != b and not boxes[a].below and not boxes[b].below]
+        self.falls = [(a, b) for a, b in texts if not boxes[a].below and boxes[b].below]
+        self.column = {state: 2 * number for state, number in columns_of(above, inside).items()}
+        self.chains = {ends: chain(ends, self.column) for ends in inside}
+        self.columns = ordered(self.column, list(self.chains.values()))
+        self.in_lanes = {a for a, _ in self.falls if not self._is_lowest(a)}
+        self.lanes = {self.column[state] for state in self.in_lanes}
+        self.levels = self._levels(corner[1])
+        self.bottom = max(level + self._reach(node)[1] for node, level in self.levels.items())
+        self.spans = self._spans(corner[0])
+        self.ports = self._ports()
+        self.row = self._row_below(corner[0])
+
+    def layout(self) -> Layout:
+        """All of it."""
+        middles = {state: self._middle(state) for state in self.column} | self.row
+        texts = {ends: self._text(ends, nodes[1]) for ends, nodes in self.chains.items()}
+        ways = {ends: self._way(ends) for ends in self.chains} | self._falls()
+        below = [(place, self.boxes[state]) for state, place in self.row.items()]
+        width = max([self.spans[-1][1], *(x + _span(box) / 2 for (x, _), box in below)])
+        height = max([self.bottom, *(y + box.height / 2 + box.under for (_, y), box in below)])
+        return Layout(middles, texts, ways, width, height)
+
+    def _is_lowest(self, state: int) -> bool:
+        return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
+
+    def _reach(self, node: Node) -> tuple[float, float]:
+        """How far a node reaches above its level and below."""
+        if len(node) == 1:
+            box = self.boxes[node[0]]
+            return box.height / 2 + box.over, box.height / 2 + box.under
+        is_text = self.chains[node[0], node[1]][1] == node
+        return (self.texts[node[0], node[1]][1] + 5, 3.0) if is_text else (0.0, 0.0)
+
+    def _levels(self, top: float) -> dict[Node, float]:
+        """Each node near its neighbours, and clear of the others of its column."""
+        beside = neighbours(link for nodes in self.chains.values() for link in pairwise(nodes))
+        found: dict[Node, float] = {}
+        for nodes in self.columns:
+            self._spread(nodes, dict.fromkeys(nodes, 0.0), found)
+        for sweep in range(_SWEEPS):
+            for nodes in self.columns if sweep % 2 else reversed(self.columns):
+                wanted = {node: mean([found[other] for other in beside.get(node, ())], found[node]) for node in nodes}
+                self._spread(nodes, wanted, found)
+        for nodes in sorted(self.chains.values(), key=len, reverse=True):
+            self._straighten(nodes[1:-1], found)
+        shift = top - min(level - self._reach(node)[0] for node, level in found.items())
+        return {node: level + shift for node, level in found.items()}
+
+    def _spread(self, nodes: Sequence[Node], wanted: Mapping[Node, float], found: dict[Node, float]) -> None:
+        """Place a column in order as wanted, or as near as the gaps allow, so that the mean is as wanted."""
+        last: Node = ()
+        for node in nodes:
+            found[node] = wanted[node]
+            if last:
+                found[node] = max(wanted[node], found[last] + self._apart(last, node))
+            last = node
+        shift = mean([wanted[node] - found[node] for node in nodes], 0.0)
+        for node in nodes:
+            found[node] += shift
+
+    def _apart(self, upper: Node, lower: Node) -> float:
+        """How far the levels of two nodes of a column are apart at least, one right above the other."""
+        gap = _GAP if len(upper) == 1 or len(lower) == 1 else _NARROW_GAP
+        return self._reach(upper)[1] + gap + self._reach(lower)[0]
+
+    def _straighten(self, way: Sequence[Node], found: dict[Node, float]) -> None:
+        """Bring the nodes of an edge to one level, as many as there is room for, and then the next ones."""
+        while way:
+            low, high = self._room(way[0], found)
+            number = 1
+            for node in way[1:]:
+                top, bottom = self._room(node, found)
+                if max(low, top) > min(high, bottom):
+                    break
+                low, high, number = max(low, top), min(high, bottom), number + 1
+            level = min(max(mean([found[node] for node in way[:number]], 0.0), low), high)
+            found.update(dict.fromkeys(way[:number], level))
+            way = way[number:]
+
+    def _room(self, node: Node, found: Mapping[Node, float]) -> tuple[float, float]:
+        """The least and the greatest level that a node may have between its neighbours."""
+        nodes = self.columns[self._number(node)]
+        place = nodes.index(node)
+        low = found[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf
+        high = found[nodes[place + 1]] - self._apart(node, nodes[place + 1]) if place + 1 < len(nodes) else inf
+        return low, max(low, high)
+
+    def _spans(self, left: float) -> list[tuple[float, float]]:
+        """The left and right end of each column."""
+        rises = [0.0] * len(self.columns)
+        for nodes in self.chains.values():
+            for one, other in pairwise(nodes):
+                number = min(self._number(one), self._number(other))
+                rises[number] = max(rises[number], abs(self.levels[one] - self.levels[other]))
+        found = []
+        for number, nodes in enumerate(self.columns):
+            right = left + max(map(self._width, nodes))
+            if number in self.lanes:
+                right += _LANE
+            found.append((left, right))
+            left = right + min(max(rises[number] / 3, _LEAST_BEND), _MOST_BEND)
+        return found
+
+    def _number(self, node: Node) -> int:
+        return self.column[node[0]] if len(node) == 1 else node[2]
+
+    def _width(self, node: Node) -> float:
+        if len(node) == 1:
+            return _span(self.boxes[node[0]])
+        return self.texts[node[0], node[1]][0] if self.chains[node[0], node[1]][1] == node else 0.0
+
+    def _middle(self, state: int) -> Point:
+        left, right = self.spans[self.column[state]]
+        lane = _LANE if self.column[state] in self.lanes else 0.0
+        return (left + right - lane) / 2, self.levels[(state,)]
+
+    def _text(self, ends: Ends, node: Node) -> Point:
+        left, right = self.spans[node[2]]
+        return (left + right) / 2, self.levels[node] - 5 - self.texts[ends][1] / 2
+
+    def _ports(self) -> dict[tuple[Ends, int], Point]:
+        """Where each edge leaves its source and reaches its target, in the order of where they lead to."""
+        sides: dict[tuple[int, bool], list[tuple[float, Ends]]] = {}
+        for ends, nodes in self.chains.items():
+            for state, beside in ((ends[0], nodes[1]), (ends[1], nodes[-2])):
+                side = state, self._number(beside) > self.column[state]
+                sides.setdefault(side, []).append((self.levels[beside], ends))
+        found = {}
+        for (state, is_right), leading in sides.items():
+            (x, y), box = self._middle(state), self.boxes[state]
+            for index, (_, ends) in enumerate(sorted(leading)):
+                share = (index + 1) / (len(leading) + 1) - 0.5
+                found[ends, state] = x + box.width / 2 * (1 if is_right else -1), y + box.height * share
+        return found
+
+    def _way(self, ends: Ends) -> Curve:
+        """From state to state, straight through the columns, and bent between them."""
+        nodes = self.chains[ends]
+        is_forth = self.column[ends[0]] < self.column[ends[1]]
+        start, end = self.ports[ends, ends[0]], self.ports[ends, ends[1]]
+        levels = [start[1], *(self.levels[node] for node in nodes[1:-1]), end[1]]
+        curve: Curve = (start,)
+        for number, (node, level) in enumerate(zip(nodes, levels, strict=True)):
+            enter, leave = self.spans[self._number(node)][:: 1 if is_forth else -1]
+            if number:
+                curve = bent(curve, (enter, level))
+            curve = straight(curve, end if number == len(nodes) - 1 else (leave, level))
+        return curve
+
+    def _falls(self) -> dict[Ends, Curve]:
+        """Edges down to what is below, which they reach side by side."""
+        foot = {a: self._foot(a) for a, _ in self.falls}
+        found = {}
+        for target, (x, y) in self.row.items():
+            box = self.boxes[target]
+            sources = sorted((a for a, b in self.falls if b == target), key=lambda a: (foot[a][-1][0], a))
+            for index, a in enumerate(sources):
+                share = (index + 1) / (len(sources) + 1) - 0.5
+                port = x + box.width * share, y - box.height / 2
+                # Others of the row may reach as far up as what stands over this one.
+                found[a, target] = straight(fallen(foot[a], (port[0], port[1] - box.over)), port)
+        return found
+
+    def _foot(self, state: int) -> Curve:
+        """From a state down to the lowest level."""
+        (x, y), box = self._middle(state), self.boxes[state]
+        curve: Curve = ((x, y + box.height / 2),)
+        if state in self.in_lanes:
+            under = y + box.height / 2 + box.under
+            lane = self.spans[self.column[state]][1] - _LANE / 2
+            curve = fallen(straight(curve, (x, under)), (lane, under + _GAP - 8))
+        return straight(curve, (curve[-1][0], self.bottom))
+
+    def _row_below(self, left: float) -> dict[int, Point]:
+        """Places in the row below, each under the middle of the states that lead there."""
+        wanted = {
+            state: mean([self._foot(a)[-1][0] for a, b in self.falls if b == state], 0.0)
+            for state, box in self.boxes.items()
+            if box.below
+        }
+        found: dict[int, Point] = {}
+        reach = max((abs(self._foot(a)[-1][0] - wanted[b]) for a, b in self.falls), default=0.0)
+        top = self.bottom + min(max(reach / 8, 2 * _GAP), _MOST_BEND)
+        for state in sorted(wanted, key=lambda state: (wanted[state], state)):
+            box = self.boxes[state]
+            x = max(wanted[state], left + _span(box) / 2)
+            found[state] = x, top + box.over + box.height / 2
+            left = x + _span(box) / 2 + 2 * _GAP
+        return found
+
+
+def _span(box: Box) -> float:
+    return max(box.width, box.span)

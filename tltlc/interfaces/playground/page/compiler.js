@@ -1,0 +1,131 @@
+// Whoever compiles: the server that the page comes from, or Python in a worker of the browser.
+// Both answer `ask({text, spec, letters})` with what tltlc.interfaces.playground.view returns, and `ask({})` with how to start.
+
+import { keepToken, refuseToken, token } from "./token.js";
+
+const LIMIT_MS = 10_000;
+const PATIENCE_MS = 3_000;
+const START_LIMIT_MS = 120_000;
+
+const REFUSED = {
+  403: "open the address that `tltlc serve` shows: the token in it is missing here, or is of an earlier server",
+  413: "the text is too long",
+};
+
+export function compiler() {
+  return document.body.dataset.compiler === "browser" ? inBrowser() : byServer();
+}
+
+function byServer() {
+  let running = null;
+  return {
+    async ask(request) {
+      // Only the last request matters.
+      running?.abort();
+      const { signal } = (running = new AbortController());
+      let used;
+      let answer;
+      do {
+        used = token();
+        answer = await post(request, used, signal);
+      } while (answer.status === 403 && refuseToken(used));
+      if (!answer.ok) throw new Error(REFUSED[answer.status] ?? `the server says: ${answer.statusText}`);
+      keepToken(used);
+      return answer.json();
+    },
+  };
+}
+
+function post(request, used, signal) {
+  return fetch("api", {
+    method: "POST",
+    headers: { "Content-Type": "application/json", "Tltlc-Token": used },
+    body: JSON.stringify(request),
+    signal,
+  }).catch((error) => {
+    // Browsers have no word for it that would help.
+    throw error instanceof TypeError ? new Error("the server is gone; start `tltlc serve` again") : error;
+  });
+}
+
+function inBrowser() {
+  let worker = null;
+  let ready = null;
+  let busy = Promise.resolve();
+  let running = null;
+  let last = 0;
+
+  function start() {
+    worker = new Worker("worker.js", { type: "module" });
+    ready = reply(worker, START_LIMIT_MS).answer;
+  }
+  function stop() {
+    worker.terminate();
+    worker = null;
+  }
+  async function answer(request) {
+    if (!worker) start();
+    try {
+      await ready;
+    } catch (error) {
+      stop();
+      throw error;
+    }
+    worker.postMessage(JSON.stringify(request));
+    try {
+      running = reply(worker, LIMIT_MS);
+      return JSON.parse(await running.answer);
+    } catch (error) {
+      // What a worker is at cannot be interrupted but by its end.
+      stop();
+      const title = GIVEN_UP[error.message];
+      if (!title) throw error;
+      return { ...NOTHING, diagnostics: [givenUp(title)] };
+    } finally {
+      running = null;
+    }
+  }
+  return {
+    ask(request) {
+      const mine = ++last;
+      // Nobody waits for an earlier text any more; to start a worker anew takes some seconds, too.
+      if (running) setTimeout(running.giveUp, running.since + PATIENCE_MS - performance.now());
+      const asked = busy.then(() => {
+        if (mine !== last) throw new DOMException("a later request has come", "AbortError");
+        return answer(request);
+      });
+      busy = asked.catch(() => {});
+      return asked;
+    },
+  };
+}
+
+const NOTHING = { diagnostics: [], more: 0, specs: [], tests: [], spec: null };
+
+const GIVEN_UP = {
+  late: `this takes longer than ${LIMIT_MS / 1000} s, and was given up`,
+  deep: "this nests deeper than a browser can follow, and was given up",
+};
+
+function givenUp(title) {
+  const help = "make the spec smaller: bounds and large conjunctions cost most";
+  return { code: "TLT0775", severity: "error", title, help, labels: [], ways_out: [] };
+}
+
+/** The next message of a worker: a promise, when it was begun, and how to end it. */
+function reply(worker, limit) {
+  let giveUp;
+  const answer = new Promise((resolve, reject) => {
+    giveUp = () => reject(new Error("late"));
+    const timer = setTimeout(giveUp, limit);
+    worker.onmessage = ({ data }) => {
+      clearTimeout(timer);
+      data.error ? reject(new Error(data.error)) : resolve(data.answer);
+    };
+    worker.onerror = (event) => {
+      clearTimeout(timer);
+      reject(new Error(event.message || "Python could not be loaded"));
+    };
+  });
+  return { answer, giveUp, since: performance.now() };
+}

@@ -1,0 +1,37 @@
+// Python with the compiler, beside the page: it answers one request after the other.
+
+import { loadPyodide } from "./pyodide/pyodide.mjs";
+
+const FOLDER = "/compiler";
+
+async function load() {
+  const here = new URL("pyodide/", self.location.href).href;
+  const [python, archive] = await Promise.all([
+    loadPyodide({ indexURL: here }),
+    fetch("tltlc.zip").then((found) => {
+      if (!found.ok) throw new Error(`tltlc.zip: ${found.status}`);
+      return found.arrayBuffer();
+    }),
+  ]);
+  python.unpackArchive(archive, "zip", { extractDir: FOLDER });
+  python.runPython(`import sys; sys.path.insert(0, "${FOLDER}")`);
+  return python.runPython("from tltlc.interfaces.playground.protocol import answer; answer");
+}
+
+let answer = null;
+self.onmessage = ({ data }) => {
+  try {
+    self.postMessage({ answer: answer(data) });
+  } catch (error) {
+    // A browser's stack ends earlier than Python knows; Firefox calls that an InternalError.
+    const isDeep = ["RangeError", "InternalError"].includes(error.name);
+    self.postMessage({ error: isDeep ? "deep" : String(error.message ?? error) });
+  }
+};
+load().then(
+  (found) => {
+    answer = found;
+    self.postMessage({ answer: "" });
+  },
+  (error) => self.postMessage({ error: `Python could not be loaded: ${error.message ?? error}` }),
+);

@@ -1,0 +1,194 @@
+"""The automaton as an SVG picture for the page, which colours it, and lights the current state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa, State
+from tltlc.backends import Notation
+from tltlc.backends.drawing.folding import Drawing, span
+from tltlc.backends.drawing.picture_content import notes, shown
+from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
+from tltlc.diagnostics.formats.text import columns
+from tltlc.interfaces.playground.curves import Point, bent, drawn
+from tltlc.interfaces.playground.layout import Box, Size, layout
+from tltlc.interfaces.playground.ordering import Ends
+
+MOST_STATES: Final = 40
+MOST_EDGES: Final = 120
+"""Beyond, nothing can be read."""
+
+# Widths of characters and heights of lines; the fonts have one width.
+_LABEL_CHARACTER, _LABEL_LINE = 7.3, 17.0
+_GUARD_CHARACTER, _GUARD_LINE = 6.7, 14.0
+_LABEL, _GUARD, _WIDE_GUARD = 26, 22, 30
+"""Characters in a line; words that are longer may take twice as many."""
+_MOST_LINES: Final = 6
+_LOOP: Final = 26.0
+"""Height of a loop beside its state."""
+_MARGIN: Final = 20.0
+_START: Final = 26.0
+"""Length of the arrow into the first state."""
+
+
+def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
+    """The picture, and notes on it and what it leaves out; of an automaton too large to look at the note alone.
+
+    States are groups of the class ``state`` and of their verdict, with ``data-states``, the numbers of the states that
+    they stand for; edges are groups of the class ``edge`` with ``data-source`` and ``data-target``.  Both have their
+    whole text in words as title: of a long one the beginning is drawn.
+    """
+    drawing = shown(fspa)
+    if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
+        return None, f"The automaton has {len(fspa.states)} states and {len(fspa.edges)} edges, too many for a picture."
+    return _Picture(fspa, drawing, notation).svg(), " ".join(notes(fspa, drawing))
+
+
+class _Picture:
+    """Texts and places of one picture."""
+
+    def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
+        self.fspa, self.drawing = fspa, drawing
+        self.trap = _trap(drawing)
+        self.guards = arrows(fspa, drawing.edges, notation)
+        self.titles = arrows(fspa, drawing.edges, "english")
+        self.lines = {ends: self._lines(ends) for ends in self.guards}
+        self.runs = {state.id: drawing.folded.get(state.id, (state,)) for state in drawing.states}
+        self.labels = {state: _label_lines(run, notation) for state, run in self.runs.items()}
+        self.boxes = {state: self._box(state) for state in self.runs}
+        sizes = {ends: _size(lines) for ends, lines in self.lines.items()}
+        self.placed = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
+
+    def svg(self) -> str:
+        """The picture."""
+        width, height = self.placed.width + _MARGIN, self.placed.height + _MARGIN
+        left, y = self._frame(0)[0], self.placed.middles[0][1]
+        start = f'<circle cx="{left - _START:.1f}" cy="{y:.1f}" r="3.5"/>'
+        start += drawn(bent(((left - _START, y),), (left, y)))
+        edges = (self._edge(ends) for ends in self.guards)
+        states = (self._state(state) for state in self.drawing.states)
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}"'
+            f' width="{width:.0f}" height="{height:.0f}" role="group"'
+            f' aria-label="The automaton of {_escaped(self.fspa.name)}">'
+            f'<g class="start">{start}</g>{"".join(edges)}{"".join(states)}</svg>'
+        )
+
+    def _lines(self, ends: Ends) -> list[str]:
+        """The text of an edge; over and under a state there is more room."""
+        is_wide = ends[0] == ends[1] or ends[1] == self.trap
+        return _shortened(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
+
+    def _box(self, state: int) -> Box:
+        lines = self.labels[state]
+        width, height = max(_columns(lines) * _LABEL_CHARACTER + 30, 62.0), len(lines) * _LABEL_LINE + 32
+        loop = _size(self.lines.get((state, state), []))
+        fall = _size([] if self.trap in (None, state) else self.lines.get((state, self.trap), []))
+        beside, under = (size[1] + more if size[1] else 0.0 for size, more in ((loop, _LOOP + 4), (fall, 12)))
+        if state == self.trap:
+            arriving = sum(target == state for _, target in self.lines)
+            return Box(max(width, 12.0 * arriving), height, 0.0, beside, loop[0], below=True)
+        return Box(width, height, beside, under, max(loop[0], fall[0]))
+
+    def _frame(self, state: int) -> tuple[float, float, float, float]:
+        """Left, top, right and bottom of a state."""
+        (x, y), box = self.placed.middles[state], self.boxes[state]
+        return x - box.width / 2, y - box.height / 2, x + box.width / 2, y + box.height / 2
+
+    def _state(self, state: State) -> str:
+        run = self.runs[state.id]
+        left, top, right, bottom = self._frame(state.id)
+        number = span(str(run[0].id), str(run[-1].id))
+        distance = span(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
+        classes = f"state {state.verdict}{' accepting' if state.accepting else ''}{' folded' if len(run) > 1 else ''}"
+        said = _escaped(f"State {number}, {state.verdict}: {run[0].label.english}")
+        frame = _rectangle("frame", left, top, right, bottom, 9)
+        frame += _rectangle("ring", left + 4, top + 4, right - 4, bottom - 4, 6) if state.accepting else ""
+        lines = self.labels[state.id]
+        # The marks take the first line.
+        middle = (left + right) / 2, top + 21 + len(lines) * _LABEL_LINE / 2
+        return (
+            f'<g class="{classes}" data-states="{" ".join(str(each.id) for each in run)}" tabindex="0" role="button"'
+            f' aria-label="{said}"><title>{said}</title>{frame}'
+            f'<text class="number" x="{left + 10:.1f}" y="{top + 17:.1f}">{number}</text>'
+            f'<text class="distance" x="{right - 10:.1f}" y="{top + 17:.1f}" text-anchor="end">{distance}</text>'
+            f"{_text(lines, middle, _LABEL_LINE, 'label')}</g>"
+        )
+
+    def _edge(self, ends: Ends) -> str:
+        source, target = (self.fspa.states[end] for end in ends)
+        kind = ""
+        if source.id != target.id and source.distance is not None:
+            kind = " failing" if target.distance is None else " nearer" if target.distance < source.distance else ""
+        said = _escaped(f"From {source.id} to {target.id}: {'; '.join(self.titles[ends])}")
+        return (
+            f'<g class="edge{kind}" data-source="{ends[0]}" data-target="{ends[1]}" role="img">'
+            f"<title>{said}</title>{self._arrow(ends)}</g>"
+        )
+
+    def _arrow(self, ends: Ends) -> str:
+        """The arrow of an edge, and its text."""
+        lines = self.lines[ends]
+        width, height = _size(lines)
+        left, top, right, bottom = self._frame(ends[0])
+        x = (left + right) / 2
+        if ends[0] == ends[1]:
+            foot, out = (bottom, 1) if ends[0] == self.trap else (top, -1)
+            turn = foot + 30 * out
+            loop = drawn(((x - 14, foot), (x - 26, turn), (x + 26, turn), (x + 14, foot)))
+            return loop + _text(lines, (x, foot + (_LOOP + height / 2) * out), _GUARD_LINE, "guard")
+        way = self.placed.ways[ends]
+        if ends[1] != self.trap:
+            return drawn(way) + _text(lines, self.placed.texts[ends], _GUARD_LINE, "guard")
+        # It passes behind its text.
+        behind = _rectangle("behind", x - width / 2, bottom + 5, x + width / 2, bottom + 7 + height, 0)
+        return drawn(way) + behind + _text(lines, (x, bottom + 6 + height / 2), _GUARD_LINE, "guard")
+
+
+def _trap(drawing: Drawing) -> int | None:
+    """The state from which nothing leads to success, nor to any other state."""
+    leaving = {edge.source for edge in drawing.edges if edge.source != edge.target}
+    traps = (state.id for state in drawing.states if state.verdict == "violated" and state.id not in leaving)
+    return next((state for state in traps if state), None)
+
+
+def _label_lines(run: Sequence[State], notation: Notation) -> list[str]:
+    first, last = (label(end.label, notation) for end in (run[0], run[-1]))
+    if len(run) == 1:
+        return _shortened([first], _LABEL)
+    return [f"{len(run)} more like these", *_shortened([span(first, last)], _LABEL)]
+
+
+def _shortened(texts: Sequence[str], width: int) -> list[str]:
+    """Texts in lines of about that width; an ellipsis stands for what is left out."""
+    lines = [line for text in texts for line in wrapped(text, width, _MOST_LINES)]
+    if len(lines) > _MOST_LINES:
+        lines = [*lines[: _MOST_LINES - 1], "…"]
+    return [line if len(line) <= 2 * width else f"{line[: 2 * width - 1]}…" for line in lines]
+
+
+def _size(lines: Sequence[str]) -> Size:
+    return _columns(lines) * _GUARD_CHARACTER, len(lines) * _GUARD_LINE
+
+
+def _columns(lines: Sequence[str]) -> int:
+    return max(map(columns, lines), default=0)
+
+
+def _rectangle(kind: str, left: float, top: float, right: float, bottom: float, radius: int) -> str:
+    size = f'width="{right - left:.1f}" height="{bottom - top:.1f}"'
+    return f'<rect class="{kind}" x="{left:.1f}" y="{top:.1f}" {size} rx="{radius}"/>'
+
+
+def _text(lines: Sequence[str], middle: Point, height: float, kind: str) -> str:
+    x, first = middle[0], middle[1] - (len(lines) - 1) * height / 2 + 4
+    spans = (
+        f'<tspan x="{x:.1f}" y="{first + i * height:.1f}">{_escaped(line)}</tspan>' for i, line in enumerate(lines)
+    )
+    return f'<text class="{kind}" text-anchor="middle">{"".join(spans)}</text>'
+
+
+def _escaped(text: str) -> str:
+    return escape(visible(text))

@@ -1,0 +1,151 @@
+"""Read the head of an HTTP/1.1 request (RFC 9112): the first line and the headers, without any input or output.
+
+It accepts less than the standard allows: no transfer codings, no continued header lines, no second ``Host``. Whatever
+could be read in two ways is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Final
+from urllib.parse import unquote_to_bytes
+
+from tltlc.core.record import record
+from tltlc.io.limits import REQUEST_HEAD, REQUEST_LINE
+
+_TOKEN: Final = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
+# No two neighbouring parts of a pattern here match the same character, so that matching takes linear time.
+_LINE: Final = re.compile(rb"(%s) ([!-~]+) HTTP/([0-9])\.([0-9])" % _TOKEN)
+_NAME: Final = re.compile(_TOKEN)
+_VALUE: Final = re.compile(rb"[\t -~\x80-\xff]*")
+_END: Final = re.compile(rb"\n\r?\n")
+_BAD_ESCAPE: Final = re.compile(r"%(?![0-9A-Fa-f]{2})")
+_MOST_DIGITS: Final = 18
+_REPEATED: Final = {"accept", "accept-encoding", "accept-language", "cache-control", "connection", "via"}
+"""Headers that may stand there several times: lists, on which nothing depends but whether the connection is kept."""
+
+
+class RefusedError(Exception):
+    """A request is answered with an error, after which the connection is closed."""
+
+    def __init__(self, status: HTTPStatus) -> None:
+        self.status = status
+        super().__init__(status.phrase)
+
+
+@record
+class Head:
+    """A request without its body.
+
+    ``path`` is the path of its target without escapes and query; ``headers`` have names in lower case; ``length`` is
+    that of the body in bytes, None where the request does not say; ``keeps`` is whether another request may follow;
+    ``is_old`` is whether the other side speaks HTTP/1.0, which has no interim answers.
+    """
+
+    method: str
+    path: str
+    headers: Mapping[str, str]
+    length: int | None
+    keeps: bool
+    is_old: bool
+
+    @property
+    def waits(self) -> bool:
+        """Whether the other side sends the body only after the server has agreed."""
+        return "expect" in self.headers
+
+
+def read_head(data: bytes) -> tuple[Head, int] | None:
+    """The head at the start of some bytes, and the offset behind it; None where the head is not complete yet.
+
+    Raises RefusedError as early as it can: 400 for what is no HTTP, 414 and 431 for what is too long, 417 for an
+    unknown expectation, 501 for transfer codings, 505 for another version.
+    """
+    # Empty lines before a request are allowed (RFC 9112, 2.2).
+    start = len(data) - len(data.lstrip(b"\r\n"))
+    if start > REQUEST_HEAD.size:
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    line_end = data.find(b"\n", start)
+    if (line_end if line_end >= 0 else len(data)) - start >= REQUEST_LINE.size:
+        raise RefusedError(HTTPStatus.REQUEST_URI_TOO_LONG)
+    if line_end < 0:
+        return None
+    method, path, is_old = _first_line(data[start:line_end].removesuffix(b"\r"))
+    end = _END.search(data, line_end)
+    text = data[line_end + 1 : end.start() if end else len(data)]
+    if len(text) > REQUEST_HEAD.size or text.count(b"\n") >= (REQUEST_HEAD.values or 0):
+        raise RefusedError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+    if end is None:
+        return None
+    headers = _headers(text)
+    return _head(method, path, headers, is_old), end.end()
+
+
+def _first_line(line: bytes) -> tuple[str, str, bool]:
+    """The method, the path, and whether the version is 1.0."""
+    found = _LINE.fullmatch(line)
+    if found is None:
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    if found[3] != b"1":
+        raise RefusedError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED)
+    target = found[2].decode("ascii").partition("?")[0]
+    # The other forms of a target are for proxies.
+    if not target.startswith("/") and target != "*":
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    return found[1].decode("ascii"), _unescaped(target), found[4] == b"0"
+
+
+def _unescaped(path: str) -> str:
+    if _BAD_ESCAPE.search(path):
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    try:
+        found = unquote_to_bytes(path).decode("utf-8")
+    except UnicodeDecodeError:
+        raise RefusedError(HTTPStatus.BAD_REQUEST) from None
+    if any(ord(character) < ord(" ") or character == "\x7f" for character in found):
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    return found
+
+
+def _headers(text: bytes) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for line in text.split(b"\n") if text.strip(b"\r\n") else ():
+        name, value = _header(line.removesuffix(b"\r"))
+        if name in found and name not in _REPEATED:
+            raise RefusedError(HTTPStatus.BAD_REQUEST)
+        found[name] = f"{found[name]}, {value}" if name in found else value
+    return found
+
+
+def _header(line: bytes) -> tuple[str, str]:
+    """The name of a header in lower case, and its value without the blanks around it."""
+    name, colon, value = line.partition(b":")
+    if not (colon and _NAME.fullmatch(name) and _VALUE.fullmatch(value)):
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    return name.decode("ascii").lower(), value.strip(b" \t").decode("latin-1")
+
+
+def _head(method: str, path: str, headers: Mapping[str, str], is_old: bool) -> Head:
+    if not is_old and "host" not in headers:
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    if "transfer-encoding" in headers:
+        both = "content-length" in headers
+        raise RefusedError(HTTPStatus.BAD_REQUEST if both else HTTPStatus.NOT_IMPLEMENTED)
+    if headers.get("expect", "100-continue").lower() != "100-continue":
+        raise RefusedError(HTTPStatus.EXPECTATION_FAILED)
+    closes = "close" in (word.strip() for word in headers.get("connection", "").lower().split(","))
+    length = _length(headers.get("content-length"))
+    return Head(method, path, headers, length, keeps=not (is_old or closes), is_old=is_old)
+
+
+def _length(written: str | None) -> int | None:
+    if written is None:
+        return None
+    if not (written.isascii() and written.isdecimal()):
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
+    digits = written.lstrip("0")
+    if len(digits) > _MOST_DIGITS:
+        raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+    return int(digits or "0")

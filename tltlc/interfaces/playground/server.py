@@ -1,0 +1,301 @@
+"""The page on this machine: the files of the page, and answers to what it asks."""
+
+from __future__ import annotations
+
+import asyncio
+import mimetypes
+import os
+import secrets
+import signal
+import socket
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from http import HTTPStatus
+from threading import Event, Thread, current_thread, main_thread
+from types import TracebackType
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.playground.children import LIMIT_S, MOST_AT_ONCE, AbandonedError, Children
+from tltlc.interfaces.playground.connections import Connection, Open, Response, report_failure
+from tltlc.interfaces.playground.request_head import Head, RefusedError
+from tltlc.interfaces.playground.site import page_files
+from tltlc.io.files import reason
+from tltlc.io.limits import MESSAGE, PLAYGROUND, Connections
+
+HOST: Final = "127.0.0.1"
+TOKEN_HEADER: Final = "Tltlc-Token"
+
+_NAMES: Final = {HOST, "localhost"}
+"""Under other names a page of somebody else could ask, by an address that leads here."""
+
+_API: Final = "/api"
+_METHODS: Final = {"GET", "HEAD", "POST"}
+_KNOWN_METHODS: Final = _METHODS | {"OPTIONS", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}
+_AGAIN_S: Final = 1.0
+"""Seconds after which a server that had no room for another connection looks again."""
+
+_OTHER_DESCRIPTORS: Final = 16 + 6 * MOST_AT_ONCE
+"""How many descriptors the process itself and the pipes to its children need at most."""
+
+_POLICY: Final = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:"
+_HEADERS: Final = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": f"{_POLICY}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+
+
+class Page:
+    """What the server answers: ``GET`` of the page's files, and ``POST`` of :data:`_API` with the token."""
+
+    def __init__(self, children: Children, token: str) -> None:
+        self.files = page_files()
+        self._children = children
+        self._token = token.encode()
+        # As many threads as connections can wait; the children themselves are fewer.
+        self._threads = ThreadPoolExecutor(PLAYGROUND.most)
+
+    def check(self, head: Head) -> None:
+        """Raise RefusedError for a request that is not from the page itself, or asks for what there is not."""
+        if not _is_own(head):
+            raise RefusedError(HTTPStatus.FORBIDDEN)
+        if head.method not in _KNOWN_METHODS:
+            raise RefusedError(HTTPStatus.NOT_IMPLEMENTED)
+        if head.path == _API:
+            self._check_question(head)
+            return
+        if _file_name(head.path) not in self.files:
+            raise RefusedError(HTTPStatus.NOT_FOUND)
+        if head.method not in ("GET", "HEAD"):
+            raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
+        if head.length:
+            raise RefusedError(HTTPStatus.BAD_REQUEST)
+
+    async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
+        """A file of the page, or the answer to a question; None where the page has hung up."""
+        if head.path != _API:
+            name = _file_name(head.path)
+            kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "text/plain"
+            return _response(HTTPStatus.OK, self.files[name], kind)
+        loop = asyncio.get_running_loop()
+        try:
+            answered = await loop.run_in_executor(self._threads, self._children.answer, body, hung_up.is_set)
+        except AbandonedError:
+            return None
+        except OSError:
+            # The system has no room for another process.
+            raise RefusedError(HTTPStatus.SERVICE_UNAVAILABLE) from None
+        if answered is None:
+            raise RefusedError(HTTPStatus.BAD_REQUEST)
+        return _response(HTTPStatus.OK, answered.encode(), "application/json")
+
+    def refusal(self, status: HTTPStatus) -> Response:
+        """The answer that says that a request is refused."""
+        allowed = {"Allow": "GET, HEAD, POST"} if status is HTTPStatus.METHOD_NOT_ALLOWED else {}
+        return _response(status, f"{status.phrase}\n".encode(), "text/plain", allowed)
+
+    def close(self) -> None:
+        """Wait for nobody any more."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+
+    def _check_question(self, head: Head) -> None:
+        # Who has no token learns nothing else.
+        if not secrets.compare_digest(head.headers.get(TOKEN_HEADER.lower(), "").encode("latin-1"), self._token):
+            raise RefusedError(HTTPStatus.FORBIDDEN)
+        if head.method != "POST":
+            raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
+        # Pages of others would have to ask the browser first before they send this.
+        if head.headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
+            raise RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE)
+        if head.length is None:
+            raise RefusedError(HTTPStatus.LENGTH_REQUIRED)
+        if head.length > MESSAGE.size:
+            raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+
+
+def _response(status: HTTPStatus, body: bytes, kind: str, headers: dict[str, str] | None = None) -> Response:
+    return Response(status, {**_HEADERS, "Content-Type": f"{kind}; charset=utf-8", **(headers or {})}, body)
+
+
+def _file_name(path: str) -> str:
+    return "index.html" if path == "/" else path.removeprefix("/")
+
+
+def _is_own(head: Head) -> bool:
+    """Whether a request is for this server, and neither made by a page from elsewhere nor for one."""
+    host = head.headers.get("host", "").lower()
+    name, colon, port = host.partition(":")
+    if name not in _NAMES or (colon and not (port.isascii() and port.isdecimal())):
+        return False
+    if head.headers.get("origin", f"http://{host}").lower() != f"http://{host}":
+        return False
+    if head.headers.get("sec-fetch-site", "none") in ("none", "same-origin"):
+        return True
+    # A link from elsewhere may lead to the page.
+    return head.path == "/" and head.method == "GET" and head.headers.get("sec-fetch-mode") == "navigate"
+
+
+def _within_descriptors(connections: Connections) -> Connections:
+    """No more connections than the system has descriptors for, beside those that children need."""
+    with suppress(ImportError):
+        import resource
+
+        soft = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+        if soft != resource.RLIM_INFINITY:
+            return replace(connections, most=max(1, min(connections.most, soft - _OTHER_DESCRIPTORS)))
+    return connections
+
+
+def _read_all(reader: socket.socket) -> None:
+    with suppress(BlockingIOError):
+        while reader.recv(4096):
+            pass
+
+
+class Server:
+    """Serves the page at :data:`HOST`, and at no other address; port 0 is any that is free.
+
+    Raises TltlError, TLT0776, where the port cannot be had.
+    """
+
+    def __init__(self, port: int, limit_s: float = LIMIT_S, connections: Connections = PLAYGROUND) -> None:
+        try:
+            # A port is free again as soon as its server has ended.
+            self._listener = socket.create_server((HOST, port))
+        except OSError as error:
+            title = f"cannot serve at {HOST}:{port}: {reason(error)}"
+            way_out = "give another port, or 0 for any: `--port 0`"
+            raise TltlError([Diagnostic("TLT0776", title, help=way_out)]) from None
+        self._listener.setblocking(False)
+        self.server_address: tuple[str, int] = self._listener.getsockname()
+        self.token = secrets.token_urlsafe(24)
+        self.children = Children(limit_s)
+        self.page = Page(self.children, self.token)
+        self.open = Open(_within_descriptors(connections))
+        self._loop = asyncio.SelectorEventLoop()
+        self._again: asyncio.TimerHandle | None = None
+        self._accepted: set[asyncio.Task[object]] = set()
+        self._thread: Thread | None = None
+        self._stopped = Event()
+        self._stopped.set()
+
+    @property
+    def address(self) -> str:
+        """Where the page is, with the token in the fragment, which browsers send nowhere."""
+        return f"http://{HOST}:{self.server_address[1]}/#token={self.token}"
+
+    def serve_forever(self) -> None:
+        """Answer until :meth:`shutdown` is called, or until Ctrl-C, which raises KeyboardInterrupt."""
+        self._thread = current_thread()
+        try:
+            self._stopped.clear()
+            self._loop.call_soon(self._look)
+            if os.name == "nt":
+                self._loop.call_soon(self._wake)
+            with self._woken_by_signals():
+                try:
+                    self._loop.run_forever()
+                finally:
+                    self._loop.remove_reader(self._listener)
+                    self._loop.run_until_complete(self._end_all())
+        finally:
+            self._stopped.set()
+
+    def shutdown(self) -> None:
+        """Stop :meth:`serve_forever` if it runs in another thread, and wait for its end.
+
+        In the same thread, it has ended; an interrupt may have ended it at any point.
+        """
+        if self._thread is not current_thread() and not self._stopped.is_set():
+            self._loop.call_soon_threadsafe(self._loop.stop)
+            self._stopped.wait()
+
+    def server_close(self) -> None:
+        """Free the port, and end what waits."""
+        self.children.close()
+        self.shutdown()
+        self.page.close()
+        self._listener.close()
+        self._loop.close()
+
+    def __enter__(self) -> Server:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.server_close()
+
+    # --- new connections ----------------------------------------------------------------------
+
+    def _look(self) -> None:
+        """Look for new connections, from now on."""
+        if self._again is not None:
+            self._again.cancel()
+            self._again = None
+        self._loop.add_reader(self._listener, self._accept)
+
+    def _accept(self) -> None:
+        try:
+            accepted, _ = self._listener.accept()
+        except (BlockingIOError, InterruptedError, ConnectionAbortedError):
+            return
+        except OSError:
+            self._wait()
+            return
+        accepted.setblocking(False)
+        made = self._loop.connect_accepted_socket(lambda: Connection(self.page, self.open), accepted)
+        task: asyncio.Task[object] = self._loop.create_task(made)
+        self._accepted.add(task)
+        task.add_done_callback(self._accepted.discard)
+        task.add_done_callback(report_failure)
+
+    def _wait(self) -> None:
+        """The system has no descriptors left: look again once a connection has given way, or else in a while."""
+        self._loop.remove_reader(self._listener)
+        if self.open.make_room():
+            # The connection is closed before this is called.
+            self._loop.call_soon(self._look)
+        else:
+            self._again = self._loop.call_later(_AGAIN_S, self._look)
+
+    async def _end_all(self) -> None:
+        """Close all connections, and end what works for them."""
+        self.open.close()
+        tasks = asyncio.all_tasks() - {asyncio.current_task()}
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(asyncio.sleep(0), *tasks, return_exceptions=True)
+
+    @contextmanager
+    def _woken_by_signals(self) -> Iterator[None]:
+        """Within, each signal ends the wait of the loop.
+
+        Python runs the handler of a signal between two steps of the main thread.  A signal that another thread gets,
+        or that comes just before the wait begins, would not be handled until a request comes.
+        """
+        if current_thread() is not main_thread():
+            yield
+            return
+        reader, writer = socket.socketpair()
+        with reader, writer:
+            for end in (reader, writer):
+                end.setblocking(False)
+            self._loop.add_reader(reader, _read_all, reader)
+            # An interrupt between the two calls leaves no descriptor that is closed below.
+            before = signal.set_wakeup_fd(-1)
+            try:
+                signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+                yield
+            finally:
+                signal.set_wakeup_fd(before)
+                self._loop.remove_reader(reader)
+
+    def _wake(self) -> None:
+        """Windows tells of Ctrl-C only when something else happens, too."""
+        self._loop.call_later(0.5, self._wake)

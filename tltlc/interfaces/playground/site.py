@@ -1,0 +1,64 @@
+"""The page as files: those that the server shows, and those of a site that needs no server of its own."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Final
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.resolve.imports import standard_library
+
+PAGE: Final = Path(__file__).with_name("page")
+PACKAGE: Final = Path(__file__).parents[2]
+
+PYODIDE: Final = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
+"""The files of Pyodide that a browser loads: Python, for WebAssembly."""
+
+_BY_SERVER: Final = 'data-compiler="server"'
+_BY_BROWSER: Final = 'data-compiler="browser"'
+_LEFT_OUT: Final = ("cli", "conformance", "hoa", "lsp", "mine", "diff", "fmt", "backends/templates", "stdlib")
+"""Parts of the compiler for which the page has no use."""
+_ENDINGS: Final = (".py", ".json", ".lark", ".md", ".tltl")
+
+
+def page_files() -> dict[str, bytes]:
+    """The files of the page, by their names."""
+    return {path.name: path.read_bytes() for path in sorted(PAGE.iterdir()) if path.is_file()}
+
+
+def site_files(pyodide: Path) -> dict[str, bytes]:
+    """The files of the site, by their paths: the page, the compiler, and Pyodide from the folder of its npm package.
+
+    Raises TltlError, TLT0730, where that folder has not all that is needed.
+    """
+    missing = [name for name in PYODIDE if not (pyodide / name).is_file()]
+    if missing:
+        title = f"the site needs Pyodide, and `{pyodide}` has no `{missing[0]}`"
+        way_out = "npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`"
+        raise TltlError([Diagnostic("TLT0730", title, help=way_out)])
+    files = page_files()
+    files["index.html"] = files["index.html"].replace(_BY_SERVER.encode(), _BY_BROWSER.encode())
+    files["tltlc.zip"] = _archive()
+    files.update({f"pyodide/{name}": (pyodide / name).read_bytes() for name in PYODIDE})
+    return files
+
+
+def _archive() -> bytes:
+    """The compiler and its libraries; the same bytes whenever they are the same."""
+    library = standard_library()
+    packed = {path.relative_to(PACKAGE.parent): path for path in PACKAGE.rglob("*") if _is_needed(path)}
+    packed.update({Path("tltlc/stdlib", path.name): path for path in library.glob("*.tltl")})
+    memory = io.BytesIO()
+    with ZipFile(memory, "w") as archive:
+        for name, path in sorted(packed.items()):
+            entry = ZipInfo(name.as_posix())
+            entry.compress_type = ZIP_DEFLATED
+            archive.writestr(entry, path.read_bytes())
+    return memory.getvalue()
+
+
+def _is_needed(path: Path) -> bool:
+    inside = path.relative_to(PACKAGE).as_posix()
+    return path.suffix in _ENDINGS and path.is_file() and not any(inside.startswith(f"{part}/") for part in _LEFT_OUT)

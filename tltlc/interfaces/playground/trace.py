@@ -1,0 +1,104 @@
+"""A trace that one clicks together: what each step makes of the spec, and traces to begin with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, Union
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.monitor import Monitor
+from tltlc.monitor.samples import MonitorError
+from tltlc.tools.witness.blocks import values
+from tltlc.tools.witness.samples import Realiser
+from tltlc.tools.witness.traces import Witness, accepting, rejecting
+from tltlc.tools.witness.transitions import Move, Moves
+
+Letter = Union[Sequence[str], Mapping[str, float]]
+"""A step of a trace: the names of the atoms that hold, or the values of the signals by name."""
+
+_MOST_WORK: Final = 200_000
+"""Steps that the search for an infinite trace may take."""
+_LONGEST: Final = 200
+"""Steps of a trace that is worth a table."""
+
+
+def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
+    """What the monitor says at each step; the first that it refuses has an ``error``, and is the last.
+
+    A letter names the atoms that hold, where names of no atom are left out, or gives the signals their values.
+    ``from`` is the state before the step, ``values`` those of the atoms in order, ``signals`` a sample of the letter,
+    or None where none was found.
+    """
+    monitor, realiser = Monitor(fspa), Realiser(fspa)
+    found: list[dict[str, Any]] = []
+    for letter in letters:
+        before = monitor.state
+        try:
+            if isinstance(letter, Mapping):
+                step = monitor.step(letter)
+                sample: object = {signal.name: float(letter[signal.name]) for signal in fspa.signals}
+            else:
+                step = monitor.step_atoms(values(fspa, frozenset(letter)))
+                sample = realiser.letter(frozenset(letter))
+        except MonitorError as error:
+            found.append({"error": error.diagnostics[0].title, "help": error.diagnostics[0].help})
+            break
+        found.append(
+            {
+                "from": before,
+                "state": step.state,
+                "label": fspa.states[step.state].label.english,
+                "verdict": step.verdict,
+                "accepting": step.accepting,
+                "done": step.done,
+                "progress": step.progress,
+                "reward": step.reward,
+                "limiting": step.limiting,
+                "values": list(monitor.values),
+                "signals": sample if isinstance(sample, dict) else None,
+            }
+        )
+    return found
+
+
+def idle(fspa: Fspa) -> dict[str, Any]:
+    """A step at which nothing happens, for a new row: it stays in the first state where that can be, with few atoms."""
+
+    def cost(prime: tuple[tuple[int, bool], ...]) -> int:
+        return sum(polarity for _, polarity in prime)
+
+    leaving = fspa.edges_from(0)
+    edge = min(leaving, key=lambda edge: (edge.target != 0, fspa.states[edge.target].verdict == "violated"))
+    realiser = Realiser(fspa)
+    primes = sorted(edge.guard.primes, key=cost)
+    for prime in primes:
+        sample = realiser.literals(prime)
+        if isinstance(sample, dict):
+            letter = realiser.letter_of(sample)
+            return {"atoms": _in_order(fspa, letter), "signals": sample}
+    return {"atoms": [fspa.atoms[atom].name for atom, polarity in primes[0] if polarity], "signals": None}
+
+
+def shortest(fspa: Fspa) -> dict[str, Any]:
+    """Shortest traces that succeed and that fail, None where none was found: ``{"succeed": …, "fail": …}``."""
+    moves = Moves(fspa)
+    try:
+        found = accepting(moves, _MOST_WORK), rejecting(moves, _MOST_WORK)
+    except OutOfWork:
+        found = None, None
+    return {"succeed": _letters(fspa, found[0]), "fail": _letters(fspa, found[1])}
+
+
+def _letters(fspa: Fspa, witness: Witness | None) -> list[dict[str, Any]] | None:
+    if witness is None or len(witness.moves) > _LONGEST:
+        return None
+    return [_letter(fspa, move) for move in witness.moves]
+
+
+def _letter(fspa: Fspa, move: Move) -> dict[str, Any]:
+    return {"atoms": _in_order(fspa, move.letter), "signals": dict(move.sample)}
+
+
+def _in_order(fspa: Fspa, letter: frozenset[str]) -> list[str]:
+    return [atom.name for atom in fspa.atoms if atom.name in letter]

@@ -1,0 +1,1 @@
+"""Files, limits and the project file: everything that touches the system."""

@@ -1,0 +1,119 @@
+"""Unpack archives: write files under paths that somebody else chose, and never outside the folder for them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Final
+from unicodedata import normalize
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import reason
+from tltlc.io.limits import UNPACKED_NAME, UNPACKED_PATH
+
+_IS_WINDOWS: Final = os.name == "nt"
+_DEVICES: Final = {
+    *("con", "prn", "aux", "nul", "conin$", "conout$"),
+    *(f"{port}{digit}" for port in ("com", "lpt") for digit in "0123456789¹²³"),
+}
+"""Names that mean devices on Windows, in small letters; an ending such as `.txt` changes nothing."""
+
+
+@record
+class Archive:
+    """What messages say about an archive.
+
+    ``name`` is what they call it. ``damaged`` is their help where somebody damaged it or made it by hand, ``elsewhere``
+    their help where it is sound, but this system cannot hold its files.
+    """
+
+    name: str
+    damaged: str
+    elsewhere: str
+
+
+def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -> None:
+    """Write files into a folder that exists, each at its path below it, with ``/`` between the parts.
+
+    Raises:
+        TltlError: TLT0009, a path leads out of the folder, is too long, or is no file's path on this system, or two
+            paths cannot both be there; TLT0005, the system refuses to write.
+    """
+    written: list[str] = []
+    for name, content in files:
+        path = inside(folder, name, archive)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            # Two entries of one name, or a file and a folder of one name, are no archive of ours.
+            with path.open("xb") as file:
+                file.write(content)
+        except (FileExistsError, NotADirectoryError, IsADirectoryError):
+            raise _two_entries(name, written, archive) from None
+        except (OSError, ValueError) as error:
+            title = f"cannot write `{name}` of {archive.name}: {reason(error)}"
+            raise TltlError([Diagnostic("TLT0005", title, help="check the space and the permissions")]) from None
+        written.append(name)
+
+
+def inside(folder: Path, name: str, archive: Archive) -> Path:
+    """The place of an archive's path below a folder; raises TltlError, TLT0009, if there is no such place."""
+    check_extent(name, archive)
+    parts = name.split("/")
+    if _IS_WINDOWS and any(map(_is_foreign, parts)):
+        raise _refused(f"{archive.name} holds the path `{name}`, which cannot be a file on Windows", archive.elsewhere)
+    is_plain = not any(part in ("", ".", "..") or "\0" in part for part in parts)
+    path = folder.joinpath(*parts) if is_plain else folder
+    if path == folder or not Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(folder)):
+        raise _refused(f"{archive.name} holds the path `{name}`, which leads out of its folder", archive.damaged)
+    return path
+
+
+def check_extent(name: str, archive: Archive) -> None:
+    """Raise TltlError, TLT0009, if a path has more bytes or parts than :data:`tltlc.io.limits.UNPACKED_PATH` allows.
+
+    So does a part that is longer than most file systems allow.
+    """
+    depth = UNPACKED_PATH.depth or 0
+    if len(name.encode(errors="surrogatepass")) > UNPACKED_PATH.size:
+        what = f"which is longer than {UNPACKED_PATH.size:,} bytes"
+    elif name.count("/") >= depth:
+        what = f"which has more than {depth} parts"
+    elif any(len(part.encode(errors="surrogatepass")) > UNPACKED_NAME.size for part in name.split("/")):
+        title = f"{archive.name} holds the path `{name}`, a part of which is longer than {UNPACKED_NAME.size} bytes"
+        raise _refused(title, "use a version of it in which that part has a shorter name")
+    else:
+        return
+    raise _refused(f"{archive.name} holds the path `{name}`, {what}", archive.damaged)
+
+
+def _is_foreign(part: str) -> bool:
+    """Whether Windows takes a part of a path for something else than the name of a file or folder."""
+    # Windows leaves out blanks and points at the end of a name.
+    has_odd_end = part not in (".", "..") and part.endswith((".", " "))
+    has_sign = any(character in '\\:*?"<>|' or character < " " for character in part)
+    return has_odd_end or has_sign or part.partition(".")[0].rstrip(" ").lower() in _DEVICES
+
+
+def _two_entries(name: str, written: Sequence[str], archive: Archive) -> TltlError:
+    """TLT0009: a path cannot be there beside those that have been written."""
+    other = next((other for other in written if _clash(_folded(name), _folded(other))), name)
+    if _clash(name, other):
+        return _refused(f"{archive.name} holds two entries for `{name}`", archive.damaged)
+    title = f"{archive.name} holds `{other}` and `{name}`, which the file system here takes for one path"
+    return _refused(title, archive.elsewhere)
+
+
+def _clash(name: str, other: str) -> bool:
+    """Whether two paths are the same, or one is a folder of the other."""
+    return f"{name}/".startswith(f"{other}/") or f"{other}/".startswith(f"{name}/")
+
+
+def _folded(name: str) -> str:
+    """The same text for all names that some file system takes for one."""
+    return normalize("NFC", normalize("NFD", name).casefold())
+
+
+def _refused(title: str, help_: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0009", title, help=help_)])

@@ -1,0 +1,112 @@
+"""A file that holds specs, as it is named and read: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, ``-``."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from errno import EBADF
+from typing import TYPE_CHECKING, Final
+
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.io.files import (
+    MAX_ARTEFACT_BYTES,
+    MAX_SOURCE_BYTES,
+    decode,
+    note_read,
+    note_stream,
+    read_bytes,
+    reading_error,
+)
+
+if TYPE_CHECKING:
+    from typing import BinaryIO
+
+STDIN: Final = "-"
+"""The path that stands for standard input."""
+
+ARTEFACT_ENDING: Final = ".json"
+
+STDIN_NAME: Final = "<stdin>"
+"""What standard input is called in messages; it can be named so, too."""
+
+_PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+
+
+def split(argument: str) -> tuple[str, str | None]:
+    """The path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
+    path, colon, name = argument.rpartition(":")
+    if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110
+        return argument, None
+    if len(path) == 1 and path.isalpha() and os.name == "nt":
+        return argument, None
+    return STDIN if path == STDIN_NAME else path, name
+
+
+def is_plain_name(text: str) -> bool:
+    """Whether a text can be the NAME of ``PATH:NAME``: a word of ASCII letters, digits and _."""
+    return bool(_PLAIN_NAME.match(text))
+
+
+def read(path: str) -> tuple[SourceFile, bool]:
+    """The text of a file or of standard input, and whether it is an artefact.
+
+    An artefact begins with a brace, as no source does. A file ``….json`` is one, too, even if it was cut off at its
+    first byte.
+
+    Errors: those of :func:`tltlc.io.files.read_source`.
+    """
+    name = STDIN_NAME if path == STDIN else path
+    try:
+        if path == STDIN:
+            stream = standard_input()
+            note_stream(stream)
+            return _read_stream(stream, STDIN_NAME)
+        note_read(path)
+        with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
+            return _read_stream(file, path)
+    except (OSError, ValueError) as error:
+        raise input_error(name, error) from None
+
+
+def read_text(path: str, max_bytes: int) -> SourceFile:
+    """The text of a file or of standard input; errors as of :func:`tltlc.io.files.read_source`."""
+    data, name = read_data(path, max_bytes)
+    return decode(data, name, max_bytes=max_bytes)
+
+
+def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
+    """The bytes of a file or of standard input, and what messages call it; errors as of :func:`read_bytes`."""
+    if path == STDIN:
+        try:
+            stream = standard_input()
+            note_stream(stream)
+            return stream.read(max_bytes + 1), STDIN_NAME
+        except OSError as error:
+            raise input_error(STDIN_NAME, error) from None
+    return read_bytes(path, path, max_bytes), path
+
+
+def standard_input() -> BinaryIO:
+    """Standard input, as bytes; error TLT0001 where it is closed."""
+    # A process may be started without one.
+    if sys.stdin is None:
+        raise input_error(STDIN_NAME, OSError(EBADF, "it is closed"))
+    return sys.stdin.buffer
+
+
+def input_error(name: str, error: OSError | ValueError) -> TltlError:
+    """TLT0001 for a file, or for standard input, that cannot be read."""
+    if name == STDIN_NAME and isinstance(error, OSError) and error.errno == EBADF:
+        help_ = "send it something, as in `tltlc check - < level.tltl`, or name a file"
+        return TltlError([Diagnostic("TLT0001", "cannot read standard input: it is closed", help=help_)])
+    return reading_error(name, error)
+
+
+def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:
+    data = stream.read(MAX_SOURCE_BYTES + 1)
+    if not name.endswith(ARTEFACT_ENDING) and not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+        return decode(data, name), False
+    data += stream.read(MAX_ARTEFACT_BYTES + 1 - len(data))
+    return decode(data, name, max_bytes=MAX_ARTEFACT_BYTES), True

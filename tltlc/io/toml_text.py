@@ -1,0 +1,119 @@
+"""Read TOML within the limits of :mod:`tltlc.io.limits`; what the standard reader says becomes a diagnostic."""
+
+from __future__ import annotations
+
+import re
+import sys
+from typing import Any, Final
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.io.limits import TOML, too_deep, too_many
+
+_PART: Final = r"(?:[A-Za-z0-9_-]+|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*')"
+_DOTTED: Final = rf"{_PART}(?:[ \t]*\.[ \t]*{_PART})*"
+_TOKEN: Final = re.compile(
+    r"(?P<long>\"\"\"(?:\\.|(?!\"\"\")[^\\])*\"{3,5}|'''(?:(?!''').)*'{3,5})"
+    r"|(?P<unclosed_long>\"\"\"|''')"
+    rf"|(?P<key>{_DOTTED})"
+    r"|(?P<unclosed>[\"'])|(?P<comment>#[^\n]*)|(?P<open>[\[{])|(?P<close>[\]}])|(?P<value>[,=])",
+    re.DOTALL,
+)
+
+_WHOLE_NUMBERS: Final = range(-(2**63), 2**63)
+_MANY_DIGITS: Final = re.compile(
+    r"(?<![\w.+-])(?:[+-]?[1-9](?:_?[0-9]){18,}|0x[0-9A-Fa-f](?:_?[0-9A-Fa-f]){15,}"
+    r"|0o[0-7](?:_?[0-7]){20,}|0b[01](?:_?[01]){62,})(?![\w.])"
+)
+"""Whole numbers that may have more than 64 bits."""
+_MOST_CHARACTERS: Final = 200
+"""Of a whole number with 64 bits, whatever its base, with signs that part its digits."""
+
+
+def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
+    """The values in a text.
+
+    Raises:
+        TltlError: ``code`` with ``help_``, it is no TOML; TLT0006, it nests deeper or holds more values than
+            :data:`tltlc.io.limits.TOML` allows.
+    """
+    _check_limits(source)
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    try:
+        table: dict[str, Any] = tomllib.loads(source.text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        message = str(error) or "it is nested too deeply"
+        raise TltlError([_syntax_error(source, message, code, help_)]) from None
+    except ValueError:
+        # Python refuses to read whole numbers of thousands of digits.
+        raise _too_large(source, code) from None
+    if not _fits(table):
+        raise _too_large(source, code)
+    return table
+
+
+def _fits(value: object) -> bool:
+    """Whether all whole numbers have 64 bits, as TOML has it; to make a float of a much larger one fails."""
+    if isinstance(value, dict):
+        return all(map(_fits, value.values()))
+    if isinstance(value, list):
+        return all(map(_fits, value))
+    return not isinstance(value, int) or value in _WHOLE_NUMBERS
+
+
+def _too_large(source: SourceFile, code: str) -> TltlError:
+    numbers = [match for match in _MANY_DIGITS.finditer(source.text) if not _is_whole_number(match[0])]
+    # One in a comment or a string looks the same: where there are several, none is named.
+    label = (Label(source, Span(*numbers[0].span()), "this whole number"),) if len(numbers) == 1 else ()
+    title = f"`{source.name}` is not TOML: a whole number is too large"
+    help_ = f"whole numbers end at {_WHOLE_NUMBERS[-1]:,}; write a larger number with an exponent, as in 1e20"
+    return TltlError([Diagnostic(code, title, label, help_)])
+
+
+def _is_whole_number(digits: str) -> bool:
+    return len(digits) <= _MOST_CHARACTERS and int(digits, 0) in _WHOLE_NUMBERS
+
+
+def _check_limits(source: SourceFile) -> None:
+    """Refuse what the standard reader, whose time and memory grow with the square of the nesting, should not see.
+
+    Each part of a dotted key and each open bracket is a level.
+    """
+    assert TOML.depth is not None
+    assert TOML.values is not None
+    depth = values = 0
+    for token in _TOKEN.finditer(source.text):
+        kind = token.lastgroup
+        if kind == "open":
+            depth += 1
+            values += 1
+        elif kind == "close":
+            depth = max(0, depth - 1)
+        elif kind == "value":
+            values += 1
+        elif kind in ("unclosed", "unclosed_long"):
+            # The standard reader stops there, too.
+            return
+        # A quoted part may hold points: count exactly where there are many.
+        is_long = kind == "key" and token[0].count(".") >= TOML.depth - depth
+        if depth + (len(re.findall(_PART, token[0])) if is_long else 0) > TOML.depth:
+            raise too_deep(source, TOML, Span(token.start(), min(token.end(), token.start() + 40)))
+        if values > TOML.values:
+            raise too_many(source, TOML, Span(token.start(), token.end()))
+
+
+def _syntax_error(source: SourceFile, message: str, code: str, help_: str) -> Diagnostic:
+    """The TOML reader's message; its place becomes a label."""
+    found = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
+    reason = message[: found.start()] if found else message
+    label = Label(source, Span(len(source.text), len(source.text)), reason[:1].lower() + reason[1:])
+    if found and found[1]:
+        end_of_line = 0
+        for _ in range(int(found[1]) - 1):
+            end_of_line = source.text.index("\n", end_of_line) + 1
+        start = min(end_of_line + int(found[2]) - 1, len(source.text))
+        label = Label(source, Span(start, min(start + 1, len(source.text))), label.message)
+    return Diagnostic(code, f"`{source.name}` is not TOML", (label,), help_)

@@ -1,0 +1,1 @@
+"""Formulas as text: three notations and English."""

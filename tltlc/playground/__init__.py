@@ -1,3 +1,0 @@
-"""A page on which one types a spec and sees what it means, from ``tltlc serve`` or in the browser alone."""
-
-from tltlc.playground.document import view as view

@@ -1,0 +1,64 @@
+"""Progress, reward and the end of an episode, of one step (Algorithm 1, the terminal penalty undiscounted)."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.program.states import PROGRESS
+from tltlc.program.tree import (
+    Any,
+    Assign,
+    Binary,
+    Compare,
+    Declare,
+    Expression,
+    If,
+    Int,
+    Real,
+    Statement,
+    Variable,
+)
+
+STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
+    *("steps", "steps_real", "best", "reward", "done", "ends", "violated", "satisfied"),
+)
+"""What the statements read: the number of this step, from 1, as an int and as a real; whether its state ends episodes
+on entry, violates or satisfies.  They read and assign the best progress so far and whether the episode is over, and
+assign the reward.
+"""
+BEFORE = "before"
+"""The best progress before this step."""
+
+
+def judged(fspa: Fspa) -> tuple[Statement, ...]:
+    """The statements that come after the transition."""
+    limit = fspa.limit_steps
+    steps, zero = Variable(STEPS), Real(0.0)
+    lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
+    lines.append(Declare(BEFORE, "real", Variable(BEST)))
+    lines.append(If(((Compare(">", Variable(PROGRESS), Variable(BEST)), (Assign(BEST, Variable(PROGRESS)),)),)))
+    gained = Binary("-", Variable(BEST), Variable(BEFORE))
+    if limit is None:
+        going_on: tuple[Statement, ...] = (Assign(REWARD, gained), Assign(DONE, Variable(ENDS)))
+    else:
+        whole = Real(float(limit))
+        left = Binary("/", Binary("-", whole, Variable(STEPS_REAL)), whole)
+        going_on = (
+            Assign(REWARD, Binary("-", gained, Real(1 / limit))),
+            If(((Variable(VIOLATED), (Assign(REWARD, Binary("-", Variable(REWARD), left)),)),)),
+            Assign(DONE, Any((Variable(ENDS), Compare(">=", steps, Int(limit))))),
+        )
+    lines.append(If(((Variable(DONE), (Assign(REWARD, zero),)),), going_on))
+    return tuple(lines)
+
+
+def _survived(limit: int | None) -> list[Statement]:
+    """The share of the limit that the spec has outlived; of no limit, 0 as long as anything can still happen."""
+    cases: list[tuple[Expression, tuple[Statement, ...]]] = [
+        (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),
+    ]
+    if limit is None:
+        return [Declare(PROGRESS, "real"), If(tuple(cases), (Assign(PROGRESS, Real(0.0)),))]
+    cases.append((Variable(VIOLATED), (Assign(PROGRESS, Real(0.0)),)))
+    cases.append((Compare(">=", Variable(STEPS), Int(limit)), (Assign(PROGRESS, Real(1.0)),)))
+    share = Binary("/", Variable(STEPS_REAL), Real(float(limit)))
+    return [Declare(PROGRESS, "real"), If(tuple(cases), (Assign(PROGRESS, share),))]

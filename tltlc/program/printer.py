@@ -1,0 +1,191 @@
+"""The text of a program, in the manner of C; each language says what it does otherwise."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from textwrap import wrap
+from typing import ClassVar
+
+from tltlc.program.names import visible
+from tltlc.program.tree import (
+    All,
+    Any,
+    Assign,
+    Binary,
+    Bool,
+    Call,
+    Comment,
+    Compare,
+    Declare,
+    Expression,
+    If,
+    Int,
+    Negate,
+    Not,
+    Real,
+    Statement,
+    Type,
+    Variable,
+)
+
+_OR, _AND, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(7)
+"""How tightly a text binds, loosest first."""
+
+_BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
+_LONGEST_COMMENT = 100
+_LONGEST_LIST = 60
+_LONGEST_ROW = 97
+_SHORT = 12
+"""Of items below that, several stand on a line."""
+
+
+class Printer:
+    """Prints statements and expressions, without knowing what they are for.
+
+    A language has a class of its own that says how its words differ.
+    """
+
+    INDENT: ClassVar[str] = "    "
+    COMMENT: ClassVar[str] = "//"
+    """What begins a remark."""
+    TYPES: ClassVar[dict[Type, str]] = {"real": "double", "int": "int", "bool": "bool"}
+    WORDS: ClassVar[dict[str, str]] = {"and": "&&", "or": "||", "not": "!", "true": "true", "false": "false"}
+    END: ClassVar[str] = ";"
+    """What ends a statement."""
+
+    # --- statements -------------------------------------------------------------------------------
+
+    def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
+        """The lines of statements that are nested so deep."""
+        found: list[str] = []
+        for statement in statements:
+            if isinstance(statement, If):
+                found += self.branches(statement, depth)
+                continue
+            indent = self.INDENT * depth
+            if isinstance(statement, Comment):
+                found += [f"{indent}{line}" for line in self.comment(statement.text)]
+            elif isinstance(statement, Declare):
+                found.append(f"{indent}{self.declaration(statement)}")
+            else:
+                found.append(f"{indent}{self.assignment(statement)}")
+        return found
+
+    def declaration(self, statement: Declare) -> str:
+        """A declaration, with or without a value."""
+        value = "" if statement.value is None else f" = {self.text(statement.value)}"
+        return f"{self.TYPES[statement.type]} {statement.name}{value}{self.END}"
+
+    def assignment(self, statement: Assign) -> str:
+        """An assignment."""
+        return f"{self.name(statement.name)} = {self.text(statement.value)}{self.END}"
+
+    def branches(self, statement: If, depth: int) -> list[str]:
+        """A branch: its cases, and what is done otherwise."""
+        indent = self.INDENT * depth
+        found: list[str] = []
+        for place, (test, body) in enumerate(statement.cases):
+            found.append(f"{indent}{self.head(self.text(test), first=not place)}")
+            found += self.lines(body, depth + 1) or self.nothing(depth + 1)
+        if statement.otherwise:
+            found.append(f"{indent}{self.otherwise()}")
+            found += self.lines(statement.otherwise, depth + 1)
+        return [*found, *(f"{indent}{line}" for line in self.closing())]
+
+    def head(self, test: str, *, first: bool) -> str:
+        """The line that begins a case."""
+        return f"if ({test}) {{" if first else f"}} else if ({test}) {{"
+
+    def otherwise(self) -> str:
+        """The line that begins what is done where no test holds."""
+        return "} else {"
+
+    def closing(self) -> list[str]:
+        """What ends a branch."""
+        return ["}"]
+
+    def nothing(self, depth: int) -> list[str]:
+        """A body without statements."""
+        return []
+
+    def comment(self, text: str) -> list[str]:
+        """A remark, on as many lines as it takes."""
+        return [f"{self.COMMENT} {line}" for line in remark(text)]
+
+    # --- pieces of files --------------------------------------------------------------------------
+
+    @classmethod
+    def block(cls, lines: Iterable[str], depth: int = 1) -> str:
+        """Lines that are nested so deep."""
+        return "\n".join(f"{cls.INDENT * depth}{line}" if line else "" for line in lines)
+
+    @classmethod
+    def items(cls, items: Sequence[str], depth: int = 0) -> str:
+        """What stands between the brackets of a list: one line where it is short, else lines that nest deeper."""
+        line = ", ".join(items)
+        if len(line) <= _LONGEST_LIST:
+            return line
+        rows: list[str] = []
+        short = max(map(len, items)) < _SHORT
+        for item in items:
+            if rows and short and len(rows[-1]) + len(item) < _LONGEST_ROW:
+                rows[-1] += f" {item},"
+            else:
+                rows.append(f"{item},")
+        return f"\n{cls.block(rows, depth + 1)}\n{cls.INDENT * depth}"
+
+    # --- expressions ------------------------------------------------------------------------------
+
+    def text(self, node: Expression, room: int = _OR) -> str:
+        """An expression, in brackets where it binds more loosely than ``room``."""
+        text, binding = self._written(node)
+        return text if binding >= room else f"({text})"
+
+    def name(self, name: str) -> str:
+        """A variable, where it is read or assigned."""
+        return name
+
+    def real(self, value: float) -> str:
+        """A number that is not negative."""
+        return repr(value)
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """A call of a function of numbers."""
+        return f"{function}({', '.join(arguments)})"
+
+    def _written(self, node: Expression) -> tuple[str, int]:
+        """The text and how tightly it binds."""
+        match node:
+            case Real(value):
+                # The sign of -0 counts, too.
+                return (f"-{self.real(-value)}", _SIGN) if repr(value)[0] == "-" else (self.real(value), _UNIT)
+            case Int(value):
+                return str(value), _SIGN if value < 0 else _UNIT
+            case Bool(value):
+                return self.WORDS["true" if value else "false"], _UNIT
+            case Variable(name):
+                return self.name(name), _UNIT
+            case Negate(operand):
+                return f"-{self.text(operand, _UNIT)}", _SIGN
+            case Binary(op, left, right):
+                binding = _BINDING[op]
+                return f"{self.text(left, binding)} {op} {self.text(right, binding + 1)}", binding
+            case Call(function, args):
+                return self.call(function, [self.text(argument) for argument in args]), _UNIT
+            case Compare(op, left, right):
+                return f"{self.text(left, _SUM)} {op} {self.text(right, _SUM)}", _COMPARISON
+            case Not(operand):
+                return f"{self.WORDS['not']}{self.text(operand, _UNIT)}", _SIGN
+            case All(args) | Any(args):
+                binding = _AND if isinstance(node, All) else _OR
+                word = self.WORDS["and" if isinstance(node, All) else "or"]
+                # Compilers warn of `a && b || c` without brackets.
+                return f" {word} ".join(self.text(argument, _COMPARISON) for argument in args), binding
+        raise TypeError(f"no expression: {node!r}")
+
+
+def remark(text: str) -> list[str]:
+    """A text as lines for comments, in visible characters; no line ends in a backslash, which would join the next."""
+    lines = wrap(visible(text), _LONGEST_COMMENT, break_long_words=False, break_on_hyphens=False)
+    return [re.sub(r"\\$", r"\\ .", line) for line in lines]

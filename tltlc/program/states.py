@@ -1,0 +1,154 @@
+"""What a monitor does in each state: from the values of the atoms to the edge that is taken, and what it means."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
+from typing import Final
+
+from tltlc.automaton.fspa import Edge, Guard, Implicant
+from tltlc.monitor.tables import Tables
+from tltlc.program.clauses import shorter
+from tltlc.program.tree import (
+    All,
+    Any,
+    Assign,
+    Binary,
+    Bool,
+    Call,
+    Comment,
+    Compare,
+    Declare,
+    Expression,
+    If,
+    Int,
+    Negate,
+    Real,
+    Statement,
+    Variable,
+)
+from tltlc.program.uses import read
+
+TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "limiting"
+"""What the statements of a state assign: the next state, the robustness of the edge taken, the progress of the step
+alone, and the place of the limiting atom, -1 for none.
+"""
+NEAREST, OTHER = "nearest", "other"
+_ZERO: Final = Real(0.0)
+
+
+def of_state(tables: Tables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
+    """The statements of a state; ``atoms`` are the variables of their values."""
+    return _State(tables, state, atoms).statements()
+
+
+class _State:
+    def __init__(self, tables: Tables, state: int, atoms: Sequence[str]) -> None:
+        self._tables, self._state, self._atoms = tables, state, atoms
+        self._at_goal = tables.fspa.judge == "goal"
+
+    def statements(self) -> tuple[Statement, ...]:
+        """A case for each edge; of the guards one is true, so that the longest needs no test."""
+        edges = sorted(self._tables.edges[self._state], key=lambda edge: (_size(edge.guard), edge.target))
+        *tested, last = edges
+        if not tested:
+            return self._taken(last)
+        cases = tuple((self._truth(edge.guard), self._taken(edge)) for edge in tested)
+        return (If(cases, self._taken(last)),)
+
+    def _taken(self, edge: Edge) -> tuple[Statement, ...]:
+        """What taking an edge means."""
+        improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
+        lines: list[Statement] = [Comment(edge.guard.text), Assign(TARGET, Int(edge.target))]
+        lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
+        base = Real(self._tables.base_progress[edge.target])
+        if not improving:
+            return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
+        # All of them are false, so that what is above 0 bounds none.
+        above = [literal for literal in _shared(edge.guard.primes) if literal[1]]
+        primes = [prime for other in improving for prime in other.guard.primes]
+        lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
+        # A guard that is false has no robustness above 0, so there is nothing to cap.
+        share = Binary("/", Binary("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size)))
+        return (*lines, *self._progress(Binary("+", base, share) if base.value else share))
+
+    def _progress(self, value: Expression) -> list[Statement]:
+        """Where a spec is judged at its limit, progress has nothing to do with edges."""
+        return [Assign(PROGRESS, value)] if self._at_goal else []
+
+    def _truth(self, guard: Guard) -> Expression:
+        tests: list[Expression] = []
+        for prime in guard.primes:
+            literals = [
+                Compare(">" if polarity else "<=", Variable(self._atoms[atom]), _ZERO) for atom, polarity in prime
+            ]
+            tests.append(Bool(True) if not literals else literals[0] if len(literals) == 1 else All(tuple(literals)))
+        return tests[0] if len(tests) == 1 else Any(tuple(tests))
+
+    def _robustness(self, primes: Sequence[Implicant]) -> Expression:
+        """The greatest of the primes' least literals, or what is the same with fewer literals, but for -0.
+
+        Literals that all primes share are taken out.
+        """
+        shared = _shared(primes)
+        rest = [[literal for literal in prime if literal not in shared] for prime in primes]
+        terms = [self._value(*literal) for literal in shared]
+        if not all(rest):
+            return _fold("min", terms)
+        clauses = shorter(rest)
+        if clauses is None:
+            return _fold("min", [*terms, _fold("max", [self._least(prime) for prime in rest])])
+        return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
+
+    def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
+        """The most robust of the primes, the first of equals, and the first atom that bounds it."""
+        first, *others = primes
+        lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(others))]
+        lines += self._bounding(first, NEAREST)
+        if others:
+            lines.append(Declare(OTHER, "real", self._least(others[0]), changes=len(others) > 1))
+        for place, prime in enumerate(others):
+            if place:
+                lines.append(Assign(OTHER, self._least(prime)))
+            better = (Assign(NEAREST, Variable(OTHER)), *self._bounding(prime, OTHER))
+            lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))
+        # One atom alone is the limiting one, whatever its value.
+        return lines if self._at_goal or NEAREST in read(lines) else lines[1:]
+
+    def _bounding(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
+        """The first atom of the prime whose literal has that value."""
+        *before, (last, _) = prime
+        otherwise = Assign(LIMITING, Int(last))
+        if not before:
+            return [otherwise]
+        cases = [
+            (Compare("==", self._value(atom, polarity), Variable(value)), (Assign(LIMITING, Int(atom)),))
+            for atom, polarity in before
+        ]
+        return [If(tuple(cases), (otherwise,))]
+
+    def _least(self, prime: Sequence[tuple[int, bool]]) -> Expression:
+        return _fold("min", [self._value(*literal) for literal in prime])
+
+    def _greatest(self, clause: Sequence[tuple[int, bool]]) -> Expression:
+        return _fold("max", [self._value(*literal) for literal in clause])
+
+    def _value(self, atom: int, polarity: bool) -> Expression:
+        value = Variable(self._atoms[atom])
+        return value if polarity else Negate(value)
+
+
+def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
+    """The literals that stand in all of the primes."""
+    return [literal for literal in primes[0] if all(literal in prime for prime in primes)]
+
+
+def _size(guard: Guard) -> int:
+    return sum(map(len, guard.primes))
+
+
+def _fold(function: str, terms: Sequence[Expression]) -> Expression:
+    """``min`` or ``max`` of several; of no literals, ``min`` is 1."""
+    if not terms:
+        return Real(1.0)
+    return reduce(lambda left, right: Call("min" if function == "min" else "max", (left, right)), terms)

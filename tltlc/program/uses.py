@@ -1,0 +1,63 @@
+"""What statements use, for languages whose compilers warn of what is not used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from tltlc.program.tree import (
+    All,
+    Any,
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Declare,
+    Expression,
+    Function,
+    If,
+    Negate,
+    Not,
+    Statement,
+    Variable,
+)
+
+
+def read(statements: Iterable[Statement]) -> frozenset[str]:
+    """The variables that are read."""
+    return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, Variable))
+
+
+def called(statements: Iterable[Statement]) -> frozenset[Function]:
+    """The functions that are called."""
+    return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, Call))
+
+
+def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
+    """Every expression and part of one; a stack, since predicates may nest deeply."""
+    stack = list(expressions)
+    while stack:
+        node = stack.pop()
+        yield node
+        match node:
+            case Binary(_, left, right) | Compare(_, left, right):
+                stack += (left, right)
+            case Call(_, args) | All(args) | Any(args):
+                stack += args
+            case Negate(operand) | Not(operand):
+                stack.append(operand)
+
+
+def _values(statements: Iterable[Statement]) -> Iterator[Expression]:
+    """The expressions that stand in statements, also in branches."""
+    for statement in statements:
+        match statement:
+            case Declare(_, _, value):
+                if value is not None:
+                    yield value
+            case Assign(_, value):
+                yield value
+            case If(cases, otherwise):
+                for test, body in cases:
+                    yield test
+                    yield from _values(body)
+                yield from _values(otherwise)

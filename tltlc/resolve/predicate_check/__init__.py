@@ -1,5 +1,0 @@
-"""Checks of predicates: range and continuity, proved, wrong at a point, or unproved."""
-
-from tltlc.resolve.predicate_check.check import Finding, check_predicate
-
-__all__ = ["Finding", "check_predicate"]

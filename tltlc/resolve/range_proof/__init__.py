@@ -1,0 +1,5 @@
+"""Checks of predicates: range and continuity, proved, wrong at a point, or unproved."""
+
+from tltlc.resolve.range_proof.check import Finding, check_predicate
+
+__all__ = ["Finding", "check_predicate"]

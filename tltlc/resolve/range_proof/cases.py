@@ -1,0 +1,199 @@
+"""Splits an expression with ``when`` into cases, each an expression without ``when`` under constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+from tltlc.core.record import record
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
+from tltlc.resolve.range_proof.work import spend
+
+LARGEST_NUMBER_OF_CASES = 64
+MOST_MEETING_CASES = 24
+"""Of a `when` whose continuity is checked; their pairs count."""
+
+
+class TooManyCasesError(Exception):
+    """The expression splits into more cases than are worth checking."""
+
+
+@record
+class Constraint:
+    """``difference >= 0``, or ``difference > 0`` where strict."""
+
+    difference: Expression
+    strict: bool
+
+
+Constraints = tuple[Constraint, ...]
+
+
+@record
+class Case:
+    """Where all constraints hold, the whole expression has the value of ``value``."""
+
+    constraints: Constraints
+    value: Expression
+
+
+def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[Case, ...]:
+    """The cases of an expression, in order; together they cover every point.
+
+    ``split_extremes`` also splits min, max, abs and clamp.  Raises TooManyCasesError.
+    """
+    result: list[Case] = []
+    for case in _expand(expression, (), split_extremes):
+        result.append(case)
+        if len(result) > LARGEST_NUMBER_OF_CASES:
+            raise TooManyCasesError
+    return tuple(result)
+
+
+def condition_operands(expression: Expression) -> tuple[Case, ...]:
+    """What the ``when`` conditions compare, each under the constraints that hold when it is evaluated."""
+    result: list[Case] = []
+    _collect_operands(expression, (), result)
+    return tuple(result)
+
+
+def whens(expression: Expression) -> Iterator[When]:
+    """The ``when`` expressions that are not inside another one."""
+    if isinstance(expression, When):
+        yield expression
+    elif isinstance(expression, Op):
+        for arg in expression.args:
+            yield from whens(arg)
+
+
+def size(expression: Expression, most: int) -> int:
+    """The number of nodes, counted only as far as just past ``most``."""
+    return sum(1 for _ in islice(nodes(expression), most + 1))
+
+
+def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
+    """The signals and params that an expression reads, in order of appearance."""
+    found = list(nodes(expression))
+    spend(1 + len(found) // 10)
+    return dict.fromkeys(node for node in found if isinstance(node, (Signal, Param)))
+
+
+def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iterator[Case]:
+    spend()
+    if isinstance(expression, When):
+        remaining: list[Constraints] = [before]
+        for condition, value in expression.cases:
+            for path in remaining:
+                for taken in _where(condition, True, path, extremes):
+                    yield from _expand(value, taken, extremes)
+            remaining = [left for path in remaining for left in _where(condition, False, path, extremes)]
+            if len(remaining) > LARGEST_NUMBER_OF_CASES:
+                raise TooManyCasesError
+        for path in remaining:
+            yield from _expand(expression.otherwise, path, extremes)
+    elif isinstance(expression, Op):
+        for constraints, args in _expand_all(expression.args, before, extremes):
+            if extremes and expression.op in ("min", "max", "abs", "clamp"):
+                yield from _split_extreme(expression.op, args, constraints)
+            else:
+                yield Case(constraints, expression if args == expression.args else Op(expression.op, args))
+    else:
+        yield Case(before, expression)
+
+
+def _expand_all(
+    args: tuple[Expression, ...], before: Constraints, extremes: bool
+) -> Iterator[tuple[Constraints, tuple[Expression, ...]]]:
+    if not args:
+        yield before, ()
+        return
+    for first in _expand(args[0], before, extremes):
+        for constraints, rest in _expand_all(args[1:], first.constraints, extremes):
+            yield constraints, (first.value, *rest)
+
+
+def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -> Iterator[Case]:
+    if op == "abs":
+        yield Case((*before, Constraint(args[0], False)), args[0])
+        yield Case((*before, Constraint(Op("neg", args), True)), Op("neg", args))
+    elif op == "clamp":
+        value, low, high = args
+        for inner in _split_extreme("max", (value, low), before):
+            yield from _split_extreme("min", (inner.value, high), inner.constraints)
+    else:
+        for chosen in args:
+            others = [other for other in args if other != chosen]
+            pairs = [(other, chosen) if op == "min" else (chosen, other) for other in others]
+            yield Case((*before, *(Constraint(Op("-", pair), False) for pair in pairs)), chosen)
+
+
+def _where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
+    """The ways in which a condition is true (or false), as constraints added to ``before``."""
+    spend()
+    if condition.op == "not":
+        yield from _where(_condition(condition.args[0]), not truth, before, extremes)
+    elif condition.op in ("and", "or"):
+        if (condition.op == "and") == truth:
+            paths = [before]
+            for arg in condition.args:
+                paths = [way for path in paths for way in _where(_condition(arg), truth, path, extremes)]
+                if len(paths) > LARGEST_NUMBER_OF_CASES:
+                    raise TooManyCasesError
+            yield from paths
+        else:
+            for arg in condition.args:
+                yield from _where(_condition(arg), truth, before, extremes)
+    else:
+        left, right = (_expression(arg) for arg in condition.args)
+        for constraints, (a, b) in _expand_all((left, right), before, extremes):
+            below = (condition.op in ("<", "<=")) == truth
+            strict = (condition.op in ("<", ">")) == truth
+            yield (*constraints, Constraint(_difference(b, a) if below else _difference(a, b), strict))
+
+
+def _difference(a: Expression, b: Expression) -> Expression:
+    return a if b == Const(0.0) else Op("-", (a, b))
+
+
+def _collect_operands(node: Expression, before: Constraints, result: list[Case]) -> None:
+    spend()
+    if isinstance(node, Op):
+        for arg in node.args:
+            _collect_operands(arg, before, result)
+    elif isinstance(node, When):
+        remaining: list[Constraints] = [before]
+        for condition, value in node.cases:
+            for path in remaining:
+                _collect_condition(condition, path, result)
+                for taken in _where(condition, True, path, False):
+                    _collect_operands(value, taken, result)
+            remaining = [left for path in remaining for left in _where(condition, False, path, False)]
+            if len(result) + len(remaining) > LARGEST_NUMBER_OF_CASES:
+                raise TooManyCasesError
+        for path in remaining:
+            _collect_operands(node.otherwise, path, result)
+
+
+def _collect_condition(condition: Condition, before: Constraints, result: list[Case]) -> None:
+    paths = [before]
+    for arg in condition.args:
+        for path in paths:
+            if isinstance(arg, Condition):
+                _collect_condition(arg, path, result)
+            elif not isinstance(arg, (Const, Signal, Param)):
+                _collect_operands(arg, path, result)
+                result.extend(_expand(arg, path, False))
+        if (
+            isinstance(arg, Condition) and condition.op != "not"
+        ):  # the next one is only looked at if this leaves it open
+            paths = [way for path in paths for way in _where(arg, condition.op == "and", path, False)]
+
+
+def _condition(arg: Expression | Condition) -> Condition:
+    assert isinstance(arg, Condition)
+    return arg
+
+
+def _expression(arg: Expression | Condition) -> Expression:
+    assert not isinstance(arg, Condition)
+    return arg

@@ -1,0 +1,98 @@
+"""Is a value continuous in its signals where one ``when`` case meets another?
+
+A value is continuous if each ``when`` in it is.  For fixed params, two cases of a ``when`` meet at most
+where all their constraints hold with ``>`` read as ``>=``.  If both values agree there, for every pair of
+cases, the ``when`` is continuous.  Bool signals only take two values and are treated like params.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from math import inf
+
+from tltlc.core.record import record
+from tltlc.expression.tree import Expression, Op, Signal
+from tltlc.resolve.range_proof.cases import MOST_MEETING_CASES, Case, Constraint, TooManyCasesError, variables
+from tltlc.resolve.range_proof.interval import UndefinedError
+from tltlc.resolve.range_proof.proof import Task, holds_at_once, proves_defined, proves_within
+from tltlc.resolve.range_proof.region import Region, Variable
+
+_PARTS = 30
+
+
+@record
+class Meeting:
+    """Two cases and the region that contains every point where they meet."""
+
+    first: Case
+    second: Case
+    constraints: tuple[Constraint, ...]
+    region: Region
+
+
+def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable]) -> Iterator[Meeting]:
+    """The pairs of cases with different values that may meet.  Raises TooManyCasesError."""
+    if len(all_cases) > MOST_MEETING_CASES:
+        raise TooManyCasesError
+    for first, second in combinations(all_cases, 2):
+        if first.value == second.value:
+            continue
+        constraints = tuple(
+            _closed(constraint, bools)
+            for constraint in dict.fromkeys((*first.constraints, *second.constraints))
+            if holds_at_once(constraint.difference, whole, -inf, inf)  # else its border may not show where it ends
+        )
+        region = whole.where(constraints)
+        if region is not None:
+            yield Meeting(first, second, constraints, region)
+
+
+def proves_agreement(meeting: Meeting) -> bool:
+    """True if both values are defined and equal wherever the two cases meet."""
+    difference = Op("-", (meeting.first.value, meeting.second.value))
+    if holds_at_once(difference, meeting.region, 0.0, 0.0):
+        return True
+    if not proves_defined(difference, meeting.region, _PARTS):
+        return False
+    if _same_after_substitution(difference, meeting.region):
+        return True
+    return proves_within(difference, meeting.region, 0.0, 0.0, _PARTS)
+
+
+def agreement(meeting: Meeting) -> Task:
+    """What is to be proved where two cases meet."""
+    difference = Op("-", (meeting.first.value, meeting.second.value))
+    return Task(difference, meeting.constraints, 0.0, 0.0)
+
+
+def _closed(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
+    """The constraint on the border: ``>=`` if a signal can come arbitrarily near to it."""
+    if any(isinstance(v, Signal) and v not in bools for v in variables(constraint.difference)):
+        return Constraint(constraint.difference, False)
+    return constraint
+
+
+def _same_after_substitution(difference: Expression, region: Region) -> bool:
+    """True if the difference is zero once each equation that holds on the region is solved and put in."""
+    from tltlc.resolve.range_proof import normal_form as nf
+
+    try:
+        form = nf.quotient(difference)
+        numerator, denominator = form.numerator, form.denominator
+        equations = [nf.quotient(e).numerator for e, known in region.known.items() if known == (0.0, 0.0)]
+        equations += [
+            nf.add(nf.quotient(variable).numerator, nf.constant(nf.exact(side[0])), -1)
+            for variable, side in region.box.items()
+            if side[0] == side[1]
+        ]
+        while equations:
+            solved = nf.solved(equations.pop())
+            if solved is not None:
+                factor, by = solved
+                numerator, denominator, *equations = (
+                    nf.substitute(polynomial, factor, by) for polynomial in (numerator, denominator, *equations)
+                )
+        return not numerator and bool(denominator)
+    except (nf.TooLargeError, UndefinedError):
+        return False

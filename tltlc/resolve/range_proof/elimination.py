@@ -1,0 +1,279 @@
+"""Shows that a quotient of polynomials is never negative, by eliminating one variable after the other.
+
+On a closed region, for fixed other variables, the least value of a continuous ``f`` over one variable
+lies where ``df = 0``, at a root of a constraint, at an end of its range, or in the limit at an open end.
+Putting each of these candidates in leaves functions of the other variables, which must not be negative
+either.  Work is counted: an answer comes within a bounded number of steps on terms of bounded size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import comb, inf, isfinite
+from typing import Any
+
+import sympy
+
+from tltlc.expression.tree import Const, Expression, Op, Signal
+from tltlc.resolve.range_proof.cases import Constraint
+from tltlc.resolve.range_proof.interval import Interval, UndefinedError
+from tltlc.resolve.range_proof.proof import TOLERANCE, proves_within
+from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.work import spend
+
+LARGEST_DEGREE = 8
+
+_MOST_STEPS = 120
+_MOST_OPERATIONS = 150
+_MOST_TERMS = 3000
+_PARTS = 10
+_SURELY_POSITIVE = 1e-12
+_STEPS_OF_SYMPY = 300
+"""What a call of sympy counts as at least."""
+
+Term = Any  # a sympy expression: sympy brings no types
+Ranges = Mapping[Term, Interval]
+
+
+class GiveUpError(Exception):
+    """The question is outside of what is treated here, or needs too much work."""
+
+
+class Prover:
+    """Answers questions until the steps allowed for all of them are used up; raises GiveUpError then."""
+
+    def __init__(self) -> None:
+        self.steps = 0
+
+    def never_negative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
+        """True if f is >= 0 (> 0 where strict) at all points of the ranges where each limit is >= 0.
+
+        Limits are terms; every symbol has its range.  False means: not shown.
+        """
+        self.steps += 1
+        if self.steps > _MOST_STEPS:
+            raise GiveUpError
+        spend(5 * _STEPS_OF_SYMPY)
+        f = _simplified(f)
+        limits = [_simplified(limit) for limit in limits]
+        if any(limit.is_number and _number(limit) < -TOLERANCE for limit in limits):
+            return True
+        if f.is_number:
+            return _number(f) > _SURELY_POSITIVE if strict else _number(f) >= -TOLERANCE
+        limits = [limit for limit in limits if not limit.is_number]
+        region = _region(limits, ranges)
+        if region is None or _proves_at_once(f, region, strict):
+            return True
+        for divisor in sympy.Mul.make_args(sympy.fraction(f)[1]):
+            base = divisor.as_base_exp()[0]
+            if not (base.is_number or self._has_one_sign(base, limits, ranges)):
+                raise GiveUpError
+        return self._by_elimination(f, limits, {**ranges, **_sides(region)}, strict)
+
+    def _by_elimination(self, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
+        """Tries the variables in turn, those of the lowest degree first."""
+
+        def degree(x: Term) -> tuple[int, str]:
+            return max(_degree(term, x) for term in (f, *limits)), x.name
+
+        for x in sorted(f.free_symbols, key=degree):
+            try:
+                return self._without(x, f, limits, ranges, strict)
+            except (GiveUpError, sympy.PolynomialError, NotImplementedError):
+                if self.steps > _MOST_STEPS:
+                    raise
+        raise GiveUpError
+
+    def _has_one_sign(self, f: Term, limits: Sequence[Term], ranges: Ranges) -> bool:
+        return any(self.never_negative(term, limits, ranges, strict=True) for term in (f, -f))
+
+    def _without(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
+        """The same question with each candidate for the least value over x put in."""
+        if _degree(f, x) > LARGEST_DEGREE:
+            raise GiveUpError
+        rest = {symbol: side for symbol, side in ranges.items() if symbol != x}
+        free = [limit for limit in limits if x not in limit.free_symbols]
+        bound_to_x = [limit for limit in limits if x in limit.free_symbols]
+        ends = [sympy.Rational(repr(end)) for end in ranges[x] if isfinite(end)]
+        solvable = [limit for limit in bound_to_x if _is_solvable(limit, x)]
+        if len(solvable) < len(bound_to_x):  # a proof on a larger region will do
+            return self.never_negative(f, [*free, *solvable], ranges, strict=strict)
+        borders = [root for limit in bound_to_x for root in _border_roots(limit, x)]
+        numerator = sympy.fraction(_simplified(sympy.diff(f, x)))[0]
+        polynomial = sympy.Poly(numerator, x)
+        factors = [sympy.Poly(factor, x) for factor, _ in sympy.factor_list(polynomial.as_expr())[1]]
+        # A factor of degree 1 whose leading coefficient vanishes has no root, or f is constant and has an end.
+        for part in factors:
+            may_lose_roots = part.degree() > 1 or not ends
+            if may_lose_roots and not self._holds_where_zero(part.LC(), f, limits, ranges, strict):
+                return False
+        for candidate in dict.fromkeys([*ends, *borders, *(root for part in factors for root in _roots(part))]):
+            inside = [limit.subs(x, candidate) for limit in (*bound_to_x, *_within(x, ranges[x]))]
+            there = [*_real_where(candidate), *free, *inside]
+            if not self.never_negative(f.subs(x, candidate), there, rest, strict=strict):
+                return False
+        return all(
+            self._holds_at_infinity(x, sign, f, free, limits, ranges, strict)
+            for sign, end in zip((-1, 1), ranges[x], strict=True)
+            if not isfinite(end)
+        )
+
+    def _holds_at_infinity(
+        self, x: Term, sign: int, f: Term, free: Sequence[Term], limits: Sequence[Term], ranges: Ranges, strict: bool
+    ) -> bool:
+        above, below = (sympy.Poly(part, x) for part in sympy.fraction(f))
+        for leading in (above.LC(), below.LC()):
+            if not self._holds_where_zero(leading, f, limits, ranges, strict):
+                return False
+        rest = {symbol: side for symbol, side in ranges.items() if symbol != x}
+        excess = above.degree() - below.degree()
+        if excess < 0:
+            return not strict
+        limit = above.LC() / below.LC() if excess == 0 else above.LC() * below.LC() * sign**excess
+        return self.never_negative(limit, free, rest, strict=strict and excess == 0)
+
+    def _holds_where_zero(self, leading: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
+        """The question where a leading coefficient vanishes, as general roots and limits leave that out."""
+        if leading.is_number:
+            return True
+        region = _region(limits, ranges)
+        if region is None:
+            return True
+        for factor, _ in sympy.factor_list(leading)[1]:
+            low, high = _bound(factor, region)
+            if low > 0 or high < 0:
+                continue
+            y = min(factor.free_symbols, key=lambda symbol: (_degree(factor, symbol), symbol.name))
+            if _degree(factor, y) > 1:
+                raise GiveUpError
+            if not self._holds_where_zero(sympy.Poly(factor, y).LC(), f, limits, ranges, strict):
+                return False
+            (root,) = _border_roots(factor, y)
+            there = [limit.subs(y, root) for limit in (*limits, *_within(y, ranges[y]))]
+            rest = {symbol: bounds for symbol, bounds in ranges.items() if symbol != y}
+            if not self.never_negative(f.subs(y, root), there, rest, strict=strict):
+                return False
+        return True
+
+
+def _roots(factor: Any) -> Iterator[Term]:
+    """The roots of a polynomial: exact for degrees up to 2, else only with number coefficients."""
+    if factor.degree() in (1, 2):
+        yield from sympy.roots(factor, multiple=True)
+    elif factor.degree() > 2:
+        if factor.free_symbols_in_domain:
+            raise GiveUpError
+        yield from (sympy.Rational(str(root.evalf(30))) for root in sympy.real_roots(factor))
+
+
+def _is_solvable(limit: Term, x: Term) -> bool:
+    above, below = sympy.fraction(limit)
+    if x in below.free_symbols or not above.is_polynomial(x):
+        return False
+    polynomial = sympy.Poly(above, x)
+    return polynomial.degree() == 1 or (polynomial.degree() == 2 and bool(polynomial.LC().is_number))
+
+
+def _border_roots(limit: Term, x: Term) -> list[Term]:
+    """Where a solvable constraint on x begins or ends to hold."""
+    return list(sympy.roots(sympy.Poly(sympy.fraction(limit)[0], x), multiple=True))
+
+
+def _within(x: Term, side: Interval) -> list[Term]:
+    """What is >= 0 in the range of x."""
+    low, high = side
+    lower = [x - sympy.Rational(repr(low))] if isfinite(low) else []
+    return [*lower, sympy.Rational(repr(high)) - x] if isfinite(high) else lower
+
+
+def _real_where(candidate: Term) -> Iterator[Term]:
+    """What must be >= 0 for a root to be a real number."""
+    for power in candidate.atoms(sympy.Pow):
+        base, exponent = power.as_base_exp()
+        if not exponent.is_integer:
+            yield base
+
+
+def _simplified(f: Term) -> Term:
+    operations = f.count_ops()
+    if f.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I) or operations > _MOST_OPERATIONS:
+        raise GiveUpError
+    variables = len(f.free_symbols)
+    terms = comb(variables + _total_degree(f), variables)
+    if terms > _MOST_TERMS:
+        raise GiveUpError
+    spend(_STEPS_OF_SYMPY + 20 * operations + 10 * terms)
+    return sympy.factor(sympy.together(f))
+
+
+def _number(f: Term) -> float:
+    value = f.evalf(30)
+    if not value.is_real:
+        raise GiveUpError
+    number = float(value)
+    if not isfinite(number) or (number == 0) != bool(value == 0):
+        raise GiveUpError
+    return number
+
+
+def _total_degree(f: Term) -> int:
+    """At least the degree of numerator and denominator when written out."""
+    if f.is_Add:
+        return sum(_total_degree(arg) for arg in f.args if arg.is_number or not arg.is_polynomial()) + max(
+            _total_degree(arg) for arg in f.args
+        )
+    if f.is_Mul:
+        return sum(_total_degree(arg) for arg in f.args)
+    if f.is_Pow:
+        base, exponent = f.as_base_exp()
+        return _total_degree(base) * max(1, abs(int(exponent))) if exponent.is_number else LARGEST_DEGREE
+    return 1 if f.is_Symbol else 0
+
+
+def _degree(f: Term, x: Term) -> int:
+    above, below = sympy.fraction(f)
+    if not (above.is_polynomial(x) and below.is_polynomial(x)):
+        return LARGEST_DEGREE + 1
+    return int(max(sympy.degree(above, x), sympy.degree(below, x)))
+
+
+def _region(limits: Sequence[Term], ranges: Ranges) -> Region | None:
+    whole = Region({Signal(symbol.name): side for symbol, side in ranges.items()}, {})
+    return whole.where(Constraint(_expression(limit), False) for limit in limits)
+
+
+def _sides(region: Region) -> Ranges:
+    return {sympy.Symbol(variable.name, real=True): side for variable, side in region.box.items()}
+
+
+def _proves_at_once(f: Term, region: Region, strict: bool) -> bool:
+    if strict:
+        return _bound(f, region)[0] > 0
+    return proves_within(_expression(f), region, 0.0, inf, _PARTS)
+
+
+def _bound(f: Term, region: Region) -> Interval:
+    try:
+        return bound(_expression(f), region)
+    except UndefinedError:
+        return -inf, inf
+
+
+def _expression(f: Term) -> Expression:
+    """A term as an expression over signals that are named as its symbols."""
+    above, below = sympy.fraction(f)
+    if below != 1:
+        return Op("/", (_expression(above), _expression(below)))
+    if f.is_Symbol:
+        return Signal(f.name)
+    if f.is_number:
+        return Const(_number(f))
+    if f.is_Add or f.is_Mul:
+        first, *rest = (_expression(arg) for arg in f.args)
+        for other in rest:
+            first = Op("+" if f.is_Add else "*", (first, other))
+        return first
+    base, exponent = f.as_base_exp()
+    if exponent.is_number and base != f:
+        return Op("^", (_expression(base), Const(_number(exponent))))
+    raise GiveUpError

@@ -1,0 +1,125 @@
+"""Proofs with sympy: questions on expressions become questions on quotients of polynomials.
+
+Any other function in them counts as a variable of its own, with the range that interval arithmetic
+gives it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import isfinite
+
+import sympy
+
+from tltlc.expression.tree import Const, Expression, Op
+from tltlc.resolve.range_proof.cases import Constraint, TooManyCasesError, cases
+from tltlc.resolve.range_proof.elimination import LARGEST_DEGREE, GiveUpError, Prover, Term
+from tltlc.resolve.range_proof.interval import Interval, UndefinedError
+from tltlc.resolve.range_proof.normal_form import MOST_BITS, exact
+from tltlc.resolve.range_proof.proof import Task, proves_defined, proves_within
+from tltlc.resolve.range_proof.region import Region, bound
+
+
+def proves_all(tasks: Iterable[Task], whole: Region) -> bool:
+    """True if each task is proved: the value is defined and in the bounds where the constraints hold."""
+    try:
+        for task in tasks:
+            parts = cases(task.value, split_extremes=True)
+            around = whole.where(task.constraints)
+            if around is None:
+                continue
+            if len(parts) > 1 and not proves_defined(task.value, around):
+                return False  # comparing undefined values would hide that they are
+            for case in parts:
+                constraints = (*task.constraints, *case.constraints)
+                region = whole.where(constraints)
+                if region is None or proves_within(case.value, region, task.low, task.high):
+                    continue
+                if not proves_within_exactly(case.value, constraints, region, task.low, task.high):
+                    return False
+    except TooManyCasesError:
+        return False
+    return True
+
+
+def proves_within_exactly(
+    value: Expression, constraints: Sequence[Constraint], region: Region, low: float, high: float
+) -> bool:
+    """True if the value is defined and in ``[low, high]``, up to TOLERANCE, where the constraints hold in the region.
+
+    ``region`` knows the constraints already; ``value`` has no ``when``.
+    """
+    try:
+        translation, prover = _Translation(region), Prover()
+        limits = [translation.term(constraint.difference) for constraint in constraints]
+        term = translation.term(value)
+        limits += translation.equations
+        for divisor in _divisors(value):
+            if not proves_defined(Op("/", (Const(1.0), divisor)), region):
+                below = translation.term(divisor)
+                if not any(prover.never_negative(t, limits, translation.ranges, strict=True) for t in (below, -below)):
+                    return False
+        targets = [term - sympy.Rational(exact(low))] if isfinite(low) else []
+        targets += [sympy.Rational(exact(high)) - term] if isfinite(high) else []
+        return all(prover.never_negative(target, limits, translation.ranges, strict=False) for target in targets)
+    except (GiveUpError, UndefinedError, sympy.PolynomialError, NotImplementedError, OverflowError):
+        return False
+
+
+class _Translation:
+    """From expressions to sympy terms, over one symbol for each variable and each other function."""
+
+    def __init__(self, region: Region) -> None:
+        self.region = region
+        self.ranges: dict[Term, Interval] = {}
+        self.equations: list[Term] = []
+        self._symbols: dict[Expression, Term] = {}
+
+    def term(self, node: Expression) -> Term:
+        if isinstance(node, Const):
+            return sympy.Rational(exact(node.value))
+        if isinstance(node, Op):
+            exponent = node.args[-1]
+            if node.op in ("+", "-", "*", "/", "neg"):
+                return self._arithmetic(node)
+            if node.op == "^" and isinstance(exponent, Const) and exponent.value == int(exponent.value):
+                return _power(self.term(node.args[0]), int(exponent.value))
+        return self._symbol(node)
+
+    def _arithmetic(self, node: Op) -> Term:
+        first, *rest = (self.term(arg) for arg in node.args)
+        if node.op == "neg":
+            return -first
+        if node.op == "/":
+            if 0 in rest:
+                raise GiveUpError
+            return first / sympy.prod(rest)
+        return first * sympy.prod(rest) if node.op == "*" else first + sum(rest) * (1 if node.op == "+" else -1)
+
+    def _symbol(self, node: Expression) -> Term:
+        if node not in self._symbols:
+            symbol = self._symbols[node] = sympy.Symbol(f"v{len(self._symbols)}", real=True)
+            self.ranges[symbol] = bound(node, self.region)
+            if isinstance(node, Op) and node.op == "sqrt":
+                difference = self.term(node.args[0]) - symbol**2
+                self.equations += [difference, -difference]
+        return self._symbols[node]
+
+
+def _power(base: Term, exponent: int) -> Term:
+    """Raises GiveUpError where the exponent or the numbers in the result are too large to work with."""
+    bits = max((number.p.bit_length() + number.q.bit_length() for number in base.atoms(sympy.Rational)), default=0)
+    if abs(exponent) > LARGEST_DEGREE or bits * abs(exponent) > MOST_BITS:
+        raise GiveUpError
+    return base**exponent
+
+
+def _divisors(value: Expression) -> Iterator[Expression]:
+    """What the value divides by, also as a negative power."""
+    if isinstance(value, Op):
+        for arg in value.args:
+            yield from _divisors(arg)
+        if value.op == "/":
+            yield from value.args[1:]
+        elif value.op == "^" and not (isinstance(value.args[1], Const) and value.args[1].value >= 0):
+            yield value.args[0]

@@ -1,0 +1,104 @@
+"""Searches for points on the border between two cases where the value jumps; deterministic, of bounded work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tltlc.core.record import record
+from tltlc.expression.tree import Expression, Signal
+from tltlc.resolve.range_proof.cases import Case
+from tltlc.resolve.range_proof.interval import midpoint
+from tltlc.resolve.range_proof.region import Box, Variable
+from tltlc.resolve.range_proof.witness import CLEARLY, Point, points, value_at
+
+_MOST_POINTS = 150
+_MOST_CROSSINGS = 60
+_BORDER_WIDTH = 1e-14  # relative distance of the two points that stand for the sides of a border
+_NEAR = 1e-7  # relative distance at which the value must still be about the same as at the border
+
+
+@record
+class Jump:
+    """At ``point`` the value is ``before`` on one side of a border and ``after`` on the other."""
+
+    point: Point
+    before: float
+    after: float
+
+
+def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools: frozenset[Variable]) -> Jump | None:
+    """A border point between two of the cases where the expression clearly jumps, or None if no such point is found.
+
+    The cases are those of one ``when`` in the expression.
+    """
+    crossings = 0
+    everywhere = list(points(expression, box, bools))
+    for start in everywhere[:: 1 + len(everywhere) // _MOST_POINTS]:
+        here = _active(all_cases, start)
+        if here is None:
+            continue
+        for variable in box:
+            if variable in bools or not isinstance(variable, Signal):
+                continue
+            for end in _along(start, variable, box, expression):
+                there = _active(all_cases, end)
+                if there is None or there.value == here.value:
+                    continue
+                crossings += 1
+                if crossings > _MOST_CROSSINGS:
+                    return None
+                jump = _jump_between(all_cases, expression, start, end, variable)
+                if jump is not None:
+                    return jump
+                break  # a second crossing on the same line tells little more
+    return None
+
+
+def _active(all_cases: Sequence[Case], point: Point) -> Case | None:
+    for case in all_cases:
+        for constraint in case.constraints:
+            value = value_at(constraint.difference, point).value
+            if value is None or value < 0 or (constraint.strict and value == 0):
+                break
+        else:
+            return case
+    return None
+
+
+def _along(start: Point, variable: Variable, box: Box, expression: Expression) -> Iterator[Point]:
+    """Other points on the line through ``start`` along one axis."""
+    seen = {start[variable]}
+    for other in points(expression, {variable: box[variable]}, frozenset()):
+        if other[variable] not in seen:
+            seen.add(other[variable])
+            yield {**start, variable: other[variable]}
+        if len(seen) > 12:
+            return
+
+
+def _jump_between(
+    all_cases: Sequence[Case], expression: Expression, start: Point, end: Point, variable: Variable
+) -> Jump | None:
+    """Halve the way between points of different cases down to the border; is there a jump?"""
+    low, high = start[variable], end[variable]
+    left, right = _active(all_cases, start), _active(all_cases, end)
+    while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):
+        middle = midpoint(low, high)
+        case = _active(all_cases, {**start, variable: middle})
+        if left is not None and case is not None and case.value == left.value:
+            low = middle
+        else:
+            high, right = middle, case
+    if left is None or right is None:
+        return None
+    step = _NEAR * max(1.0, abs(low)) * (1.0 if high > low else -1.0)
+    before, after = (value_at(expression, {**start, variable: x}).value for x in (low, high))
+    if before is None or after is None or abs(after - before) <= CLEARLY:
+        return None
+    for case, x, value in ((left, low - step, before), (right, high + step, after)):
+        nearby = {**start, variable: x}
+        near = value_at(expression, nearby).value
+        if _active(all_cases, nearby) != case or near is None or abs(near - value) > abs(after - before) / 10:
+            return None
+    border = low if abs(low - round(low, 9)) <= abs(high - round(high, 9)) else high
+    return Jump({**start, variable: border}, before, after)

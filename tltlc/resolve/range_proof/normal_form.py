@@ -1,0 +1,243 @@
+"""Quotients of polynomials with exact coefficients: when are two expressions the same, what sign have they.
+
+A polynomial maps monomials to coefficients; a monomial is a set of (factor, exponent) pairs, where a
+factor is a signal, a param or any other expression that is not built by ``+ - * / ^``.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from tltlc.core.record import record
+from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.resolve.range_proof import interval
+from tltlc.resolve.range_proof.interval import Interval
+from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.work import current, spend
+
+Monomial = frozenset[tuple[Expression, int]]
+Polynomial = dict[Monomial, Fraction]
+
+ONE: Monomial = frozenset()
+_MOST_TERMS = 200
+_LARGEST_EXPONENT = 12
+MOST_BITS = 10_000
+"""Of a coefficient: enough for any float to the power of four."""
+
+
+class TooLargeError(Exception):
+    """The expression has no normal form of a size worth working with."""
+
+
+@record
+class Quotient:
+    """``numerator / denominator``; equal to the expression it came from wherever that is defined."""
+
+    numerator: Polynomial
+    denominator: Polynomial
+
+
+def quotient(expression: Expression) -> Quotient:
+    """The normal form of an expression without ``when``; remembered while a check lasts.  Raises TooLargeError."""
+    work = current()
+    if work is None or not isinstance(expression, Op):
+        return _quotient(expression)
+    spend()
+    if expression not in work.memo:
+        try:
+            work.memo[expression] = _quotient(expression)
+        except TooLargeError as error:
+            work.memo[expression] = error
+    found = work.memo[expression]
+    if isinstance(found, TooLargeError):
+        raise TooLargeError
+    assert isinstance(found, Quotient)
+    return found
+
+
+def _quotient(expression: Expression) -> Quotient:
+    if isinstance(expression, Const):
+        return Quotient(constant(exact(expression.value)), constant(1))
+    if isinstance(expression, Op):
+        if expression.op in ("+", "-", "*", "/", "neg"):
+            return _arithmetic(expression.op, [quotient(arg) for arg in expression.args])
+        exponent = expression.args[-1]
+        if expression.op == "^" and isinstance(exponent, Const) and exponent.value == int(exponent.value):
+            return _power(quotient(expression.args[0]), int(exponent.value))
+    assert isinstance(expression, (Signal, Param, Op)), "cases have no `when`"
+    return Quotient({frozenset([(expression, 1)]): Fraction(1)}, constant(1))
+
+
+def exact(value: float) -> Fraction:
+    """The decimal number that was meant: 0.1 is one tenth."""
+    return Fraction(repr(float(value)))
+
+
+def constant(value: Fraction | int) -> Polynomial:
+    """A number as a polynomial."""
+    return {ONE: Fraction(value)} if value else {}
+
+
+def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
+    """An interval that contains the polynomial's values on a region.
+
+    Raises UndefinedError like its factors, and TooLargeError for a coefficient that is no float.
+    """
+    total = _sum_of_terms(polynomial, region)
+    for expression, known in region.known.items():
+        spend(1 + len(polynomial) // 4)
+        try:
+            other = quotient(expression)
+        except TooLargeError:
+            continue
+        scale = _ratio(polynomial, other.numerator) if other.denominator == constant(1) else None
+        if scale is not None:  # polynomial = scale * expression + rest
+            rest = polynomial.get(ONE, Fraction(0)) - scale * other.numerator.get(ONE, Fraction(0))
+            bounds = interval.add(interval.multiply(known, _point(scale)), _point(rest))
+            total = interval.meet(total, bounds) or bounds
+    return total
+
+
+def add(a: Polynomial, b: Polynomial, scale: Fraction | int = 1) -> Polynomial:
+    """``a + scale * b``."""
+    spend(len(b))
+    result = dict(a)
+    for monomial, coefficient in b.items():
+        total = result.get(monomial, Fraction(0)) + scale * coefficient
+        if total:
+            result[monomial] = total
+        else:
+            result.pop(monomial, None)
+    return result
+
+
+def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
+    """The product.  Raises TooLargeError."""
+    if len(a) * len(b) > _MOST_TERMS * 10:
+        raise TooLargeError
+    spend(2 * len(a) * len(b))
+    result: Polynomial = {}
+    for left, x in a.items():
+        for right, y in b.items():
+            monomial = _join(left, right)
+            result[monomial] = result.get(monomial, Fraction(0)) + x * y
+    result = {monomial: coefficient for monomial, coefficient in result.items() if coefficient}
+    if len(result) > _MOST_TERMS or any(_bits(coefficient) > MOST_BITS for coefficient in result.values()):
+        raise TooLargeError
+    return result
+
+
+def substitute(polynomial: Polynomial, factor: Expression, by: Polynomial) -> Polynomial:
+    """The polynomial with ``factor`` replaced.  Raises TooLargeError."""
+    result: Polynomial = {}
+    spend(len(polynomial))
+    for monomial, coefficient in polynomial.items():
+        exponent = next((n for base, n in monomial if base == factor), 0)
+        rest = frozenset(pair for pair in monomial if pair[0] != factor)
+        term: Polynomial = {rest: coefficient}
+        for _ in range(exponent):
+            term = multiply(term, by)
+        result = add(result, term)
+    return result
+
+
+def solved(equation: Polynomial) -> tuple[Expression, Polynomial] | None:
+    """``equation = 0`` solved for a factor that occurs once, with a constant coefficient; None if none does."""
+    occurrences: dict[Expression, int] = {}
+    for monomial in equation:
+        for factor, _ in monomial:
+            occurrences[factor] = occurrences.get(factor, 0) + 1
+    for monomial, coefficient in equation.items():
+        if len(monomial) == 1:
+            ((factor, exponent),) = monomial
+            if exponent == 1 and occurrences[factor] == 1:
+                rest = {m: c for m, c in equation.items() if m != monomial}
+                return factor, add({}, rest, -1 / coefficient)
+    return None
+
+
+def _arithmetic(op: str, args: list[Quotient]) -> Quotient:
+    result = args[0]
+    if op == "neg":
+        return Quotient(add({}, result.numerator, -1), result.denominator)
+    for other in args[1:]:
+        if op == "*":
+            result = _reduced(result.numerator, result.denominator, other.numerator, other.denominator)
+        elif op == "/":
+            result = _reduced(result.numerator, result.denominator, other.denominator, other.numerator)
+        elif result.denominator == other.denominator:
+            sign = 1 if op == "+" else -1
+            result = Quotient(add(result.numerator, other.numerator, sign), result.denominator)
+        else:
+            left = multiply(result.numerator, other.denominator)
+            right = multiply(other.numerator, result.denominator)
+            sign = 1 if op == "+" else -1
+            result = Quotient(add(left, right, sign), multiply(result.denominator, other.denominator))
+    return result
+
+
+def _reduced(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> Quotient:
+    """``a/b * c/d``, cancelling a numerator that is a multiple of the other denominator."""
+    scale = _multiple(a, d)
+    if scale is not None:
+        return Quotient(add({}, c, scale), b)
+    scale = _multiple(c, b)
+    if scale is not None:
+        return Quotient(add({}, a, scale), d)
+    return Quotient(multiply(a, c), multiply(b, d))
+
+
+def _power(base: Quotient, exponent: int) -> Quotient:
+    if abs(exponent) > _LARGEST_EXPONENT:
+        raise TooLargeError
+    above, below = constant(1), constant(1)
+    for _ in range(abs(exponent)):
+        above, below = multiply(above, base.numerator), multiply(below, base.denominator)
+    return Quotient(above, below) if exponent >= 0 else Quotient(below, above)
+
+
+def _bits(number: Fraction) -> int:
+    return number.numerator.bit_length() + number.denominator.bit_length()
+
+
+def _join(a: Monomial, b: Monomial) -> Monomial:
+    exponents = dict(a)
+    for factor, exponent in b:
+        exponents[factor] = exponents.get(factor, 0) + exponent
+    return frozenset(exponents.items())
+
+
+def _multiple(a: Polynomial, b: Polynomial) -> Fraction | None:
+    """``c`` with ``a = c * b``, or None."""
+    if not b or a.keys() != b.keys():
+        return None
+    first = next(iter(b))
+    scale = a[first] / b[first]
+    return scale if all(a[monomial] == scale * b[monomial] for monomial in b) else None
+
+
+def _ratio(a: Polynomial, b: Polynomial) -> Fraction | None:
+    """``c`` with ``a = c * b`` but for the constant terms, or None."""
+    return _multiple({m: c for m, c in a.items() if m}, {m: c for m, c in b.items() if m})
+
+
+def _sum_of_terms(polynomial: Polynomial, region: Region) -> Interval:
+    total: Interval = (0.0, 0.0)
+    spend(len(polynomial))
+    for monomial, coefficient in polynomial.items():
+        term = _point(coefficient)
+        for factor, exponent in monomial:
+            value = interval.power(bound(factor, region), (float(exponent),) * 2)
+            term = interval.multiply(term, value)
+        total = interval.add(total, term)
+    return total
+
+
+def _point(value: Fraction) -> Interval:
+    try:
+        number = float(value)
+    except OverflowError as error:
+        raise TooLargeError from error
+    if (number == 0) != (value == 0):
+        raise TooLargeError
+    return number, number

@@ -1,0 +1,135 @@
+"""Proves that an expression stays within bounds on a region, without sympy.
+
+Three means, cheapest first: interval arithmetic on the whole region, the sign of the exact
+difference to a bound (of the whole and of each ratio in it), and interval arithmetic on ever
+smaller parts of the region.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import inf
+
+from tltlc.core.record import record, replace
+from tltlc.expression.tree import Expression, Op
+from tltlc.resolve.range_proof.cases import Constraints, size
+from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError, meet
+from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.work import spend
+
+TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
+MOST_PARTS = 300
+_NODES_OF_ALL = 30_000  # visited in all parts together
+_FEWEST_PARTS = 10
+
+
+@record
+class Task:
+    """To prove: the value is defined and in ``[low, high]`` where all constraints hold."""
+
+    value: Expression
+    constraints: Constraints
+    low: float
+    high: float
+
+
+def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
+    """The tasks that are not proved for all points of a region; the work on all together is bounded."""
+    nodes = sum(size(task.value, _NODES_OF_ALL) for task in tasks)
+    parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
+    left = []
+    spend(nodes // 10)
+    for task in tasks:
+        region = whole.where(task.constraints)
+        if region is not None and not proves_within(task.value, region, task.low, task.high, parts):
+            left.append(task)
+    return left
+
+
+def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = MOST_PARTS) -> bool:
+    """True if the value is defined and in ``[low, high]``, up to TOLERANCE, at each point of the region.
+
+    ``parts`` limits the subdivision.
+    """
+    if holds_at_once(value, region, low, high):
+        return True
+    if _defined(value, region):
+        region = _with_ratios(value, region)
+        if holds_at_once(value, region, low, high) or _proves_by_sign(value, region, low, high):
+            return True
+    return _holds_in_parts(value, region, low, high, parts)
+
+
+def holds_at_once(value: Expression, region: Region, low: float, high: float) -> bool:
+    """Like proves_within, by one evaluation with intervals."""
+    try:
+        return inside(bound(value, region), low, high)
+    except UndefinedError:
+        return False
+
+
+def proves_defined(value: Expression, region: Region, parts: int = MOST_PARTS) -> bool:
+    """True if the value exists at each point of the region."""
+    return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, parts)
+
+
+def inside(bounds: Interval, low: float, high: float) -> bool:
+    """True if the interval lies in ``[low, high]``, up to TOLERANCE."""
+    return bounds[0] >= low - TOLERANCE and bounds[1] <= high + TOLERANCE
+
+
+def _defined(value: Expression, region: Region) -> bool:
+    return holds_at_once(value, region, -inf, inf)
+
+
+def _with_ratios(value: Expression, region: Region) -> Region:
+    """The region, knowing of each ratio in a defined value whether it is at least -1 or 0 and at most 0 or 1."""
+    known = dict(region.known)
+    for node in _ratios(value):
+        low = next((end for end in (0.0, -1.0) if _proves_by_sign(node, region, end, inf)), -inf)
+        high = next((end for end in (0.0, 1.0) if _proves_by_sign(node, region, -inf, end)), inf)
+        known[node] = meet(known.get(node, EVERYTHING), (low, high)) or (low, high)
+        region = replace(region, known=known)
+    return region
+
+
+def _ratios(value: Expression) -> Iterator[Op]:
+    if isinstance(value, Op):
+        for arg in value.args:
+            yield from _ratios(arg)
+        if value.op == "/":
+            yield value
+
+
+def _proves_by_sign(value: Expression, region: Region, low: float, high: float) -> bool:
+    """For ``n/d`` with d of one sign: the signs of ``n - low * d`` and ``n - high * d`` tell."""
+    from tltlc.resolve.range_proof.normal_form import TooLargeError, add, exact, polynomial_bound, quotient
+
+    try:
+        form = quotient(value)
+        below = polynomial_bound(form.denominator, region)
+        if below[0] < 0 < below[1]:
+            return False
+        sign = 1 if below[0] >= 0 else -1
+        for end, side in ((low, sign), (high, -sign)):
+            if end not in (-inf, inf):
+                over = polynomial_bound(add(form.numerator, form.denominator, -exact(end)), region)
+                if (over[0] < 0) if side > 0 else (over[1] > 0):
+                    return False
+    except (TooLargeError, UndefinedError):
+        return False
+    return True
+
+
+def _holds_in_parts(value: Expression, region: Region, low: float, high: float, limit: int) -> bool:
+    parts, tried = [region], 0
+    while parts:
+        part = parts.pop()
+        tried += 1
+        if holds_at_once(value, part, low, high):
+            continue
+        halves = part.halves()
+        if halves is None or tried > limit:
+            return False
+        parts += [half for half in (whole.narrowed() for whole in halves) if half is not None]
+    return True

@@ -1,0 +1,269 @@
+"""Regions of signal and param values, and the bounds that an expression has on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import copysign, inf, log1p, sqrt
+
+from tltlc.core.record import record, replace
+from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.resolve.range_proof import interval
+from tltlc.resolve.range_proof.cases import Constraint
+from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError
+from tltlc.resolve.range_proof.work import spend
+
+Variable = Signal | Param
+Box = Mapping[Variable, Interval]
+
+_ROUNDS = 6
+_FAR_AWAY = 1e6
+
+
+@record
+class Region:
+    """The points of a box where some expressions lie within known bounds.
+
+    ``nonzero`` expressions are not 0 anywhere.  A region may be empty without knowing it.
+    """
+
+    box: Box
+    known: Mapping[Expression, Interval]
+    nonzero: frozenset[Expression] = frozenset()
+
+    def where(self, constraints: Iterable[Constraint]) -> Region | None:
+        """The part where the constraints hold, its box narrowed, or None if that is surely empty."""
+        known, nonzero = dict(self.known), set(self.nonzero)
+        for constraint in _with_chains(constraints):
+            difference = constraint.difference
+            known[difference] = interval.meet(known.get(difference, EVERYTHING), (0.0, inf)) or (0.0, 0.0)
+            if isinstance(difference, Op) and difference.op == "-":
+                mirrored = Op("-", difference.args[::-1])
+                known[mirrored] = interval.negate(known[difference])
+                if constraint.strict:
+                    nonzero.add(mirrored)
+            if constraint.strict:
+                nonzero.add(difference)
+        return Region(self.box, known, frozenset(nonzero)).narrowed()
+
+    def narrowed(self) -> Region | None:
+        """The same points in a box as small as the known bounds allow, or None if they exclude each other."""
+        box = dict(self.box)
+        narrowing = _Narrowing(box)
+        for _ in range(_ROUNDS if self.known else 0):
+            before = dict(box)
+            spend(len(box))
+            try:
+                for expression, bounds in self.known.items():
+                    found = narrowing.narrow(expression, bounds)
+                    if expression in self.nonzero and found == (0.0, 0.0):
+                        return None
+            except _EmptyError:
+                return None
+            if box == before:
+                break
+        return replace(self, box=box)
+
+    def halves(self) -> tuple[Region, Region] | None:
+        """The region cut in two across its relatively longest side, or None if no side can be cut."""
+        widest = max(self.box, key=lambda variable: _length(self.box[variable]), default=None)
+        if widest is None or _length(self.box[widest]) < 1e-9:
+            return None
+        low, high = self.box[widest]
+        middle = _middle(low, high)
+        lower = replace(self, box={**self.box, widest: (low, middle)})
+        return lower, replace(self, box={**self.box, widest: (middle, high)})
+
+
+def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
+    """The constraints, and ``a - c`` wherever they order a, b and c: the bounds of each alone do not show it."""
+    given = list(constraints)
+    differences = [c for c in given if isinstance(c.difference, Op) and c.difference.op == "-"]
+    spend(len(differences) * len(differences) // 4)
+    for upper in differences:
+        for lower in differences:
+            (a, b), (also_b, c) = _operands(upper), _operands(lower)
+            if b == also_b and a != c:
+                given.append(Constraint(Op("-", (a, c)), upper.strict or lower.strict))
+    return given
+
+
+def _operands(constraint: Constraint) -> tuple[Expression, Expression]:
+    assert isinstance(constraint.difference, Op)
+    left, right = constraint.difference.args
+    return left, right
+
+
+def bound(expression: Expression, region: Region) -> Interval:
+    """An interval that contains every value of an expression without ``when`` on a region.
+
+    Raises UndefinedError where the expression may have no value somewhere in the region.
+    """
+    value = _bound(expression, region)
+    known = region.known.get(expression) if region.known else None
+    return (interval.meet(value, known) or known) if known else value
+
+
+def _bound(expression: Expression, region: Region) -> Interval:
+    spend()
+    if isinstance(expression, Const):
+        return expression.value, expression.value
+    if isinstance(expression, (Signal, Param)):
+        return region.box[expression]
+    assert isinstance(expression, Op), "cases have no `when`"
+    nonzero = expression.op == "/" and bool(region.nonzero) and expression.args[1] in region.nonzero
+    return _combined(expression, [bound(arg, region) for arg in expression.args], nonzero)
+
+
+def _combined(expression: Op, args: list[Interval], nonzero: bool) -> Interval:
+    """The bounds of an operation from those of its arguments, ``nonzero``: its divisor is not 0.
+
+    Raises UndefinedError where it may have no value.
+    """
+    if expression.op == "/":
+        quotient = interval.divide(args[0], args[1], nonzero=nonzero)
+        return (1.0, 1.0) if expression.args[0] == expression.args[1] else quotient
+    if expression.op == "-" and expression.args[0] == expression.args[1]:
+        return 0.0, 0.0
+    if expression.op == "*" and expression.args[0] == expression.args[1]:
+        return interval.power(args[0], (2.0, 2.0))
+    return _apply(expression.op, args)
+
+
+def _apply(op: str, args: list[Interval]) -> Interval:
+    first = args[0]
+    if op in _UNARY:
+        return _UNARY[op](first)
+    if op == "clamp":
+        return interval.smaller(interval.larger(first, args[1]), args[2])
+    function = _BINARY[op]
+    for other in args[1:]:
+        first = function(first, other)
+    return first
+
+
+_UNARY = {
+    "neg": interval.negate,
+    "abs": interval.absolute,
+    "sqrt": interval.root,
+    "exp": interval.exponential,
+    "tanh": interval.hyperbolic_tangent,
+}
+_BINARY = {
+    "+": interval.add,
+    "-": interval.subtract,
+    "*": interval.multiply,
+    "/": interval.divide,
+    "^": interval.power,
+    "min": interval.smaller,
+    "max": interval.larger,
+}
+
+
+class _EmptyError(Exception):
+    """No point of the box satisfies the constraints."""
+
+
+class _Narrowing:
+    """Shrinks a box to where expressions lie within bounds: forward evaluation, then each operator's inverse (HC4)."""
+
+    def __init__(self, box: dict[Variable, Interval]) -> None:
+        self._box = box
+        self._bounds: dict[Op, Interval | None] = {}
+
+    def narrow(self, expression: Expression, target: Interval) -> Interval:
+        """Shrink the box to where the expression can lie in ``target``; returns what is left of ``target``.
+
+        Raises _EmptyError where it can lie there nowhere.
+        """
+        spend()
+        left = interval.meet(self._bound(expression), target)
+        if left is None:
+            raise _EmptyError
+        if isinstance(expression, (Signal, Param)):
+            if self._box[expression] != left:
+                self._box[expression] = left
+                self._bounds.clear()
+        elif isinstance(expression, Op):
+            self._narrow_args(expression, left)
+        return left
+
+    def _narrow_args(self, expression: Op, value: Interval) -> None:
+        op, args = expression.op, expression.args
+        if op == "neg":
+            self.narrow(args[0], interval.negate(value))
+        elif op in ("+", "-") and len(args) == 2:
+            self._narrow_sum(op, args, value)
+        elif op == "*" and len(args) == 2:
+            for one, other in ((args[0], args[1]), (args[1], args[0])):
+                divisor = self._bound(other)
+                if divisor[0] > 0 or divisor[1] < 0:
+                    self.narrow(one, interval.divide(value, divisor))
+        elif op == "/":
+            self.narrow(args[0], interval.multiply(value, self._bound(args[1])))
+        elif op in ("min", "max"):
+            for arg in args:
+                self.narrow(arg, (value[0], inf) if op == "min" else (-inf, value[1]))
+        elif op == "abs":
+            inner = self._bound(args[0])
+            side = value if inner[0] >= 0 else interval.negate(value) if inner[1] <= 0 else (-value[1], value[1])
+            self.narrow(args[0], side)
+        elif op == "sqrt":
+            self.narrow(args[0], interval.power((max(0.0, value[0]), max(0.0, value[1])), (2.0, 2.0)))
+        elif op == "^" and args[1] == Const(2.0):
+            high = interval.root((0.0, max(0.0, value[1])))[1]
+            inner = self._bound(args[0])
+            low = interval.root((max(0.0, value[0]),) * 2)[0] if inner[0] >= 0 else -high
+            self.narrow(args[0], (low, high))
+
+    def _narrow_sum(self, op: str, args: Sequence[Expression], value: Interval) -> None:
+        b = self._bound(args[1])
+        self.narrow(args[0], (interval.subtract if op == "+" else interval.add)(value, b))
+        a = self._bound(args[0])
+        self.narrow(args[1], interval.subtract(value, a) if op == "+" else interval.subtract(a, value))
+
+    def _bound(self, expression: Expression) -> Interval:
+        """The bounds of an expression in the box as it is now, EVERYTHING where it may have no value."""
+        return self._computed(expression) or EVERYTHING
+
+    def _computed(self, expression: Expression) -> Interval | None:
+        if isinstance(expression, Const):
+            return expression.value, expression.value
+        if isinstance(expression, (Signal, Param)):
+            return self._box[expression]
+        assert isinstance(expression, Op), "cases have no `when`"
+        if expression not in self._bounds:
+            spend()
+            self._bounds[expression] = self._of_operation(expression)
+        return self._bounds[expression]
+
+    def _of_operation(self, expression: Op) -> Interval | None:
+        args = [self._computed(arg) for arg in expression.args]
+        try:
+            return _combined(expression, [_defined(arg) for arg in args], nonzero=False)
+        except UndefinedError:
+            return None
+
+
+def _defined(bounds: Interval | None) -> Interval:
+    if bounds is None:
+        raise UndefinedError
+    return bounds
+
+
+def _length(side: Interval) -> float:
+    """How much a cut across a side may help: its length where numbers grow as their logarithms do."""
+    return sum(copysign(log1p(min(abs(end), _FAR_AWAY)), end) * sign for end, sign in zip(side, (-1, 1), strict=True))
+
+
+def _middle(low: float, high: float) -> float:
+    if low == -inf and high == inf:
+        return 0.0
+    if high == inf:
+        return max(1.0, 4.0 * low) if low >= 0 else 0.0
+    if low == -inf:
+        return min(-1.0, 4.0 * high) if high <= 0 else 0.0
+    if low > 0 and high > 4 * low:
+        return sqrt(low) * sqrt(high)
+    if high < 0 and low < 4 * high:
+        return -sqrt(-low) * sqrt(-high)
+    return interval.midpoint(low, high)

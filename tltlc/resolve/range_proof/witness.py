@@ -1,0 +1,168 @@
+"""Searches for points that show a wrong range; deterministic and of bounded work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
+from itertools import islice, permutations, product
+from math import inf, isfinite, prod
+
+from tltlc.core.record import record
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import LEAST, Const, Expression, Param, Signal, nodes
+from tltlc.resolve.range_proof.interval import Interval, midpoint
+from tltlc.resolve.range_proof.region import Box, Variable
+from tltlc.resolve.range_proof.work import OutOfWorkError, spend
+
+Point = Mapping[Variable, float]
+
+CLEARLY = 1e-6  # how far outside a value must be to be called so
+_LARGEST_GRID = 500
+_SCATTERED = 300
+_CLIMBING_ROUNDS = 40
+_SPREAD = (1.0, 3.0, 10.0, 100.0, 1e6)  # distances from the closed end of a range without bound
+
+
+@record
+class Witness:
+    """A point, and the value there or the reason why there is none."""
+
+    point: Point
+    value: float | None
+    reason: str = ""
+
+
+def value_at(expression: Expression, point: Point) -> Witness:
+    """The value of an expression at a point, or what goes wrong there."""
+    spend(_cost(expression) + len(point) // 4)
+    signals = {variable.name: value for variable, value in point.items() if isinstance(variable, Signal)}
+    params = {variable.name: value for variable, value in point.items() if isinstance(variable, Param)}
+    try:
+        value = evaluate(expression, signals, params)
+    except ZeroDivisionError:
+        return Witness(point, None, "divides by zero")
+    except OverflowError:
+        return Witness(point, None, "is too large to compute")
+    except ValueError:
+        return Witness(point, None, "takes a root or power that no real number has")
+    return Witness(point, value) if isfinite(value) else Witness(point, None, "is too large to compute")
+
+
+@lru_cache(maxsize=512)
+def _cost(expression: Expression) -> int:
+    """The steps that computing a value counts as."""
+    return 1 + sum(1 for _ in nodes(expression)) // 3
+
+
+def find_outside(
+    expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
+) -> Witness | None:
+    """A point of the box where the value is missing or clearly outside ``[low, high]``, or None.
+
+    Simple points come first; a later point replaces an earlier one only if it is much worse.
+    ``bools`` are the variables that are 0 or 1 and nothing between.  Raises OutOfWorkError if none is found in time.
+    """
+
+    def excess(witness: Witness) -> float:
+        return inf if witness.value is None else max(low - witness.value, witness.value - high)
+
+    best: Witness | None = None
+    try:
+        for point in points(expression, box, bools):
+            here = value_at(expression, point)
+            if best is None or excess(here) > max(excess(best), 1.5 * excess(best)):
+                best = here
+            if best.value is None:
+                return best
+        if best is not None and excess(best) <= CLEARLY:
+            best = _climb(best, excess, expression, box, bools)
+    except OutOfWorkError:
+        if best is None or excess(best) <= CLEARLY:
+            raise
+    return best if best is not None and excess(best) > CLEARLY else None
+
+
+def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iterator[Point]:
+    """Corners and a grid as far as they are few, points where two variables are equal, scattered points."""
+    names = list(box)
+    extra = tuple(dict.fromkeys(_constants(expression)))
+    spend(_cost(expression) + len(names) * (len(extra) + 20) // 10)
+    axes = [_axis(box[name], name in bools, extra) for name in names]
+    grid = [dict(zip(names, values, strict=True)) for values in _grid(axes)]
+    yield from grid
+    for one, other in islice(permutations(names, 2), 20):
+        for point in grid[:20]:
+            if box[one][0] <= point[other] <= box[one][1] and one not in bools:
+                yield {**point, one: point[other]}
+    for number in range(1, _SCATTERED + 1 if names else 1):
+        yield {name: _at(box[name], _fraction(number, position), name in bools) for position, name in enumerate(names)}
+
+
+def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
+    """The finest grid of at most _LARGEST_GRID points, or as many corners."""
+    depth = 2
+    while depth < 12 and prod(min(len(axis), depth + 1) for axis in axes) <= _LARGEST_GRID:
+        depth += 1
+    return islice(product(*(axis[:depth] for axis in axes)), _LARGEST_GRID)
+
+
+def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[float, ...]:
+    """Values worth trying for one variable, the simplest first."""
+    low, high = side
+    if is_bool:
+        return low, high
+    ends = [end for end in side if isfinite(end)]
+    inner = [midpoint(low, high)] if len(ends) == 2 else [0.0]
+    spread = [low + step for step in _SPREAD] + [high - step for step in _SPREAD]
+    candidates = [*ends, *inner, *extra, 0.0, 1.0, -1.0, *(_SPREAD if not ends else spread)]
+    if not ends:
+        candidates += [-step for step in _SPREAD]
+    return tuple(dict.fromkeys(x + 0.0 for x in candidates if isfinite(x) and low <= x <= high))
+
+
+def _constants(expression: Expression) -> Iterator[float]:
+    """The numbers in an expression that may be borders: the least robustness of a comparison is none."""
+    return (node.value for node in nodes(expression) if isinstance(node, Const) and node.value != LEAST)
+
+
+def _fraction(number: int, position: int) -> float:
+    """A number in (0, 1): term ``number`` of an additive sequence, a different one per position."""
+    stride: float = 0.6180339887498949 ** (1 + position / 3)
+    return (0.5 + number * stride) % 1.0
+
+
+def _at(side: Interval, fraction: float, is_bool: bool) -> float:
+    """The value that lies at a fraction of the way through a range, open ends drawn near."""
+    low, high = side
+    if is_bool:
+        return low if fraction < 0.5 else high
+    if isfinite(low) and isfinite(high):
+        at = low + fraction * (high - low) if isfinite(high - low) else low * (1 - fraction) + high * fraction
+        return min(max(at, low), high)
+    if isfinite(low) and high == inf:
+        return low + fraction / (1.0 - fraction)
+    if isfinite(high) and low == -inf:
+        return high - fraction / (1.0 - fraction)
+    centred = 2.0 * fraction - 1.0
+    return min(max(2.0 * centred / (1.0 - abs(centred) + 1e-9), low), high)
+
+
+def _climb(
+    start: Witness, excess: Callable[[Witness], float], expression: Expression, box: Box, bools: frozenset[Variable]
+) -> Witness:
+    """A local maximum of the excess, by steps along the axes that shrink."""
+    best = start
+    steps = {v: (high - low) / 8 if isfinite(high - low) else 1.0 for v, (low, high) in box.items() if v not in bools}
+    for _ in range(_CLIMBING_ROUNDS):
+        for variable, step in steps.items():
+            low, high = box[variable]
+            old = best.point[variable]
+            found = False
+            for value in (min(old + step, high), max(old - step, low)):
+                here = value_at(expression, {**best.point, variable: value})
+                if excess(here) > excess(best):
+                    best, found = here, True
+            steps[variable] = step * (1.0 if found else 0.5)
+        if best.value is None:
+            break
+    return best

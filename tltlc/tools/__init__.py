@@ -1,0 +1,1 @@
+"""The tools over compiled specs: lint, fmt, explain, diff, witness, mine, conformance, hoa."""

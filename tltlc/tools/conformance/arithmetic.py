@@ -1,0 +1,165 @@
+"""A case for each operator and function of predicates, at the values where languages differ."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from tltlc.expression.tree import ArithmeticOp, Condition, ConditionOp, Const, Expression, Op, Param, Signal, When
+from tltlc.logic import formula as f
+from tltlc.resolve import spec
+from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.draw import Draw
+from tltlc.tools.conformance.traces import drawn, table
+
+_X, _Y, _SEEN, _GAIN = Signal("x"), Signal("y"), Signal("seen"), Param("gain")
+_SIGNALS: Final = (spec.Signal("x", "number", None, None), spec.Signal("y", "number", None, None))
+_SEEN_SIGNAL: Final = spec.Signal("seen", "bool", 0.0, 1.0)
+_GAIN_PARAM: Final = spec.Param("gain", "number", 0.3, 0.1, 2.5)
+
+_NEAR_ZERO: Final = (-3.0, -1.0, -0.5, -0.0, 0.0, 0.1, 0.3, 0.7, 1.0, 2.0, 2.5)
+_POSITIVE: Final = (0.0, 0.1, 0.3, 0.7, 1.0, 2.0, 2.5, 16.0)
+
+
+def _op(op: ArithmeticOp, *args: Expression | float) -> Op:
+    return Op(op, tuple(Const(arg) if isinstance(arg, float) else arg for arg in args))
+
+
+def _test(op: ConditionOp, *args: Expression | Condition | float) -> Condition:
+    return Condition(op, tuple(Const(arg) if isinstance(arg, float) else arg for arg in args))
+
+
+def _per(expression: Expression, scale: float) -> Op:
+    return _op("/", expression, scale)
+
+
+def _when(condition: Condition, value: Expression | float, otherwise: Expression | float) -> When:
+    return When(
+        ((condition, Const(value) if isinstance(value, float) else value),),
+        Const(otherwise) if isinstance(otherwise, float) else otherwise,
+    )
+
+
+_SHARE = _op("/", 1.0, _X)
+_ROOT = _op("sqrt", _X)
+_HUGE = _op("*", 1e308, _X)
+_NESTED = When(
+    (
+        # None of the later parts has a value where the earlier ones decide.
+        (_test("and", _test(">", _X, 0.0), _test("<", _SHARE, 0.5)), _op("-", _SHARE, 0.25)),
+        (_test("or", _test("<=", _X, 0.0), _test(">=", _op("/", _Y, _X), 2.0)), _per(_Y, 4.0)),
+        (_test("not", _test("<", _when(_test(">", _Y, 0.0), _op("sqrt", _Y), 0.0), 1.0)), _per(_op("sqrt", _Y), 2.0)),
+    ),
+    _when(_test("and", _test(">=", _X, 0.5), _test("not", _test(">", _Y, _X))), _per(_ROOT, 2.0), _op("neg", _X)),
+)
+
+_EXPRESSIONS: Final[dict[str, tuple[Expression, Expression, tuple[float, ...]]]] = {
+    "sums": (
+        _per(_op("+", _op("+", _X, _Y), _op("+", 0.1, _GAIN)), 8.0),
+        _per(_op("-", _op("-", _X, _Y), _op("-", _GAIN, _X)), 9.0),
+        _NEAR_ZERO,
+    ),
+    "products": (_per(_op("*", _op("*", _X, _Y), _GAIN), 4.0), _op("*", _op("neg", _X), 0.1), _NEAR_ZERO),
+    "quotients": (_op("/", _X, _op("*", 30.0, _GAIN)), _op("/", _Y, 3.0), _NEAR_ZERO),
+    "squares_and_cubes": (
+        _op("-", _per(_op("^", _X, 2.0), 5.0), 0.5),
+        _per(_op("^", _op("-", _Y, 0.1), 3.0), 30.0),
+        _NEAR_ZERO,
+    ),
+    "powers": (
+        _op("-", _per(_op("^", _X, 0.5), 3.0), 0.4),
+        _op("-", _per(_op("^", _op("+", _X, 0.5), _op("*", _GAIN, _Y)), 9.0), 0.2),
+        _POSITIVE,
+    ),
+    "signs": (
+        _per(_op("neg", _op("neg", _op("neg", _X))), 3.0),
+        _op("-", 0.5, _per(_op("abs", _Y), 2.0)),
+        _NEAR_ZERO,
+    ),
+    "extremes": (
+        _per(_op("min", _X, _Y, _op("neg", _X), 0.5), 3.0),
+        _per(_op("max", _X, _op("min", _Y, 0.7), -2.0), 3.0),
+        _NEAR_ZERO,
+    ),
+    "clamps": (
+        _op("clamp", _X, -0.5, 0.7),
+        _op("clamp", _op("+", _X, _Y), _op("neg", _GAIN), _GAIN),
+        _NEAR_ZERO,
+    ),
+    "roots": (_op("-", _per(_op("sqrt", _X), 4.0), 0.2), _op("-", 0.5, _op("sqrt", _per(_Y, 16.0))), _POSITIVE),
+    "exponentials": (
+        _op("-", _op("exp", _op("neg", _op("abs", _X))), 0.4),
+        _op("tanh", _op("-", _op("exp", _Y), 1.0)),
+        _NEAR_ZERO,
+    ),
+    "hyperbolic": (_op("tanh", _X), _op("neg", _op("tanh", _op("*", _GAIN, _Y))), _NEAR_ZERO),
+    "cases": (
+        _NESTED,
+        _when(_test("not", _test("or", _test("<", _SEEN, 0.5), _test(">", _Y, 1.0))), 0.75, _per(_X, -4.0)),
+        _NEAR_ZERO,
+    ),
+    "zeros": (
+        _op("*", _op("neg", _X), 0.0),
+        _op("max", _op("min", _op("*", _op("*", -1.0, _Y), 0.0), 0.0), -0.0),
+        _NEAR_ZERO,
+    ),
+    "clamped_infinities": (
+        _op("clamp", _HUGE, -0.5, 0.75),
+        # A difference of infinities is no number, and none is less or greater than it.
+        _op("max", _op("min", 0.25, _op("-", _HUGE, _op("*", _HUGE, 2.0))), -0.75),
+        _NEAR_ZERO,
+    ),
+}
+
+
+def _both(name: str, first: Expression, second: Expression) -> Case:
+    # Again and again: the automaton keeps asking, so that each step shows a value.
+    formula = f.always(f.eventually(f.and_(f.atom("first"), f.atom("second"))))
+    signals = (*_SIGNALS, _SEEN_SIGNAL) if name == "cases" else _SIGNALS
+    fspa = automaton(name, formula, {"first": first, "second": second}, signals, (_GAIN_PARAM,))
+    return Case(fspa, "", ())
+
+
+def _function(number: int, name: str) -> Case:
+    first, second, pool = _EXPRESSIONS[name]
+    fspa = _both(name, first, second).fspa
+    draw, pools = Draw(2000 + number), {"x": pool, "y": pool}
+    return Case(fspa, f"Predicates: {name.replace('_', ' ')}.", (drawn(fspa, draw, 40, pools),))
+
+
+_REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float], ...]]]] = {
+    "by_zero": (_per(_SHARE, 8.0), _op("tanh", _op("/", _X, _op("-", _Y, 1.0))), ((2, 1), (0, 2), (-0.0, 2), (0, 1))),
+    "no_root": (
+        _per(_op("sqrt", _X), 8.0),
+        _per(_op("^", _op("-", _Y, 1.0), 0.5), 8.0),
+        ((-0.5, 2), (2, 0.5), (-1e-300, 2)),
+    ),
+    "power_of_zero": (_per(_op("^", _X, -1.5), 100.0), _per(_op("^", _Y, _X), 100.0), ((0, 2), (0.5, -2))),
+    "too_large": (
+        _per(_op("exp", _X), 1e4),
+        _per(_op("^", _op("+", _Y, 1.0), _op("*", 100.0, _X)), 1e300),
+        ((1000, 0), (5, 1e6), (710, 0)),
+    ),
+    "beyond_numbers": (
+        _op("+", _op("-", _op("*", 1e308, _X), _op("*", 1e308, _X)), 0.5),
+        _per(_op("+", _op("*", _Y, _Y), _op("*", _Y, 1e307)), 1e308),
+        ((10, 2), (1, 100), (1, -1e200)),
+    ),
+}
+"""Two predicates, and pairs of x and y at which one of them has no value."""
+
+
+def _refusing(name: str) -> Case:
+    first, second, samples = _REFUSED[name]
+    fspa = _both(name, first, second).fspa
+    columns = [signal.name for signal in fspa.signals]
+    before = [(1, 2), (1.5, 2.5)]
+    after = [(1, 2)]
+    traces = [table(columns, [*before, sample, *after]) for sample in samples]
+    return Case(fspa, f"Predicates without a value: {name.replace('_', ' ')}.", tuple(traces))
+
+
+CASES: Final[Makers] = {
+    **{name: partial(_function, number, name) for number, name in enumerate(_EXPRESSIONS)},
+    **{name: partial(_refusing, name) for name in _REFUSED},
+}

@@ -1,0 +1,111 @@
+"""Comparisons over ranges of all sizes, with values next to their thresholds: scaling must not decide a truth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from math import inf, ldexp, nextafter
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile
+from tltlc.pipeline import CompileOptions, compile_source
+from tltlc.tools.conformance.case import Case, Makers
+from tltlc.tools.conformance.draw import Draw
+from tltlc.tools.conformance.traces import table
+
+
+@record
+class Border:
+    """``x OP threshold`` for an x in [low, high]; where the threshold is None, it is another signal of that range."""
+
+    op: str
+    threshold: float | None
+    low: float
+    high: float
+
+    def declaration(self, number: int) -> str:
+        """The signals ``xN`` and, for a threshold that varies, ``yN``."""
+        names = [f"x{number}"] if self.threshold is not None else [f"x{number}", f"y{number}"]
+        return "".join(f"signal {name} in [{self.low!r}, {self.high!r}]\n" for name in names)
+
+    def comparison(self, number: int) -> str:
+        """The comparison in the language."""
+        return f"x{number} {self.op} {f'y{number}' if self.threshold is None else repr(self.threshold)}"
+
+    def values(self) -> Iterator[tuple[float, ...]]:
+        """Pairs of x and the threshold, or x alone: next to each other, and the ends."""
+        for threshold in (self.low, self.high, 0.0) if self.threshold is None else (self.threshold,):
+            for x in (threshold, *_neighbours(threshold), self.low, self.high, 1e-30, -1e-30):
+                if self.low <= x <= self.high and self.low <= threshold <= self.high:
+                    yield (x, threshold) if self.threshold is None else (x,)
+
+    def holds(self, x: float, threshold: float | None = None) -> bool:
+        """The truth of the comparison."""
+        right = self.threshold if threshold is None else threshold
+        assert right is not None, "a threshold that varies is given"
+        return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]
+
+    def truth(self) -> tuple[float, ...]:
+        """Values at which the comparison is true."""
+        x, threshold = (self.high, self.low) if self.op[0] == ">" else (self.low, self.high)
+        return (x, threshold) if self.threshold is None else (x,)
+
+
+def _neighbours(number: float) -> tuple[float, float]:
+    return nextafter(number, -inf), nextafter(number, inf)
+
+
+EXTREMES: Final = (
+    Border(">", -1e308, -1e308, 1e308),
+    Border("<", 0.0, -1.7e308, 1.7e308),
+    Border(">", 0.0, 0.0, 1e300),
+    Border(">=", 0.0, -1e300, 3.0),
+    Border("<", 5e-324, 0.0, 1e-300),
+    Border("<=", 30.0, 0.0, 100.0),
+    Border(">", None, -1.5e308, 1.5e308),
+    Border("<=", None, 0.0, 1e300),
+)
+
+
+def drawn_borders(draw: Draw, count: int) -> tuple[Border, ...]:
+    """Comparisons whose ranges and thresholds have any exponent that a number may have."""
+    found: list[Border] = []
+    while len(found) < count:
+        low, threshold, high = sorted(_any_number(draw) for _ in range(3))
+        if low < threshold < high:
+            op = draw.one(("<", "<=", ">", ">="))
+            found.append(Border(op, None if draw.chance(0.25) else threshold, low, high))
+    return tuple(found)
+
+
+def _any_number(draw: Draw) -> float:
+    """A normal number: Mono's compiler and library misread smaller ones by a bit."""
+    sign = -1.0 if draw.chance(0.5) else 1.0
+    return sign * ldexp(1 + draw.below(1 << 20) / (1 << 20), draw.below(2046) - 1022)
+
+
+def _case(name: str, borders: tuple[Border, ...]) -> Case:
+    """All comparisons at once, again and again: in each row all but at most one are true."""
+    numbered = list(enumerate(borders, start=1))
+    declarations = "".join(border.declaration(number) for number, border in numbered)
+    formula = " and ".join(border.comparison(number) for number, border in numbered)
+    text = f"{declarations}\nspec {name} = always eventually ({formula})\n"
+    (fspa,) = compile_source(SourceFile(f"{name}.tltl", text), CompileOptions(specs=(name,))).automata
+    columns = [f"{letter}{number}" for number, border in numbered for letter in "xy"[: len(border.truth())]]
+    rows = [
+        [each for n, b in numbered for each in (values if n == number else b.truth())]
+        for number, border in numbered
+        for values in border.values()
+    ]
+    return Case(fspa, "Comparisons next to their thresholds, in ranges of all sizes.", (table(columns, rows),), text)
+
+
+def _drawn(name: str, seed: int) -> Case:
+    return _case(name, drawn_borders(Draw(seed), 8))
+
+
+CASES: Final[Makers] = {
+    "borders": partial(_case, "borders", EXTREMES),
+    **{f"borders_{n}": partial(_drawn, f"borders_{n}", 8000 + n) for n in range(1, 4)},
+}

@@ -1,0 +1,127 @@
+"""The corpus as files: a folder per case, an index, and a page on how to check a monitor against them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from tltlc import backends
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
+from tltlc.expression.tree import Const, Op, nodes
+from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.tools.conformance import arithmetic, borders, odd_traces, operators, random_cases, shapes
+from tltlc.tools.conformance import file_cases as written
+from tltlc.tools.conformance.case import Case, Makers
+from tltlc.tools.conformance.expected import COLUMNS, Expected, Refusal, expected
+
+CASES: Final[Makers] = {
+    **written.CASES,
+    **operators.CASES,
+    **arithmetic.CASES,
+    **borders.CASES,
+    **shapes.CASES,
+    **odd_traces.CASES,
+    **random_cases.CASES,
+}
+
+VERSION: Final = 1
+TOLERANCE: Final = 1e-12
+"""How far numbers may be off where a case is not exact."""
+
+_ROUNDED_ANYHOW: Final = ("exp", "tanh", "^")
+"""Operators that each language's library rounds in its own way."""
+
+
+def files() -> backends.Files:
+    """Every file of the corpus, by its path with slashes."""
+    found: backends.Files = {}
+    index: list[dict[str, Any]] = []
+    for make in CASES.values():
+        case = make()
+        outcomes = [expected(case.fspa, trace) for trace in case.traces]
+        index.append(_entry(case, outcomes))
+        found.update(_folder(case, outcomes))
+    document = {"version": VERSION, "columns": list(COLUMNS), "tolerance": TOLERANCE, "cases": index}
+    return {
+        "README.md": _beside("about.md"),
+        "check.py": _beside("check.py"),
+        "index.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n",
+        **found,
+    }
+
+
+def is_corpus(folder: Path) -> bool:
+    """Whether an earlier run has written into this folder: its index is there, of any version."""
+    try:
+        document = json.loads(read_source(folder / "index.json", max_bytes=MAX_ARTEFACT_BYTES).text)
+    except (TltlError, ValueError, RecursionError):
+        return False
+    return isinstance(document, dict) and document.keys() >= {"version", "columns", "tolerance", "cases"}
+
+
+def is_exact(fspa: Fspa) -> bool:
+    """Whether numbers are the same to the last digit everywhere: each operation is one that IEEE 754 defines."""
+    operations = [node for atom in fspa.atoms for node in nodes(atom.expression) if isinstance(node, Op)]
+    return all(node.op not in _ROUNDED_ANYHOW or _is_product(node) for node in operations)
+
+
+def _is_product(node: Op) -> bool:
+    """Whether it is a power that is computed by multiplication."""
+    exponent = node.args[-1]
+    return node.op == "^" and isinstance(exponent, Const) and exponent.value in MULTIPLIED_EXPONENTS
+
+
+def _folder(case: Case, outcomes: Sequence[Expected]) -> backends.Files:
+    """The files of one case."""
+    name = case.fspa.name
+    found = backends.emit("json", case.fspa)
+    if case.source is not None:
+        found[f"{name}.tltl"] = case.source
+    for number, (trace, outcome) in enumerate(zip(case.traces, outcomes, strict=True), start=1):
+        found[f"{name}.{number}.csv"] = trace
+        found[f"{name}.{number}.expected.csv"] = outcome.table()
+        if outcome.refusal is not None:
+            found[f"{name}.{number}.error.txt"] = _said(outcome.refusal)
+    return {f"{name}/{file}": content for file, content in found.items()}
+
+
+def _said(refusal: Refusal) -> str:
+    lines = [f"kind: {refusal.kind}", f"step: {refusal.step}", *(f"name: {name}" for name in refusal.names)]
+    if refusal.line is not None:
+        lines.insert(2, f"line: {refusal.line}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
+    """What the index says of a case."""
+    fspa, name = case.fspa, case.fspa.name
+    traces = []
+    for number, outcome in enumerate(outcomes, start=1):
+        refusal = outcome.refusal
+        error = refusal and refusal.document()
+        stem = f"{name}/{name}.{number}"
+        row: dict[str, Any] = {"trace": f"{stem}.csv", "expected": f"{stem}.expected.csv", "rows": len(outcome.rows)}
+        traces.append(row | {"warnings": outcome.warnings, "error": error})
+    return {
+        "name": name,
+        "about": case.about,
+        "artefact": f"{name}/{name}.fspa.json",
+        "source": None if case.source is None else f"{name}/{name}.tltl",
+        "semantics": fspa.semantics,
+        "judge": fspa.judge,
+        "limit_steps": fspa.limit_steps,
+        "exact": is_exact(fspa),
+        "traces": traces,
+    }
+
+
+def _beside(name: str) -> str:
+    """A file that lies beside this one."""
+    path = os.path.join(os.path.dirname(__file__), name)  # noqa: PTH118, PTH120
+    with open(path, encoding="utf-8") as file:  # noqa: PTH123
+        return file.read()

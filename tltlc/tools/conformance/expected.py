@@ -1,0 +1,142 @@
+"""What the monitor says of a trace: rows, and why it refuses a sample."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any, Final, Literal
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.expression.evaluate import evaluate
+from tltlc.monitor import Monitor, Step
+from tltlc.monitor.trace_rows import Lines, Table, read_rows
+from tltlc.monitor.traces import Sample, read_trace
+
+Kind = Literal["no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"]
+
+COLUMNS: Final = (
+    *("step", "state", "verdict", "accepting", "done", "progress", "reward"),
+    *("robustness", "limiting"),
+)
+
+
+@record
+class Refusal:
+    """Why a trace is refused, at which step (from 1), and the signals or atoms that are to blame.
+
+    ``line`` is that of the file (from 1) where it cannot be read; None where the monitor refuses a sample.
+    """
+
+    kind: Kind
+    step: int
+    names: tuple[str, ...] = ()
+    line: int | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The refusal in the index of the corpus."""
+        return {"kind": self.kind, "step": self.step, "names": list(self.names), "line": self.line}
+
+
+@record
+class Expected:
+    """The rows before the end or the refusal, without the header, and how many values had to be clamped."""
+
+    rows: tuple[tuple[str, ...], ...]
+    refusal: Refusal | None
+    warnings: int
+
+    def table(self) -> str:
+        """The rows as CSV."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        writer.writerows(self.rows)
+        return text.getvalue()
+
+
+def expected(fspa: Fspa, trace: bytes) -> Expected:
+    """What a monitor of the automaton says of a CSV file."""
+    monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), Sample()
+    refusal = None
+    try:
+        for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
+            rows.append(_cells(len(rows) + 1, monitor.step(sample)))
+    except TltlError as error:
+        refusal = _refusal(fspa, error.diagnostics[0], len(rows) + 1, trace, sample)
+    return Expected(tuple(rows), refusal, len(monitor.notices))
+
+
+def _cells(number: int, step: Step) -> tuple[str, ...]:
+    flags = [str(flag).lower() for flag in (step.accepting, step.done)]
+    numbers = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
+    return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
+
+
+def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Refusal:
+    """The refusal that a diagnostic's code stands for; what it says in words is found out anew."""
+    if error.code == "TLT0620":
+        return Refusal("no sample", step)
+    if error.code == "TLT0612":
+        return Refusal("not finite", step, tuple(_infinite(fspa, sample)[:1]))
+    if error.code == "TLT0613":
+        kind, atom = _without_value(fspa, sample)
+        return Refusal(kind, step, (atom,))
+    if error.code == "TLT0614":
+        return Refusal("together", step, _together(fspa, sample))
+    label = error.labels[0]
+    line, _ = label.source.position(label.span.start)
+    if error.code == "TLT0621":
+        return Refusal("missing signal", step, _missing(fspa, trace), line)
+    return Refusal("bad cell", step, line=line)
+
+
+def _missing(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
+    """The signals that have no column."""
+    table = read_rows(Lines(io.BytesIO(trace), "trace"))
+    header = table.header if isinstance(table, Table) else ()
+    return tuple(signal.name for signal in fspa.signals if signal.name not in header)
+
+
+def _infinite(fspa: Fspa, sample: Sample) -> list[str]:
+    return [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
+
+
+def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
+    """The first atom that has none, and why."""
+    signals, params = _clamped(fspa, sample), {param.name: param.value for param in fspa.params}
+    too_large: str | None = None
+    for atom in fspa.atoms:
+        try:
+            value = evaluate(atom.expression, signals, params)
+        except ZeroDivisionError:
+            return "by zero", atom.name
+        except OverflowError:
+            return "too large", atom.name
+        except ValueError:
+            return "no root", atom.name
+        # All are computed before any is checked.
+        too_large = too_large or (None if isfinite(value) else atom.name)
+    assert too_large is not None, "some atom has no value"
+    return "too large", too_large
+
+
+def _together(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
+    """The atoms of the first group of which several hold."""
+    signals, params = _clamped(fspa, sample), {param.name: param.value for param in fspa.params}
+    holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]
+    holding = [[atom for atom in group if holds[atom]] for group in fspa.exclusive]
+    return tuple(fspa.atoms[atom].name for atom in next(group for group in holding if len(group) > 1))
+
+
+def _clamped(fspa: Fspa, sample: Mapping[str, float]) -> dict[str, float]:
+    """The signals within their ranges."""
+    values = {}
+    for signal in fspa.signals:
+        value = sample[signal.name]
+        value = value if signal.low is None or value >= signal.low else signal.low
+        values[signal.name] = value if signal.high is None or value <= signal.high else signal.high
+    return values

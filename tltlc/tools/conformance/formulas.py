@@ -1,0 +1,26 @@
+"""Random formulas, with every operator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from tltlc.logic import formula as f
+from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.tools.conformance.draw import Draw
+
+UNARY: Final[tuple[Callable[[Formula], Formula], ...]] = (f.not_, f.next_, f.weak_next, f.eventually, f.always)
+BINARY: Final[tuple[Callable[[Formula, Formula], Formula], ...]] = (
+    *(f.and_, f.or_, f.implies, f.iff, f.then),
+    *(f.until, f.weak_until, f.release, f.strong_release),
+)
+
+
+def formula(draw: Draw, atoms: Sequence[str], leaves: int) -> Formula:
+    """A formula with as many leaves, most of them atoms."""
+    if leaves == 1:
+        leaf = draw.one((TRUE, FALSE)) if draw.chance(0.05) else f.atom(draw.one(atoms))
+        return draw.one(UNARY)(leaf) if draw.chance(0.5) else leaf
+    left = 1 + draw.below(leaves - 1)
+    found = draw.one(BINARY)(formula(draw, atoms, left), formula(draw, atoms, leaves - left))
+    return draw.one(UNARY)(found) if draw.chance(0.3) else found

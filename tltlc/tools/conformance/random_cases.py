@@ -1,0 +1,80 @@
+"""Cases from a seed: formulas and predicates as nobody would write them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from itertools import combinations
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import EMPTY
+from tltlc.expression.tree import Expression
+from tltlc.logic import formula as f
+from tltlc.resolve.spec import Judge
+from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.draw import Draw
+from tltlc.tools.conformance.expressions import PARAMS, SIGNALS, predicate
+from tltlc.tools.conformance.formulas import formula
+from tltlc.tools.conformance.traces import drawn, lively
+
+_ATOMS: Final = ("a", "b", "c")
+_VALUES: Final = (-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0)
+_JUDGES: Final[tuple[Judge, ...]] = ("goal", "limit")
+_OPEN: Final = ("pending", "holding")
+_STATES: Final = range(2, 10)
+"""Fewer show little, more take long to compile."""
+
+
+def _of_formula(name: str, seed: int, infinite: bool) -> Case:
+    """A random formula over signals."""
+    draw = Draw(seed)
+    fspa = _automaton(name, draw, infinite)
+    pools = {signal.name: _VALUES for signal in fspa.signals}
+    traces = tuple(lively(fspa, draw, 20 + 10 * number, pools) for number in range(2))
+    return Case(fspa, f"A random formula: {fspa.formula.ascii}.", traces)
+
+
+def _of_predicates(name: str, seed: int) -> Case:
+    """A random formula over random predicates."""
+    draw = Draw(seed)
+    expressions = {atom: predicate(draw) for atom in _ATOMS}
+    fspa = _automaton(name, draw, False, expressions)
+    traces = (lively(fspa, draw, 30), drawn(fspa, draw, 12, refused=True))
+    return Case(fspa, f"Random predicates under {fspa.formula.ascii}.", traces)
+
+
+def _automaton(name: str, draw: Draw, infinite: bool, expressions: Mapping[str, Expression] = EMPTY) -> Fspa:
+    """The first automaton of a fit size."""
+    while True:
+        asked = formula(draw, _ATOMS, 3 + draw.below(3))
+        if expressions:
+            # What is asked again and again shows a predicate's value at each step.
+            asked = f.always(f.eventually(asked))
+        groups = [
+            pair for pair in combinations(dict.fromkeys(asked.atoms()), 2) if not expressions and draw.chance(0.15)
+        ]
+        limit = 2 + draw.below(20) if draw.chance(0.6) else None
+        judge = draw.one(_JUDGES)
+        if infinite and len(set(asked.atoms())) < 2:
+            continue
+        fspa = automaton(
+            name,
+            asked,
+            expressions,
+            SIGNALS,
+            PARAMS,
+            exclusive=groups,
+            limit=limit,
+            judge=judge,
+            infinite=infinite,
+        )
+        if len(fspa.states) in _STATES and fspa.states[0].verdict in _OPEN and len(fspa.atoms) > 1:
+            return fspa
+
+
+CASES: Final[Makers] = {
+    **{f"random_{n}": partial(_of_formula, f"random_{n}", 4000 + n, False) for n in range(1, 9)},
+    **{f"random_infinite_{n}": partial(_of_formula, f"random_infinite_{n}", 5000 + n, True) for n in range(1, 4)},
+    **{f"random_predicates_{n}": partial(_of_predicates, f"random_predicates_{n}", 6000 + n) for n in range(1, 8)},
+}

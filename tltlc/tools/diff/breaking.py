@@ -1,0 +1,160 @@
+"""What changed from one version of a file to another that a host or a recorded baseline notices.
+
+A host is a game that supplies signals and runs a monitor; a baseline is anything recorded earlier that a spec has
+judged.  Findings are diagnostics: what breaks one of the two is an error, what changes numbers alone a warning, and
+what both can ignore a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from tltlc.automaton.infinite.work import DEFAULT_WORK
+from tltlc.core.record import EMPTY, record, replace
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.resolve.spec import Atom
+from tltlc.tools.diff import findings as say
+from tltlc.tools.diff.differences import Difference, renamed_params
+from tltlc.tools.diff.pairs import Pair, diff
+from tltlc.tools.diff.renaming import renamed_signals, with_names_of, with_signals
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa
+    from tltlc.tools.diff.library import Offer
+    from tltlc.tools.diff.rules import Rules
+
+_OF_ALL: Final = ("clock", "signal", "param", "atom")
+"""What the specs of a file share."""
+
+
+@record
+class Version:
+    """A file at one time: its automata, where its specs are declared, and what it offers if it has no specs.
+
+    ``rules`` are of a file without specs that is there.
+    """
+
+    automata: tuple[Fspa, ...] = ()
+    places: Mapping[str, Label] = EMPTY
+    offers: Mapping[str, Offer] = EMPTY
+    rules: Rules | None = None
+
+
+@record
+class Move:
+    """A spec that has another file or another name: as it was and where, as it is and where."""
+
+    old: Fspa
+    new: Fspa
+    was_at: Label
+    is_at: Label
+
+
+@record
+class Change:
+    """A file at a path as it was and as it is, where there is none with an empty version; ``moves`` came to it.
+
+    Specs that moved are in neither version.
+    """
+
+    path: str
+    old: Version
+    new: Version
+    moves: tuple[Move, ...] = ()
+
+
+def breaking(change: Change, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
+    """Everything that changed, in the order of the specs, and then of what they use.
+
+    Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 where a comparison takes more than ``work``.
+    """
+    old, new = change.old, change.new
+    if not (old.automata or new.automata or change.moves):
+        from tltlc.tools.diff.offers import changed_offers
+
+        return (*changed_offers(old.offers, new.offers), *_changed_rules(old, new))
+    return tuple(_specs(old, new, change.moves, work))
+
+
+def _changed_rules(old: Version, new: Version) -> Iterator[Diagnostic]:
+    if old.rules is not None and new.rules is not None:
+        from tltlc.tools.diff.rules import changed_rules
+
+        yield from changed_rules(old.rules, new.rules)
+
+
+def _specs(old: Version, new: Version, moves: Sequence[Move], work: int) -> Iterator[Diagnostic]:
+    before = {fspa.name: fspa for fspa in old.automata}
+    after = {fspa.name: fspa for fspa in new.automata}
+    for name in before:
+        if name not in after:
+            yield say.spec_gone(name, old.places[name])
+    for move in moves:
+        if move.old.name == move.new.name:
+            yield say.spec_moved(move.new.name, move.was_at, move.is_at)
+        else:
+            yield say.spec_renamed(move.old.name, move.new.name, move.was_at, move.is_at)
+    for name in after:
+        if name not in before:
+            yield say.spec_added(name, new.places[name])
+    pairs = [compared(before[name], fspa, work) for name, fspa in after.items() if name in before]
+    pairs += [compared(move.old, move.new, work) for move in moves]
+    for pair in pairs:
+        place = new.places[pair.b.name]
+        if pair.comparison.relation not in ("equivalent", None):
+            yield say.other_traces(pair, place)
+        for difference in pair.differences:
+            if difference.what not in _OF_ALL:
+                yield say.judged_otherwise(pair.b.name, difference, place)
+    yield from _of_all(pairs, new.places)
+
+
+def compared(old: Fspa, new: Fspa, work: int) -> Pair:
+    """What is different, with atoms of one name for one: what became of their values is said beside.
+
+    An atom or signal that has another name is a difference, too, of the old name.  Error as of :func:`breaking`.
+    """
+    known = with_names_of(old, new)
+    names = renamed_signals(old, known)
+    found = diff(with_signals(old, names), known, True, work)
+    of_old, of_new = ({signal.name: signal for signal in fspa.signals} for fspa in (old, new))
+    renamed = [Difference("signal", name, of_old[name], of_new[now]) for name, now in names.items()]
+    renamed += [
+        Difference("atom", before.name, before, now)
+        for before, now in zip(known.atoms, new.atoms, strict=True)
+        if before.name != now.name
+    ]
+    return replace(found, differences=(*renamed, *found.differences))
+
+
+def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
+    """What changed of the clock, signals, params and atoms, each said once for all specs that use it."""
+    users: dict[Difference, list[Pair]] = {}
+    for pair in pairs:
+        for difference in pair.differences:
+            if difference.what in _OF_ALL:
+                users.setdefault(difference, []).append(pair)
+    new_names = renamed_params(users)
+    alike: dict[tuple[str, bool], list[Difference]] = {}
+    called: dict[str, list[Difference]] = {}
+    for difference, using in users.items():
+        place, specs = places[using[0].b.name], [pair.b.name for pair in using]
+        if difference.what == "clock":
+            yield say.clock(difference, specs, place)
+        elif difference.what == "signal":
+            yield say.signal(difference, specs, place)
+        elif difference.what == "param" and difference.name not in new_names.values():
+            yield say.param(difference, new_names.get(difference.name), place)
+        elif isinstance(difference.b, Atom) and difference.b.name != difference.name:
+            called.setdefault(difference.name.partition("(")[0], []).append(difference)
+        elif difference.apart is not None:
+            predicate = difference.name.partition("(")[0]
+            alike.setdefault((predicate, difference.apart.is_judged_otherwise), []).append(difference)
+    for several in called.values():
+        yield say.atoms_called(several, places[users[several[0]][0].b.name])
+    for first, *others in alike.values():
+        using = users[first]
+        # Specs that call signals otherwise find other samples of one atom.
+        names = list(dict.fromkeys(each.name for each in others if each.name != first.name))
+        yield say.atom(first, names, using[0], places[using[0].b.name])

@@ -1,0 +1,285 @@
+"""The findings of ``tltlc breaking`` as messages, each with one way out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, Union
+
+from tltlc.automaton.compare import Trace
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
+from tltlc.resolve.spec import Atom, Param, Signal, ValueType
+from tltlc.resolve.values import number_text
+from tltlc.tools.diff.differences import Difference
+from tltlc.tools.diff.pairs import Pair
+from tltlc.tools.diff.phrases import ends_text, listed, sample_text, type_text, value_text, values_text
+from tltlc.tools.diff.traces import step_lines
+from tltlc.tools.diff.values import Apart
+
+BREAKING: Final[Severity] = "error"
+"""A host must be changed, or what was recorded is judged otherwise."""
+CHANGED: Final[Severity] = "warning"
+"""Numbers or behaviour differ, and nothing stops working."""
+COMPATIBLE: Final[Severity] = "note"
+"""Nothing needs to be done."""
+
+_MOST_LINES: Final = 8
+"""Of a trace in a message."""
+_ANEW: Final = "if this is meant, record baselines anew"
+
+
+def spec_gone(name: str, place: Label) -> Diagnostic:
+    """TLT0752: a spec is no longer there."""
+    way_out = "keep it, or tell those who load its artefact or monitor"
+    return Diagnostic("TLT0752", f"the spec `{name}` is gone", (was(place),), way_out, BREAKING)
+
+
+def spec_renamed(old: str, new: str, before: Label, place: Label) -> Diagnostic:
+    """TLT0752: a spec has another name, and accepts the same traces."""
+    title = f"the spec `{old}` is called `{new}` now"
+    way_out = "keep the old name, or tell those who load its artefact or monitor by it"
+    return Diagnostic("TLT0752", title, (place, was(before)), way_out, BREAKING)
+
+
+def spec_moved(name: str, before: Label, place: Label) -> Diagnostic:
+    """TLT0752: a spec is in another file."""
+    title = f"the spec `{name}` has moved here from `{before.source.name}`"
+    way_out = "name this file where that one is named; artefacts and monitors are called as before"
+    return Diagnostic("TLT0752", title, (place,), way_out, COMPATIBLE)
+
+
+def spec_added(name: str, place: Label) -> Diagnostic:
+    """TLT0752: a spec is new."""
+    return Diagnostic("TLT0752", f"the spec `{name}` is new", (place,), "nothing needs to be done", COMPATIBLE)
+
+
+def other_traces(pair: Pair, place: Label) -> Diagnostic:
+    """TLT0753: a spec accepts other traces than before."""
+    name, comparison = pair.b.name, pair.comparison
+    if comparison.only_a is None:
+        assert comparison.only_b is not None
+        title = f"`{name}` is looser: it accepts traces that it did not"
+        way_out = f"if this is not meant, it must rule out:{_trace(pair, comparison.only_b)}"
+        return Diagnostic("TLT0753", title, (place,), way_out, CHANGED)
+    title = f"`{name}` is stricter: traces that it accepted are not accepted now"
+    if comparison.relation == "incomparable":
+        title = f"`{name}` accepts other traces: some that it accepted are not accepted now, and others are"
+    if pair.b.states[0].verdict == "violated":
+        title = f"`{name}` is stricter: no trace satisfies it any more"
+    way_out = f"if this is not meant, it must accept:{_trace(pair, comparison.only_a)}"
+    return Diagnostic("TLT0753", title, (place,), way_out, BREAKING)
+
+
+def signal(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0754 and TLT0755: what a host must supply to the monitors of some specs."""
+    name, used_by = difference.name, listed(specs)
+    if difference.a is None:
+        assert isinstance(difference.b, Signal)
+        title = f"the signal `{name}` must be supplied now, to {used_by}"
+        way_out = f"have the game supply it: {type_text(difference.b)}"
+        return Diagnostic("TLT0754", title, (place,), way_out, BREAKING)
+    if difference.b is None:
+        title = f"the signal `{name}` is no longer read, by {used_by}"
+        return Diagnostic("TLT0754", title, (place,), "the game may stop supplying it", COMPATIBLE)
+    assert isinstance(difference.a, Signal) and isinstance(difference.b, Signal)
+    if difference.b.name != name:
+        title = f"the signal `{difference.b.name}` must be supplied now in place of `{name}`, to {used_by}"
+        return Diagnostic("TLT0754", title, (place,), f"have the game supply it: {type_text(difference.b)}", BREAKING)
+    return signal_type(difference.a, difference.b, place)
+
+
+def signal_type(old: Signal, new: Signal, place: Label) -> Diagnostic:
+    """TLT0755: a signal has another type, unit or range."""
+    name = new.name
+    if old.type != new.type:
+        title = f"the signal `{name}` is {_article(new.type)} now, and was {_article(old.type)}"
+        return Diagnostic("TLT0755", title, (place,), f"have the game supply it as {type_text(new)}", BREAKING)
+    title = f"the signal `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
+    if _is_within(old, new):
+        way_out = "nothing needs to be done for hosts; atoms that are scaled by the range are reported themselves"
+        return Diagnostic("TLT0755", title, (place,), way_out, COMPATIBLE)
+    way_out = "what the game supplies beyond an end counts as that end: look whether it does"
+    return Diagnostic("TLT0755", title, (place,), way_out, BREAKING)
+
+
+def param(difference: Difference, new_name: str | None, place: Label) -> Diagnostic:
+    """TLT0756: a param is gone, new, renamed, or has another value or range."""
+    name, old, new = difference.name, difference.a, difference.b
+    if not isinstance(old, Param):
+        assert isinstance(new, Param)
+        title = f"the param `{name}` is new, with the value {value_text(new.value, new.type)}"
+        return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
+    if new_name is not None:
+        title = f"the param `{name}` is called `{new_name}` now"
+        return Diagnostic("TLT0756", title, (place,), f"set `{new_name}` wherever `{name}` is set", BREAKING)
+    if not isinstance(new, Param):
+        title = f"the param `{name}` is gone"
+        return Diagnostic("TLT0756", title, (place,), "no longer set it: to do so is an error", BREAKING)
+    if old.type != new.type:
+        title = f"the param `{name}` is {_article(new.type)} now, and was {_article(old.type)}"
+        return Diagnostic("TLT0756", title, (place,), f"set it as {type_text(new)}", BREAKING)
+    if old.value != new.value:
+        now, before = value_text(new.value, new.type), value_text(old.value, old.type)
+        title = f"the param `{name}` is {now} now, and was {before}"
+        if not _is_within(old, new):
+            title += f", and its range is {ends_text(new)}, and was {ends_text(old)}"
+        way_out = f"where the old value is needed, set it: `{name}={before}`"
+        return Diagnostic("TLT0756", title, (place,), way_out, CHANGED if _is_within(old, new) else BREAKING)
+    title = f"the param `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
+    if _is_within(old, new):
+        return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
+    return Diagnostic("TLT0756", title, (place,), "set it to a value inside: others are an error now", BREAKING)
+
+
+def atom(difference: Difference, others: Sequence[str], pair: Pair, place: Label) -> Diagnostic:
+    """TLT0757: an atom has other values; ``others`` are atoms of the same predicate that have, too."""
+    assert difference.apart is not None
+    types: dict[str, ValueType] = {each.name: each.type for each in (*pair.a.signals, *pair.b.signals)}
+    return values(f"`{difference.name}`", others, difference.apart, types, place)
+
+
+def atoms_called(several: Sequence[Difference], place: Label) -> Diagnostic:
+    """TLT0757: atoms of a predicate have other names, and are the same."""
+    names = [each.b.name for each in several if isinstance(each.b, Atom)]
+    are = "is" if len(names) == 1 else "are"
+    title = f"{listed([each.name for each in several])} {are} called {listed(names)} now"
+    way_out = "nothing needs to be done, unless the game looks for the name in what a monitor says"
+    return Diagnostic("TLT0757", title, (place,), way_out, COMPATIBLE)
+
+
+def values(
+    what: str, others: Sequence[str], apart: Apart, types: dict[str, ValueType], place: Label, kind: str = "atom"
+) -> Diagnostic:
+    """TLT0757: an atom or predicate has other values, with a sample that shows it."""
+    title = f"the {kind} {what} is {'judged' if apart.is_judged_otherwise else 'scaled'} otherwise"
+    if others:
+        title += f", as {'is' if len(others) == 1 else 'are'} {listed(others)}"
+    before, now = values_text(apart)
+    where = sample_text(apart.sample, types)
+    way_out = f"{where} it is {now}, and was {before}; {_ANEW}"
+    if not apart.is_judged_otherwise:
+        way_out = f"{where} it is {now}, and was {before}: progress and rewards differ, and no verdict does"
+    return Diagnostic("TLT0757", title, (place,), way_out, BREAKING if apart.is_judged_otherwise else CHANGED)
+
+
+def clock(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0758: the clock of specs is another one."""
+    are, were = ("is", "was") if len(specs) == 1 else ("are", "were")
+    title = f"{listed(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
+    return Diagnostic("TLT0758", title, (place,), _as_often(difference.b), BREAKING)
+
+
+def clock_of_all(old: float | None, new: float | None, place: Label) -> Diagnostic:
+    """TLT0758: the clock that a library declares is another one."""
+    title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
+    return Diagnostic("TLT0758", title, (place,), _as_often(new), BREAKING)
+
+
+def exclusive_now(names: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0758: a library declares atoms to be exclusive."""
+    way_out = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
+    return Diagnostic("TLT0758", f"{listed(names)} are exclusive now", (place,), way_out, BREAKING)
+
+
+def no_longer_exclusive(names: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0758: a library no longer does."""
+    title = f"{listed(names)} are no longer exclusive"
+    return Diagnostic(
+        "TLT0758", title, (was(place),), "steps may be skipped, so progress and rewards may differ", CHANGED
+    )
+
+
+def judged_otherwise(name: str, difference: Difference, place: Label) -> Diagnostic:
+    """TLT0758: a spec has another limit, judge, level, meaning of traces, or other ``exclusive`` atoms."""
+    old, new = difference.a, difference.b
+    severity, way_out = BREAKING, _ANEW
+    match difference.what:
+        case "semantics":
+            title = f"`{name}` is about {_traces(new)} now, and was about {_traces(old)}"
+        case "judge":
+            title = f"`{name}` is judged at the {new} now, and was judged at the {old}"
+            way_out = f"if this is not meant, write `judge at {old}`"
+        case "limit":
+            title = f"`{name}` has {_limit(new)} now, and had {_limit(old)}"
+        case "level":
+            title = f"`{name}` is about {_level(new)} now, and was about {_level(old)}"
+            severity, way_out = CHANGED, "look whether what loads it picks the level by this"
+        case _:
+            names = new if isinstance(new, tuple) else old if isinstance(old, tuple) else ()
+            if old is None:
+                title = f"{listed(names)} are exclusive in `{name}` now"
+                way_out = "a sample in which two of them hold is an error now: look whether the game has such"
+            else:
+                title = f"{listed(names)} are no longer exclusive in `{name}`"
+                severity, way_out = CHANGED, "steps may be skipped, so progress and rewards may differ"
+    return Diagnostic("TLT0758", title, (place,), way_out, severity)
+
+
+def offer_gone(kind: str, name: str, place: Label) -> Diagnostic:
+    """TLT0759: a library no longer declares a name."""
+    way_out = "keep it, at least as another name for what took its place"
+    return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (was(place),), way_out, BREAKING)
+
+
+def other_parameters(kind: str, name: str, place: Label, why: str) -> Diagnostic:
+    """TLT0759: what used a declaration of a library can no longer be written so."""
+    way_out = "add parameters behind the others, with a default, and leave the others as they are"
+    return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), way_out, BREAKING)
+
+
+def reads(predicate: str, signals: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0754: a predicate of a library reads signals that it did not."""
+    title = f"the predicate `{predicate}` reads {listed(signals)} now"
+    way_out = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
+    return Diagnostic("TLT0754", title, (place,), way_out, BREAKING)
+
+
+def was(place: Label) -> Label:
+    """The place of something that is gone, with that remark."""
+    return replace(place, message="it was here")
+
+
+def _trace(pair: Pair, trace: Trace) -> str:
+    """A trace behind a colon: of one line on the same line, else on lines of their own, as far as it is short."""
+    lines = step_lines(pair, trace.prefix)
+    if trace.cycle:
+        lines.append(f"{'then ' if lines else ''}again and again:")
+        lines += [f"  {line}" for line in step_lines(pair, trace.cycle)]
+    if len(lines) == 1:
+        return f" {lines[0]}"
+    if len(lines) > _MOST_LINES:
+        steps = len(trace.prefix) + len(trace.cycle)
+        lines = [*lines[: _MOST_LINES - 1], f"… ({steps} steps; `tltlc diff` shows them all)"]
+    return "\n".join(["", *lines])
+
+
+def _is_within(old: Union[Signal, Param], new: Union[Signal, Param]) -> bool:
+    """Whether the new range has all of the old one in it."""
+    low = new.low is None or (old.low is not None and new.low <= old.low)
+    return low and (new.high is None or (old.high is not None and old.high <= new.high))
+
+
+def _article(type_: str) -> str:
+    return f"{'an' if type_ == 'angle' else 'a'} {type_}"
+
+
+def _traces(semantics: object) -> str:
+    return f"{semantics} traces"
+
+
+def _limit(limit: object) -> str:
+    return "no limit" if limit is None else f"a limit of {limit} step{'' if limit == 1 else 's'}"
+
+
+def _level(level: object) -> str:
+    return f"the level `{level}`" if level else "no level in particular"
+
+
+def _as_often(period: object) -> str:
+    if period is None:
+        return "declare the old clock, if the game takes steps by it"
+    return "have the game take a step as often"
+
+
+def _clock(period: object) -> str:
+    return f"every {number_text(period)} s" if isinstance(period, float) else "by no clock"

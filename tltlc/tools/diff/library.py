@@ -1,0 +1,96 @@
+"""What a library offers to those who import it: its declarations, and the values of its predicates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import inf
+from typing import Literal, cast
+
+from tltlc.core.record import EMPTY, record, replace
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.expression.tree import Signal as SignalNode
+from tltlc.grammar.tree import Argument, Call, LetDecl, Name, Parameter, PredicateDecl, SignalDecl
+from tltlc.resolve import units
+from tltlc.resolve.predicates import predicate
+from tltlc.resolve.problem import ResolutionError
+from tltlc.resolve.scope import Binding
+from tltlc.resolve.spec import Param, Signal, ValueType
+from tltlc.resolve.values import Entity, Env, Quantity, Value
+from tltlc.tools.diff.values import Meaning, meaning_of
+
+Kind = Literal["signal", "param", "predicate", "let", "entity"]
+
+
+@record
+class Offer:
+    """What a name of a library stands for.
+
+    ``is_own``: the library declares it itself, and does not import it.  ``value`` is that of a signal or param.
+    ``meanings`` are of an own predicate, by how many of its parameters are given; the others have their defaults.
+    Numbers that are given count as signals named after their parameters.
+    """
+
+    name: str
+    kind: Kind
+    parameters: tuple[Parameter, ...]
+    place: Label
+    is_own: bool
+    value: Signal | Param | None = None
+    meanings: Mapping[int, Meaning] = EMPTY
+
+
+def offers(env: Env) -> Mapping[str, Offer]:
+    """What a module that was resolved without errors offers, by name."""
+    return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
+
+
+def _offer(name: str, binding: Binding, env: Env) -> Offer:
+    declaration, context = binding.declaration, env.context
+    parameters = declaration.parameters if isinstance(declaration, (SignalDecl, PredicateDecl, LetDecl)) else ()
+    place = Label(binding.scope.source, binding.span)
+    found = Offer(name, binding.kind, parameters, place, binding.scope is env.scope)
+    if binding.kind == "signal":
+        info = context.signal_infos[binding.name]
+        return replace(found, value=info.of(info.parameters))
+    if binding.kind == "param":
+        return replace(found, value=context.params[binding.name])
+    if binding.kind == "predicate" and found.is_own:
+        return replace(found, meanings=dict(_meanings(binding, parameters, env)))
+    return found
+
+
+def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> Iterator[tuple[int, Meaning]]:
+    needed = max((place for place, each in enumerate(parameters, start=1) if each.default is None), default=0)
+    for count in range(needed, len(parameters) + 1):
+        found = _meaning(binding, parameters[:count], env)
+        if found is not None:
+            yield count, found
+
+
+def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meaning | None:
+    """The meaning with these parameters left open; None where a predicate has none, such as one of units unknown."""
+    local: dict[str, Value] = {}
+    open_: list[Signal] = []
+    for parameter in given:
+        if parameter.type == "entity":
+            local[parameter.name] = Entity(parameter.name)
+            continue
+        bounded = parameter.type in ("ratio", "bool")
+        type_ = cast(ValueType, parameter.type or "number")
+        signal = Signal(parameter.name, type_, 0.0 if bounded else None, 1.0 if bounded else None)
+        open_.append(signal)
+        # Any kind of number fits where no type is written.
+        dimension = units.TYPES[type_] if parameter.type else None
+        low, high = (0.0, 1.0) if bounded else (-inf, inf)
+        local[parameter.name] = Quantity(
+            SignalNode(signal.name), dimension, low, high, signal.name, is_bool=type_ == "bool"
+        )
+    span = binding.span
+    arguments = tuple(Argument(parameter.name, Name(parameter.name, span), span) for parameter in given)
+    use = Call(binding.name, arguments, span, span) if arguments else Name(binding.name, span)
+    try:
+        value = predicate(use, binding, replace(env, local=local, symbolic=True)).value
+    except ResolutionError:
+        return None
+    signals = (*open_, *env.context.signals.values())
+    return meaning_of(value.expression, signals, tuple(env.context.params.values()))

@@ -1,0 +1,87 @@
+"""Atoms and signals that have another name and are the same all the same."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from tltlc.core.record import replace
+from tltlc.expression.tree import Condition, Const, Expression, Param, Signal, When, nodes
+from tltlc.tools.diff.differences import plain
+from tltlc.tools.diff.expression_shapes import Leaf, with_leaves
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa
+    from tltlc.resolve.spec import Param as ParamValue
+
+
+def with_names_of(old: Fspa, new: Fspa) -> Fspa:
+    """The new automaton, in which atoms that changed their names alone are called as in the old one.
+
+    Of such an atom the expression is the same but for the names of params.
+    """
+    names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
+    gone: dict[object, str] = {}
+    for atom in old.atoms:
+        if atom.name not in new_names:
+            gone.setdefault(_form(atom.expression, old), atom.name)
+    atoms = tuple(
+        atom if atom.name in names else replace(atom, name=gone.pop(_form(atom.expression, new), atom.name))
+        for atom in new.atoms
+    )
+    return replace(new, atoms=atoms)
+
+
+def renamed_signals(old: Fspa, new: Fspa) -> dict[str, str]:
+    """The new names of signals that are gone: an atom that read the one reads the other, of its type, and is the same
+    but for such names and those of params.
+    """
+    types, new_types = ({signal.name: signal.type for signal in fspa.signals} for fspa in (old, new))
+    of_new = {atom.name: atom.expression for atom in new.atoms}
+    names: dict[str, str] = {}
+    for was, now in [(atom.expression, of_new[atom.name]) for atom in old.atoms if atom.name in of_new]:
+        read = [
+            (one.name, two.name)
+            for one, two in zip(nodes(was), nodes(now), strict=False)
+            if isinstance(one, Signal) and isinstance(two, Signal)
+        ]
+        likely = {
+            one: two for one, two in read if one not in new_types and two not in types and types[one] == new_types[two]
+        }
+        is_one_to_one = len(set(likely.values())) == len(likely)
+        if likely and is_one_to_one and _form(_with_signals(was, likely), old) == _form(now, new):
+            names |= {one: two for one, two in likely.items() if one not in names and two not in names.values()}
+    return names
+
+
+def with_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
+    """The automaton with other names of signals."""
+    return replace(
+        fspa,
+        atoms=tuple(replace(atom, expression=_with_signals(atom.expression, names)) for atom in fspa.atoms),
+        signals=tuple(replace(signal, name=names.get(signal.name, signal.name)) for signal in fspa.signals),
+    )
+
+
+def _with_signals(expression: Expression, names: Mapping[str, str]) -> Expression:
+    def renamed(leaf: Leaf) -> Leaf:
+        return Signal(names.get(leaf.name, leaf.name)) if isinstance(leaf, Signal) else leaf
+
+    return with_leaves(expression, renamed)
+
+
+def _form(expression: Expression, of: Fspa) -> object:
+    """What two expressions share that differ in the names of params alone."""
+    params = {param.name: param for param in of.params}
+    return tuple(_token(node, params) for node in nodes(expression))
+
+
+def _token(node: Expression | Condition, params: Mapping[str, ParamValue]) -> object:
+    """A node without its parts, of which it says how many there are."""
+    if isinstance(node, Param):
+        return "param", plain(params[node.name])
+    if isinstance(node, (Const, Signal)):
+        return node
+    if isinstance(node, When):
+        return "when", len(node.cases)
+    return node.op, len(node.args)

@@ -1,0 +1,56 @@
+"""What a library says of all specs that import it, without a name: atoms that are exclusive, and the clock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from tltlc.core.record import EMPTY, record
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import ClockDecl, ExclusiveDecl
+from tltlc.tools.diff import findings as say
+from tltlc.tools.diff.differences import are_exclusive
+
+if TYPE_CHECKING:
+    from tltlc.diagnostics.diagnostic import Diagnostic
+    from tltlc.grammar.tree import Module
+    from tltlc.resolve.spec import Program
+
+
+@record
+class Rules:
+    """The groups of ``exclusive`` that a file itself declares, each by its atoms and with its place, and its clock.
+
+    ``clock_s`` is None where it declares none.
+    """
+
+    exclusive: Mapping[tuple[str, ...], Label] = EMPTY
+    clock_s: float | None = None
+    clock: Label | None = None
+
+
+def rules(module: Module, program: Program) -> Rules:
+    """The rules of a module that was resolved without errors."""
+    own = [each for each in module.declarations if isinstance(each, ExclusiveDecl)]
+    words = program.exclusive
+    # Those that it imports come first.
+    groups = words.exclusive[len(words.exclusive) - len(own) :]
+    names = [tuple(sorted(words.atoms[atom].name for atom in group)) for group in groups]
+    places = {group: Label(module.source, each.span) for group, each in zip(names, own, strict=True)}
+    clock = next((each for each in module.declarations if isinstance(each, ClockDecl)), None)
+    if clock is None:
+        return Rules(places)
+    return Rules(places, words.clock_s, Label(module.source, clock.span))
+
+
+def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
+    """What changed for all specs that import the file."""
+    for names, place in old.exclusive.items():
+        if not are_exclusive(names, new.exclusive):
+            yield say.no_longer_exclusive(names, place)
+    for names, place in new.exclusive.items():
+        if not are_exclusive(names, old.exclusive):
+            yield say.exclusive_now(names, place)
+    clock = new.clock or (old.clock and say.was(old.clock))
+    if clock is not None and old.clock_s != new.clock_s:
+        yield say.clock_of_all(old.clock_s, new.clock_s, clock)

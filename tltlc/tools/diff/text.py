@@ -1,0 +1,196 @@
+"""What is different from one file to another, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import fill
+from typing import TYPE_CHECKING, Final
+
+from tltlc.automaton.compare import Literals, Trace
+from tltlc.io.spec_file import STDIN, STDIN_NAME
+from tltlc.resolve.spec import Param, Signal
+from tltlc.resolve.values import number_text
+from tltlc.tools.diff.differences import Difference
+from tltlc.tools.diff.phrases import listed, sample_text, type_text, unrelated, value_text, values_text
+from tltlc.tools.diff.traces import block, step_lines, told
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import State
+    from tltlc.tools.diff.pairs import FileDiff, Pair
+    from tltlc.tools.diff.relation import Group, Relation
+
+_RELATIONS: Final = {
+    "equivalent": ("B accepts the same traces as A", ""),
+    "stricter": ("B is stricter than A", "every trace that B accepts A accepts, too"),
+    "looser": ("B is looser than A", "every trace that A accepts B accepts, too"),
+    "incomparable": ("B accepts other traces than A", "each accepts some that the other does not"),
+}
+_BREAKING: Final[Mapping[Relation | None, str]] = {
+    "equivalent": "The same beginnings of traces break both for good, if any do.",
+    "stricter": "Every beginning of a trace that breaks A for good breaks B, too, and others do.",
+    "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
+    "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
+}
+"""By the relation of the beginnings that do not."""
+
+_WIDTH: Final = 100
+_MOST_LEFT_OUT: Final = 5
+_MOST_ATOMS: Final = 10
+_TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
+_TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
+"""Of the tests that B passes, by which of the two accepts the trace, or is not broken by it."""
+
+
+def text(found: FileDiff) -> str:
+    """The whole report, which ends in a newline."""
+    paragraphs = [f"A is {found.a}\nB is {found.b}"]
+    paragraphs += ["\n\n".join(_pair(pair)) for pair in found.pairs]
+    for side, names in (("A", found.only_a), ("B", found.only_b)):
+        if names:
+            paragraphs.append(f"only in {side}: {listed(names, len(names))}")
+    if found.only_a and found.only_b:
+        a, b = (STDIN if name == STDIN_NAME else name for name in (found.a, found.b))
+        both = f"`{a}:{found.only_a[0]}` and `{b}:{found.only_b[0]}`"
+        paragraphs.append(f"to compare specs of different names, name both, e.g. {both}")
+    if len(paragraphs) == 1:
+        paragraphs.append("there is no spec in either of them")
+    return "\n\n".join(paragraphs) + "\n"
+
+
+def _pair(pair: Pair) -> Iterator[str]:
+    """The paragraphs on a pair of specs."""
+    comparison = pair.comparison
+    name = pair.a.name if pair.a.name == pair.b.name else f"{pair.a.name} and {pair.b.name}"
+    if comparison.relation is None:
+        assert comparison.beginnings is not None
+        yield f"{name}\n  {fill(unrelated(pair.a, pair.b), _WIDTH, subsequent_indent='  ')}"
+        yield f"  {_BREAKING[comparison.beginnings.relation]}"
+    else:
+        said, meaning = _RELATIONS[comparison.relation]
+        if comparison.relation == "equivalent":
+            said += ", but not all else is the same" if pair.differences else ", and nothing else differs"
+        yield f"{name}\n  {said}{f': {meaning}' if meaning else ''}."
+    one_sided = [group for group in comparison.exclusive if not (group.in_a and group.in_b)]
+    if one_sided:
+        yield _exclusive(one_sided)
+    if comparison.split:
+        yield _split(comparison.split)
+    if comparison.impossible:
+        yield _left_out(comparison.impossible)
+    shown = comparison.beginnings or comparison
+    if shown.only_a is not None:
+        yield from _trace(pair, shown.only_a, "A", "B")
+    if shown.only_b is not None:
+        yield from _trace(pair, shown.only_b, "B", "A")
+    if pair.differences:
+        lines = ["  what else differs:"] if comparison.relation != "equivalent" else ["  what differs:"]
+        yield "\n".join([*lines, *(f"    {sentence(each, pair)}" for each in pair.differences)])
+
+
+def _exclusive(groups: Sequence[Group]) -> str:
+    lines = ["  judged on traces in which at most one of these holds at a time:"]
+    lines += [
+        f"    {listed(group.names, _MOST_ATOMS)} (exclusive in {'A' if group.in_a else 'B'} alone)" for group in groups
+    ]
+    return "\n".join(lines)
+
+
+def _split(names: tuple[str, ...]) -> str:
+    first, other = names[0], "another atom" if len(names) == 1 else "other atoms"
+    verb = "is" if len(names) == 1 else "are"
+    return (
+        f"  {listed(names)} {verb} {other} in B than in A, and so called `{first} of A` and `{first} of B`\n"
+        "  (--by-name takes atoms of one name for one)"
+    )
+
+
+def _left_out(several: Sequence[Literals]) -> str:
+    lines = ["  no sample of the signals was found that gives these, so traces with them are left out:"]
+    for literals in several[:_MOST_LEFT_OUT]:
+        said = [f"{'' if holds else 'not '}`{name}`" for name, holds in literals]
+        lines.append(f"    {' and '.join(said)}")
+    if len(several) > _MOST_LEFT_OUT:
+        lines.append(f"    and {len(several) - _MOST_LEFT_OUT} more")
+    return "\n".join(lines)
+
+
+def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
+    """A trace in words and, where a test can tell, as a block."""
+    found = told(pair, trace)
+    is_whole = pair.comparison.relation is not None
+    what = (
+        f"a trace that {by} accepts and {other} does not"
+        if is_whole
+        else f"a beginning that breaks {other} and not {by}"
+    )
+    lines = [f"  {what} (atoms that are not named do not hold):"]
+    lines += [f"    {line}" for line in step_lines(pair, trace.prefix)]
+    if trace.cycle:
+        lines.append(f"    {'then ' if trace.prefix else ''}again and again:")
+        lines += [f"      {line}" for line in step_lines(pair, trace.cycle)]
+    states = {"A": found.a, "B": found.b}
+    after = "after one round" if trace.cycle else "after these" if len(trace.prefix) > 1 else "after it"
+    lines += [f"    {after}, {side} is {_state(states[side])}" for side in (by, other)]
+    yield "\n".join(lines)
+    written = block(pair, found, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
+    if written is not None:
+        side, lines_of_test = written
+        yield f"  as a test of {side}:\n\n{_indented(lines_of_test)}"
+
+
+def _state(state: State) -> str:
+    if state.verdict in ("satisfied", "violated"):
+        return state.verdict
+    return f"{state.verdict}; what remains: {state.label.english}"
+
+
+def _indented(text: str) -> str:
+    return "\n".join(f"    {line}" if line else "" for line in text.rstrip("\n").splitlines())
+
+
+def sentence(difference: Difference, pair: Pair) -> str:
+    """One difference in words."""
+    a, b, name = difference.a, difference.b, difference.name
+    match difference.what:
+        case "semantics":
+            return f"semantics: {a} in A, {b} in B"
+        case "judge":
+            return f"judged at the {a} in A, at the {b} in B"
+        case "limit":
+            return f"limit: {_steps(a)} in A, {_steps(b)} in B"
+        case "level":
+            return f"level: {a or 'none'} in A, {b or 'none'} in B"
+        case "clock":
+            return f"clock: {_clock(a)} in A, {_clock(b)} in B"
+        case "exclusive":
+            return f"exclusive {', '.join(_names(a) or _names(b))}: in {'A' if a else 'B'} alone"
+        case "atom":
+            return f"`{name}`: {_atom(difference, pair)}"
+        case _:
+            return f"{difference.what} `{name}`: {_declared(a)} in A, {_declared(b)} in B"
+
+
+def _atom(difference: Difference, pair: Pair) -> str:
+    if difference.apart is None:
+        return "another expression in B; no sample was found at which its value differs"
+    types = {signal.name: signal.type for signal in (*pair.a.signals, *pair.b.signals)}
+    first, second = values_text(difference.apart)
+    return f"{first} in A, {second} in B, {sample_text(difference.apart.sample, types)}"
+
+
+def _declared(value: object) -> str:
+    if isinstance(value, Param):
+        return f"{type_text(value)} = {value_text(value.value, value.type)}"
+    return type_text(value) if isinstance(value, Signal) else "none"
+
+
+def _names(value: object) -> tuple[str, ...]:
+    return value if isinstance(value, tuple) else ()
+
+
+def _steps(limit: object) -> str:
+    return "none" if limit is None else f"{limit} step{'' if limit == 1 else 's'}"
+
+
+def _clock(period: object) -> str:
+    return f"{number_text(period)} s" if isinstance(period, float) else "none"

@@ -1,0 +1,177 @@
+"""An explanation as headings, paragraphs, lists and a table: what text and Markdown are both written from."""
+
+from __future__ import annotations
+
+from tltlc.backends.drawing.folding import span
+from tltlc.core.record import record
+from tltlc.tools.explain.explanation import ANYTHING, Explanation, Failure, StateRow, Way
+from tltlc.tools.explain.judgement import limit_text
+
+_MOST_RANGES = 3
+_MOST_ROWS = 40
+_MOST_LEADS = 4
+_MOST_FAILURES = 12
+_MOST_STATES = 8
+_MOST_STEPS = 60
+
+
+@record
+class List:
+    """Items, each numbered from 1 where ``numbered``; ``title`` stands before them."""
+
+    title: str
+    items: tuple[str, ...]
+    numbered: bool = False
+
+
+@record
+class Table:
+    """Rows of cells under a header."""
+
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@record
+class Section:
+    """Blocks under a heading: texts are paragraphs."""
+
+    heading: str
+    blocks: tuple[str | List | Table, ...]
+
+
+def document(explained: Explanation) -> tuple[Section, ...]:
+    """The sections, of which the first has the spec's name as its heading."""
+    # Over infinite traces the ways are short, but shorter ones may do.
+    which = "A way" if explained.semantics == "infinite" else "The shortest way"
+    return (
+        Section(explained.name, tuple(filter(None, (explained.doc, explained.english)))),
+        *_asked(explained),
+        Section("What breaks it", _failures(explained)),
+        Section("When it ends", (explained.ending, limit_text(explained.limit_steps, explained.limit_s))),
+        Section("States", _states(explained)),
+        Section(f"{which} to succeed", _way(explained.succeed, _no_success(explained))),
+        Section(f"{which} to fail", _way(explained.fail, _no_failure(explained))),
+    )
+
+
+def _asked(explained: Explanation) -> tuple[Section, ...]:
+    found = explained.outline
+    if found is None:
+        return ()
+    rows = [[f"{'now or later, ' if goal.together else ''}{goal.text}" for goal in goals] for goals in found.goals]
+    lists = [List("Reach, in this order:", tuple(row), numbered=True) for row in rows if len(row) > 1]
+    single = tuple(row[0] for row in rows if len(row) == 1)
+    if single:
+        lists.append(List("Reach, in any order:" if len(single) > 1 else "Reach:", single))
+    for title, items in (
+        ("Throughout:", found.throughout),
+        ("Again and again, for ever:", found.recurring),
+        ("And:" if lists or found.throughout or found.recurring else "Do this:", found.others),
+        ("At most one of these holds at a time:", tuple(", ".join(group) for group in explained.exclusive)),
+    ):
+        if items:
+            lists.append(List(title, items))
+    return (Section("What it asks for", tuple(lists)),) if lists else ()
+
+
+def _failures(explained: Explanation) -> tuple[str | List, ...]:
+    if not explained.failures:
+        return ("Nothing breaks it for good." if explained.succeed else "It cannot be met at all.",)
+    return (List("", failure_texts(explained)),)
+
+
+def failure_texts(explained: Explanation) -> tuple[str, ...]:
+    """What breaks the spec for good and in which states, and of much of it the beginning."""
+    texts = [_failure(failure) for failure in explained.failures[:_MOST_FAILURES]]
+    rest = len(explained.failures) - len(texts)
+    return (*texts, *([f"and {rest} more"] if rest else ()))
+
+
+def _failure(failure: Failure) -> str:
+    if failure.everywhere:
+        return f"{failure.when}, at any step"
+    numbers = [str(state) for state in failure.states[:_MOST_STATES]]
+    more = ", …" if len(failure.states) > _MOST_STATES else ""
+    return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{more}"
+
+
+def _states(explained: Explanation) -> tuple[str | Table, ...]:
+    """A row for each state, and one for all that differ in a count alone."""
+    runs = {run[0]: run for run in explained.counting}
+    inside = {state for run in explained.counting for state in run[1:]}
+    rows = [
+        tuple(explained.states[each] for each in runs.get(state.id, (state.id,)))
+        for state in explained.states
+        if state.id not in inside
+    ]
+    table = Table(("State", "Verdict", "To go", "What remains", "What leads on"), tuple(map(_row, rows[:_MOST_ROWS])))
+    rest = sum(map(len, rows[_MOST_ROWS:]))
+    return (table, f"And {rest} more states; `--format json` shows all of them.") if rest else (table,)
+
+
+def _row(run: tuple[StateRow, ...]) -> tuple[str, ...]:
+    first, last = run[0], run[-1]
+    onward = run[1].id if len(run) > 1 else None
+    leads = [
+        f"{lead.when} (to {'the next' if lead.state == onward else lead.state})" for lead in first.leads[:_MOST_LEADS]
+    ]
+    rest = len(first.leads) - len(leads)
+    return (
+        _numbers([state.id for state in run]),
+        first.verdict,
+        span(_to_go(first), _to_go(last)),
+        span(first.remains, last.remains),
+        "; ".join([*leads, *([f"{rest} more"] * bool(rest))]),
+    )
+
+
+def _to_go(state: StateRow) -> str:
+    return "-" if state.distance is None else str(state.distance)
+
+
+def _numbers(states: list[int]) -> str:
+    """``2, 4–101``; of many the first ones and the last."""
+    ranges: list[list[int]] = []
+    for state in sorted(states):
+        if ranges and state == ranges[-1][-1] + 1:
+            ranges[-1][1:] = [state]
+        else:
+            ranges.append([state])
+    texts = ["–".join(map(str, each)) for each in ranges]
+    return ", ".join(texts if len(texts) <= _MOST_RANGES else [*texts[: _MOST_RANGES - 1], "…", texts[-1]])
+
+
+def _way(way: Way | None, otherwise: str) -> tuple[str | List, ...]:
+    if way is None:
+        return (otherwise,)
+    cycle = () if way.cycle is None else way.steps[way.cycle :]
+    is_decided = bool(way.cycle) and all(step.what == ANYTHING for step in cycle)
+    steps = way.steps[: way.cycle] if is_decided else way.steps
+    items = [
+        f"{step.what}{f', for {step.times} steps' if step.times > 1 else ''} (to state {step.state})"
+        for step in steps[:_MOST_STEPS]
+    ]
+    blocks: list[str | List] = [List("", tuple(items), numbered=True)]
+    if len(items) < len(steps):
+        blocks.append(f"And {len(steps) - len(items)} more; `--format json` shows all of them.")
+    elif is_decided:
+        blocks.append("After that, whatever comes makes no difference.")
+    elif cycle:
+        first, last = len(steps) - len(cycle) + 1, len(steps)
+        blocks.append(
+            f"Then {f'{first} to {last} come' if first < last else f'{last} comes'} again and again, for ever."
+        )
+    return tuple(blocks)
+
+
+def _no_success(explained: Explanation) -> str:
+    return "There is none." if explained.states[0].verdict == "violated" else "None was found."
+
+
+def _no_failure(explained: Explanation) -> str:
+    if explained.failures:
+        return "None was found."
+    if explained.states[0].verdict == "satisfied":
+        return "There is none: every trace meets it."
+    return "There is none: it fails only by not being met when the episode is over."

@@ -1,0 +1,70 @@
+"""An explanation as plain text, at most 100 columns wide where no word is longer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from textwrap import wrap
+
+from tltlc.tools.explain.explanation import Explanation
+from tltlc.tools.explain.sections import List, Section, Table, document
+
+_WIDTH = 100
+_GAP = "  "
+_NARROWEST = 16
+
+
+def text(explained: Explanation) -> str:
+    """The explanation, ended by a newline."""
+    lines: list[str] = []
+    for number, section in enumerate(document(explained)):
+        lines += [*([""] if number else []), section.heading, *(["=" * len(section.heading)] if not number else [])]
+        lines += _blocks(section)
+    return "\n".join([*lines, ""])
+
+
+def _blocks(section: Section) -> Iterator[str]:
+    for block in section.blocks:
+        if isinstance(block, str):
+            yield from _wrapped(block, _WIDTH, initial_indent=_GAP, subsequent_indent=_GAP)
+        elif isinstance(block, List):
+            yield from _list(block)
+        else:
+            yield from _table(block)
+
+
+def _list(block: List) -> Iterator[str]:
+    indent = _GAP
+    if block.title:
+        yield f"{_GAP}{block.title}"
+        indent += _GAP
+    for number, item in enumerate(block.items, start=1):
+        mark = f"{number}. ".rjust(len(f"{len(block.items)}. ")) if block.numbered else "- "
+        yield from _wrapped(item, _WIDTH, initial_indent=indent + mark, subsequent_indent=indent + " " * len(mark))
+
+
+def _table(table: Table) -> Iterator[str]:
+    """The columns side by side; the last two share what the others leave."""
+    rows = (table.header, *table.rows)
+    widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]
+    left = _WIDTH - len(_GAP) * len(widths) - sum(widths[:-2])
+    if sum(widths[-2:]) > left:
+        # Neither takes more than it needs, and what is left over is the other's.
+        last = min(widths[-1], max(left - widths[-2], left // 2 - _NARROWEST // 2))
+        widths[-2:] = [left - last, last]
+    for row in rows:
+        cells = [_wrapped(cell, width) or [""] for cell, width in zip(row, widths, strict=True)]
+        for line in range(max(map(len, cells))):
+            parts = [cell[line] if line < len(cell) else "" for cell in cells]
+            padded = (part.ljust(width) for part, width in zip(parts, widths, strict=True))
+            yield (_GAP + _GAP.join(padded)).rstrip()
+
+
+def _wrapped(words: str, width: int, initial_indent: str = "", subsequent_indent: str = "") -> list[str]:
+    return wrap(
+        words,
+        width,
+        initial_indent=initial_indent,
+        subsequent_indent=subsequent_indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

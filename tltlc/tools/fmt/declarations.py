@@ -1,0 +1,200 @@
+"""Declarations: their heads, their bodies behind ``=``, and blocks with a clause on each line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence, Set
+from typing import Final
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.grammar import tree
+from tltlc.grammar.tree import Expr
+from tltlc.tools.fmt.expressions import Expressions, Item, name
+from tltlc.tools.fmt.flat import Flat
+from tltlc.tools.fmt.page import STEP, Page
+
+_AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
+"""The end of ``expect progress >= 50 %``."""
+
+
+class Declarations:
+    """Writes the declarations of one source on a page; no line begins at the offsets ``joints``."""
+
+    def __init__(self, source: SourceFile, page: Page, flat: Flat, joints: Set[int]) -> None:
+        self._source = source
+        self._page = page
+        self._flat = flat
+        self._joints = joints
+        self._expressions = Expressions(page, flat)
+
+    def put(self, node: tree.Declaration) -> None:
+        """Write a declaration, on lines of its own.
+
+        Every comment that stands in one is written before its last word: behind it, a ``///`` would
+        document what follows.
+        """
+        match node:
+            case tree.Import():
+                self._put_import(node)
+            case tree.SignalDecl():
+                self._put_head("signal", node, node.type, node.interval, node.span.end - 1)
+            case tree.EntityDecl():
+                self._page.put("entity ")
+                self._expressions.put_list([*map(name, node.names)], STEP)
+            case tree.ParamDecl():
+                self._put_head("param", node, node.type, node.interval, node.value.span.start)
+                self._put_body(node.value)
+            case tree.ClockDecl():
+                self._page.put("clock ")
+                self._expressions.put(node.value, STEP)
+            case tree.PredicateDecl():
+                self._put_head("predicate", node, None, node.interval, node.body.span.start)
+                self._put_body(node.body)
+            case tree.LetDecl():
+                self._put_head("let", node, None, None, node.body.span.start)
+                self._put_body(node.body)
+            case tree.ExclusiveDecl():
+                self._page.put("exclusive ")
+                self._expressions.put_list([Item("", atom, atom.span) for atom in node.atoms], STEP)
+            case tree.SpecDecl() if not node.block:
+                (clause,) = node.clauses
+                assert not isinstance(clause.value, tuple)
+                self._put_words("spec", node.name, node.name_span.end)
+                self._put_body(clause.value)
+            case tree.SpecDecl():
+                self._put_words("spec", node.name, node.name_span.end)
+                self._put_block(node.span, node.name_span.end, node.clauses)
+            case tree.TestDecl():
+                self._put_words("test", f'"{node.title}" for {node.spec.name}', node.spec.span.end)
+                self._put_block(node.span, node.spec.span.end, node.items)
+
+    # --- heads ----------------------------------------------------------------------------------
+
+    def _put_words(self, keyword: str, rest: str, end: int) -> None:
+        """Write a keyword and words that are never broken; ``end`` is the offset behind them."""
+        self._page.put(keyword)
+        self._page.comments(end, STEP)
+        self._page.put(f" {rest}")
+
+    def _put_import(self, node: tree.Import) -> None:
+        target = f'"{node.target}"' if node.is_path else node.target
+        self._put_words("import", target, node.target_span.end)
+        if node.names is not None:
+            self._page.put(" ")
+            self._expressions.put_in_brackets([*map(name, node.names)])
+        elif node.alias is not None:
+            self._page.comments(node.span.end, STEP)
+            self._page.put(f" as {node.alias}")
+
+    def _put_head(
+        self,
+        keyword: str,
+        node: tree.SignalDecl | tree.ParamDecl | tree.PredicateDecl | tree.LetDecl,
+        type_: str | None,
+        interval: tree.Interval | None,
+        end: int,
+    ) -> None:
+        """Write ``keyword NAME(parameters): type in [low, high]``; comments up to ``end`` stand in it."""
+        self._put_words(keyword, node.name, node.name_span.end)
+        rest = (f": {type_}" if type_ else "") + (f" {self._range(interval)}" if interval else "")
+        if not isinstance(node, tree.ParamDecl) and node.parameters:
+            items = [self._parameter(parameter) for parameter in node.parameters]
+            behind = len(rest) + (0 if isinstance(node, tree.SignalDecl) else 2)
+            self._expressions.put_in_brackets(items, None, behind)
+        if rest:
+            self._page.comments(interval.span.end if interval else end, STEP)
+            self._page.put(rest)
+
+    def _range(self, interval: tree.Interval) -> str:
+        low, high = (self._flat.text(limit, 1 << 30) for limit in (interval.low, interval.high))
+        return f"in [{low}, {high}]"
+
+    def _parameter(self, node: tree.Parameter) -> Item:
+        head = node.name + (f": {node.type}" if node.type else "") + (" = " if node.default else "")
+        return Item(head, node.default, node.span)
+
+    def _put_body(self, body: Expr) -> None:
+        self._page.put(" =")
+        self._expressions.put_value(body, STEP)
+
+    # --- blocks ---------------------------------------------------------------------------------
+
+    def _put_block(self, span: Span, head: int, items: Sequence[tree.Clause | tree.TestStep | tree.TestExpect]) -> None:
+        """Write ``{ … }``: on one line if it was on one and fits, else with an item on each."""
+        page = self._page
+        brace = page.find("{", head)
+        if page.has_comment(brace) and "///" in self._source.text[head:brace]:
+            page.comments(brace, STEP)
+        if not page.has_comment(span.end) and "\n" not in self._source.slice(span):
+            texts = [self._flat_item(item) for item in items]
+            whole = " ".join(["{", *(text for text in texts if text is not None), "}"])
+            if None not in texts and len(whole) < page.room:
+                page.put(f" {whole}" if items else " {}")
+                return
+        page.put(" {")
+        page.open_block()
+        for item in items:
+            page.comments(item.span.start, STEP, gaps=True)
+            page.gap(item.span.start)
+            page.begin(item.span.start in self._joints, STEP)
+            self._put_item(item)
+        page.comments(span.end - 1, STEP, gaps=True)
+        if items or page.is_fresh or span.end - 1 not in self._joints:
+            page.begin(span.end - 1 in self._joints, 0)
+        page.put("}")
+
+    def _flat_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:
+        """An item of a block on one line, or None where it is longer than that."""
+        if isinstance(item, tree.TestExpect):
+            return self._expectation(item)
+        if isinstance(item, tree.TestStep):
+            head, values = self._step(item), [*item.atoms]
+        elif isinstance(item.value, tuple):
+            return f"{item.kind} {', '.join(part.name for part in item.value)}"
+        else:
+            head, values = _keyword(item), [item.value]
+        texts = [self._flat.text(value) for value in values]
+        return None if None in texts else f"{head} {', '.join(text for text in texts if text)}"
+
+    def _put_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> None:
+        page, indent = self._page, 2 * STEP
+        if isinstance(item, tree.TestExpect):
+            page.put("expect")
+            page.comments(item.span.end, indent)
+            page.put(self._expectation(item).removeprefix("expect"))
+        elif isinstance(item, tree.TestStep):
+            page.put("step")
+            page.comments(item.atoms[0].span.start, indent)
+            page.put(self._step(item).removeprefix("step") + " ")
+            self._expressions.put_list([Item("", atom, atom.span) for atom in item.atoms], indent)
+        elif isinstance(item.value, tuple):
+            page.put(f"{item.kind} ")
+            self._expressions.put_list([*map(name, item.value)], indent)
+        else:
+            page.put(item.kind)
+            page.comments(item.value.span.start, indent)
+            page.put(_keyword(item).removeprefix(item.kind) + " ")
+            self._expressions.put_behind_word(item.value, indent)
+
+    def _step(self, item: tree.TestStep) -> str:
+        """``step`` with the number that it repeats, if that is written."""
+        head = self._without_comments(Span(item.span.start, item.atoms[0].span.start))
+        times = re.search("[0-9]+", head)
+        return f"step {times[0]}x" if times else "step"
+
+    def _expectation(self, item: tree.TestExpect) -> str:
+        if item.kind == "state":
+            return f'expect state "{item.value}"'
+        if item.kind == "verdict":
+            return f"expect {item.value}"
+        found = _AMOUNT.search(self._without_comments(item.span))
+        assert found is not None
+        unit = f" {found[3]}" if found[3] else ""
+        return f"expect progress{self._flat.infix(item.comparison or '>=')}{found[2]}{unit}"
+
+    def _without_comments(self, span: Span) -> str:
+        return re.sub("//[^\n]*", "", self._source.slice(span))
+
+
+def _keyword(clause: tree.Clause) -> str:
+    return "judge at" if clause.kind == "judge" else clause.kind

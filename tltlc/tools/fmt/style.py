@@ -1,0 +1,64 @@
+"""The four styles: which of its spellings each operator gets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from tltlc.core.record import EMPTY, record
+from tltlc.grammar import tree
+from tltlc.logic.formula import Op
+from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Notation
+
+_ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
+
+
+@record
+class Style:
+    """Spellings of operators with their spaces: ``prefix`` before an operand, ``infix`` between two.
+
+    ``letters`` are the prefixes of bounds that words cannot say, where they are to be said in words: else None.
+    """
+
+    prefix: Mapping[str, str]
+    infix: Mapping[str, str]
+    constants: Mapping[str, str]
+    space_before_bracket: bool
+    letters: Mapping[str, str] | None
+
+    def before(self, node: tree.Unary, bound: Mapping[str, str]) -> str:
+        """The operator before an operand, with its bound and the space behind it.
+
+        ``bound`` holds the forms of the bound, as :func:`tltlc.tools.fmt.bounds.forms` gives them.
+        """
+        if "words" in bound and (self.letters or "brackets" not in bound):
+            return f"{self.prefix[node.op].rstrip()} {bound['words']} "
+        spelling = self.prefix[node.op]
+        if bound:
+            # F[2,3] reads best in letters.
+            spelling = f"{(self.letters or self.prefix)[node.op].rstrip()}{bound['brackets']} "
+        return spelling.rstrip() if isinstance(node.operand, tree.Group) and not self.space_before_bracket else spelling
+
+
+def _style(notation: Notation, others: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None) -> Style:
+    """The style of a notation; ``others`` are further spellings of infix operators."""
+    prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
+    return Style(
+        {"-": "-", **prefix}, {**_ARITHMETIC, **infix, **others}, constants, notation.space_before_bracket, letters
+    )
+
+
+def _by_text(table: Mapping[Op, str]) -> dict[str, str]:
+    return {str(op): spelling for op, spelling in table.items()}
+
+
+STYLES: Final[Mapping[str, Style]] = {
+    "words": _style(WORDS, letters=_by_text(ASCII.prefix)),
+    "letters": _style(ASCII),
+    "symbols": _style(ASCII._replace(prefix={**ASCII.prefix, "F": "<>", "G": "[]"})),
+    "unicode": _style(UNICODE, {"<=": " ≤ ", ">=": " ≥ "}),
+}
+"""The styles by their names; what has no symbol keeps its letter."""
+
+DEFAULT: Final = "words"
+"""The style where nobody names one."""

@@ -1,0 +1,139 @@
+"""From the tree of a HOA file to an automaton, once its atoms are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltlc.automaton.finite.build import distances, verdicts
+from tltlc.automaton.finite.machine import OutOfStates
+from tltlc.automaton.fspa import Verdict
+from tltlc.automaton.infinite.analysis import Analysis, analysis_of_rabin
+from tltlc.automaton.infinite.assembled_components import Place, joined
+from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
+from tltlc.automaton.infinite.component import IMPOSSIBLE, Local, State
+from tltlc.automaton.infinite.graphs import components
+from tltlc.automaton.infinite.letters import Letters, at_most_one
+from tltlc.automaton.infinite.pairs import Piece, as_it_stands, with_pairs
+from tltlc.automaton.infinite.work import Work
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.resolve.spec import Judge
+from tltlc.tools.hoa.checks import is_finite
+from tltlc.tools.hoa.conditions import Acceptance
+from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, Move, Transitions
+from tltlc.tools.hoa.tree import Hoa
+
+_MOST_PROBLEMS: Final = 5
+"""Of states that are not deterministic or complete, as many are told."""
+
+Moves = dict[int, int]
+"""Of each state that is reached its function from the letter to a :data:`~tltlc.tools.hoa.transitions.Move`."""
+
+
+class FiniteAnalysis:
+    """What the accepting states (``goals``) of an automaton over finite traces say of the others."""
+
+    def __init__(self, automaton: Rabin, goals: set[int]) -> None:
+        self.goals = goals
+        self.targets = {
+            state: list(dict.fromkeys(target for target, _ in automaton.leaves(state)))
+            for state in range(len(automaton.steps))
+        }
+        self._verdicts = verdicts(self.targets, distances(self.targets, goals.__contains__), goals.__contains__)
+
+    def verdict(self, state: int) -> Verdict:
+        """The verdict of a trace that ends in a state."""
+        return self._verdicts[state]
+
+    def default_judge(self) -> Judge:
+        """``limit`` where the specification holds before anything has happened."""
+        return "limit" if 0 in self.goals else "goal"
+
+
+def automaton_of(
+    hoa: Hoa, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: Work, state_budget: int
+) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+    """The automaton of a file that was checked, whose atoms have these names, and perhaps others behind them; of the
+    atoms of a group of ``exclusive`` at most one holds.  Labels are the numbers of states in the file.
+
+    Over infinite traces the acceptance becomes Rabin pairs, component by component, which takes further states where it
+    cannot be said on those that there are.  States of one behaviour become one.
+
+    Raises:
+        TltlError: TLT0651, a label is wrong; TLT0653 and TLT0654, it is not deterministic or not complete.
+        OutOfWork: pairs for the acceptance are not found in time.
+        OutOfStates: more states are reached than ``state_budget``.
+    """
+    letters: Letters[Any] = Letters(work)
+    moves = _moves(hoa, Transitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
+    return (_finite if is_finite(hoa) else _infinite)(hoa, moves, letters)
+
+
+def _moves(hoa: Hoa, transitions: Transitions, state_budget: int) -> Moves:
+    states = {state.number: state for state in hoa.states}
+    queue = list(hoa.starts[0].states)
+    found: Moves = {}
+    seen = set(queue)
+    problems: list[Diagnostic] = []
+    for number in queue:
+        try:
+            found[number] = transitions.moves(states[number])
+        except TltlError as error:
+            problems += error.diagnostics
+        for edge in states[number].edges:
+            queue += [target for target in edge.targets.states if target not in seen]
+            seen.update(edge.targets.states)
+        if len(seen) > state_budget:
+            raise OutOfStates
+    if problems:
+        raise TltlError(problems[:_MOST_PROBLEMS])
+    return found
+
+
+def _finite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+    def leaf(move: Move | None) -> Any:
+        return (("exit", IMPOSSIBLE), NO_MARKS) if move is NOT_ALLOWED else ((move[0],), NO_MARKS)
+
+    memo: dict[int, int] = {}
+    steps: dict[State, int] = {(number,): letters.mapped(leaf, step, memo) for number, step in moves.items()}
+    accepting = {state.number for state in hoa.states if state.sets.numbers}
+    piece = Piece({(number,): number for number in moves}, steps, 0)
+    automaton, _ = joined(letters, [piece], {}, (0, hoa.starts[0].states), accepting)
+    goals = {state for state, number in enumerate(automaton.labels) if number in accepting}
+    return automaton, FiniteAnalysis(automaton, goals)
+
+
+def _infinite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+    acceptance = Acceptance(hoa, letters.work)
+
+    def targets(number: int) -> list[int]:
+        return [move[0] for move in letters.values(moves[number]) if move is not NOT_ALLOWED]
+
+    pieces: list[Piece] = []
+    entry: dict[int, Place] = {}
+    (initial,) = hoa.starts[0].states
+    for group in components([initial], targets):
+        inside = frozenset(group)
+
+        def leaf(move: Move | None, inside: frozenset[int] = inside) -> Any:
+            if move is NOT_ALLOWED:
+                return ("exit", IMPOSSIBLE), NO_MARKS
+            target, sets = move
+            return ((target,), acceptance.marks(sets)) if target in inside else (("exit", target), NO_MARKS)
+
+        memo: dict[int, int] = {}
+        labels: dict[State, int] = {(number,): number for number in group}
+        steps: dict[State, int] = {(number,): letters.mapped(leaf, moves[number], memo) for number in group}
+        stays = any(target in inside for number in group for target in targets(number))
+        piece = _piece(letters, Local(labels, steps, acceptance.clauses)) if stays else Piece(labels, steps, 0)
+        for state, number in piece.labels.items():
+            entry.setdefault(number, (len(pieces), state))
+        pieces.append(piece)
+    automaton, _ = joined(letters, pieces, entry, entry[initial])
+    return automaton, analysis_of_rabin(automaton, letters.work)
+
+
+def _piece(letters: Letters[Any], one: Local) -> Piece:
+    """A component with pairs: those of the file, where no others are fewer."""
+    best, own = with_pairs(letters, one, letters.work), as_it_stands(letters, one)
+    return own if own is not None and own.pairs <= best.pairs else best

@@ -1,0 +1,112 @@
+"""What the grammar cannot say of a HOA file: that its numbers name something, and that it is of a kind that is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.core.source import Span
+from tltlc.tools.hoa.problems import DETERMINISTIC, broken, other_kind
+from tltlc.tools.hoa.tree import Header, Hoa, Sets, Targets, Term
+
+FINITE: Final = "Tltlc-semantics:"
+"""The header by which tltlc says that traces are finite."""
+
+
+def check(hoa: Hoa) -> None:
+    """Raise TltlError for the first thing that is wrong.
+
+    TLT0651: a state or a set that there is not, one that stands there twice; TLT0652: an automaton with several runs
+    by its kind, or with a header that changes what it means and is not known here.
+    """
+    _check_condition(hoa, hoa.condition)
+    for header in hoa.headers:
+        _check_header(hoa, header)
+    _check_start(hoa)
+    _check_states(hoa)
+    names: dict[str, Span] = {}
+    for atom in hoa.atoms:
+        if names.setdefault(atom.text, atom.span) is not atom.span:
+            raise broken(hoa.source, atom.span, f"two atoms are called `{atom.text}`", "rename one of them")
+
+
+def is_finite(hoa: Hoa) -> bool:
+    """Whether the automaton is over finite traces, which a header of its own says."""
+    return any(header.name == FINITE for header in hoa.headers)
+
+
+def _check_header(hoa: Hoa, header: Header) -> None:
+    """By the format a header that begins with a capital changes the meaning, and must not be passed over."""
+    if header.name == FINITE and header.values == ("finite",):
+        if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):
+            title = "over finite traces a state accepts or does not: `Acceptance: 1 Inf(0)`"
+            raise other_kind(hoa.source, header.span, title, "set 0 holds the states in which a trace may end")
+        for state in hoa.states:
+            for edge in state.edges:
+                if edge.sets.numbers:
+                    title = "over finite traces states accept, and no edges do"
+                    raise other_kind(
+                        hoa.source, edge.sets.span, title, "put the set behind the states that it leads to"
+                    )
+    elif header.name == FINITE:
+        title, way_out = 'the only value of this header is `"finite"`', "leave the header out where traces are infinite"
+        raise other_kind(hoa.source, header.span, title, way_out)
+    elif header.name[0].isupper():
+        title = f"the header `{header.name}` changes what the automaton means, and is not known here"
+        raise other_kind(hoa.source, header.span, title, "write the automaton without it")
+
+
+def _check_start(hoa: Hoa) -> None:
+    if not hoa.starts:
+        raise other_kind(hoa.source, Span(0, 4), "the automaton has no initial state", "name one: `Start: 0`")
+    if len(hoa.starts) > 1:
+        title = "the automaton has several initial states, so it is not deterministic"
+        raise other_kind(hoa.source, hoa.starts[1].span, title, DETERMINISTIC)
+
+
+def _check_states(hoa: Hoa) -> None:
+    seen: set[int] = set()
+    for state in hoa.states:
+        if state.number in seen:
+            raise broken(hoa.source, state.span, f"state {state.number} stands here again", "join its edges in one")
+        seen.add(state.number)
+    if hoa.count is not None and (wrong := next((state for state in hoa.states if state.number >= hoa.count), None)):
+        title = f"there is no state {wrong.number}: `States:` declares {hoa.count}, counted from 0"
+        raise broken(hoa.source, wrong.span, title, "declare more states, or leave `States:` out")
+    for targets in _targets(hoa):
+        if len(targets.states) > 1:
+            title = "this leads to several states at once, so the automaton is alternating"
+            raise other_kind(hoa.source, targets.span, title, DETERMINISTIC)
+        if targets.states[0] not in seen:
+            title = f"there is no state {targets.states[0]}"
+            raise broken(hoa.source, targets.span, title, f"add it to the body: `State: {targets.states[0]}`")
+    for sets in _sets(hoa):
+        _check_set(hoa, max(sets.numbers, default=-1), sets.span)
+
+
+def _check_condition(hoa: Hoa, condition: Term) -> None:
+    """Raise TltlError, TLT0651, where an acceptance condition speaks of a set that there is not."""
+    for term in condition.args:
+        _check_condition(hoa, term)
+    if condition.op in ("fin", "inf"):
+        assert isinstance(condition.value, int)
+        _check_set(hoa, condition.value, condition.span)
+
+
+def _check_set(hoa: Hoa, number: int, span: Span) -> None:
+    """Raise TltlError, TLT0651, where there is no set of that number."""
+    if number >= hoa.sets:
+        title = f"there is no set {number}: `Acceptance:` declares {hoa.sets}, counted from 0"
+        raise broken(hoa.source, span, title, "name one of those, or declare more")
+
+
+def _targets(hoa: Hoa) -> Iterator[Targets]:
+    yield from hoa.starts
+    for state in hoa.states:
+        yield from (edge.targets for edge in state.edges)
+
+
+def _sets(hoa: Hoa) -> Iterator[Sets]:
+    for state in hoa.states:
+        yield state.sets
+        yield from (edge.sets for edge in state.edges)

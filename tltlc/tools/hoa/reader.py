@@ -1,0 +1,323 @@
+"""From the text of a HOA file to its tree."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+from lark import Lark, Token, UnexpectedInput, UnexpectedToken, v_args
+from lark.exceptions import VisitError
+from lark.visitors import Transformer_NonRecursive
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.tools.hoa.problems import broken, other_kind
+from tltlc.tools.hoa.tree import Alias, Edge, Header, Hoa, Name, Sets, State, Targets, Term
+
+_OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*(?:"|\\?\Z)|/\*', re.DOTALL)
+"""A text in quotes, which may lack its end, or the beginning of a comment."""
+_IN_A_COMMENT: Final = re.compile(r"/\*|\*/")
+_ESCAPE: Final = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U(000[0-9a-fA-F]{5}|0010[0-9a-fA-F]{4})|(.))", re.DOTALL)
+_LARGEST: Final = 2**31 - 1
+
+_NAMES: Final = {
+    "ALIAS": "an alias as `@name`",
+    "HEADER": "a header as `name:`",
+    "IDENTIFIER": "a word",
+    "INT": "a number",
+    "LABEL": "a label as `[0 & !1]`",
+    "STRING": "a text in double quotes",
+    "VERSION": "a version as `v1`",
+}
+"""What messages call the terminals that are not written as themselves."""
+_MOST_EXPECTED: Final = 5
+_LONGEST_SHOWN: Final = 40
+
+_ONCE: Final = ("States:", "AP:", "Acceptance:", "name:")
+
+
+def read(source: SourceFile) -> Hoa:
+    """The one automaton of a file, as it stands there; nothing is known yet of what its numbers mean.
+
+    Raises:
+        TltlError: TLT0651, the text is not of the format; TLT0652, it holds several automata, or was given up.
+    """
+    if source.text.lstrip().startswith("{"):
+        title, way_out = f"`{source.name}` is JSON, and no automaton in the Hanoi format", "an artefact needs no import"
+        raise TltlError([Diagnostic("TLT0651", title, help=way_out)])
+    text = _without_comments(source)
+    try:
+        found: Hoa = _Tree(source).transform(_parser().parse(text, start="automaton"))
+    except UnexpectedInput as error:
+        raise _unreadable(source, error, Span(0, len(text.rstrip())), "the end of the file") from None
+    except VisitError as error:
+        raise _cause(error) from None
+    return found
+
+
+def _cause(error: VisitError) -> Exception:
+    """What went wrong while the tree was built; a label is a tree within the tree."""
+    cause: Exception = error
+    while isinstance(cause, VisitError):
+        cause = cause.orig_exc
+    return cause
+
+
+@lru_cache(maxsize=1)
+def _parser() -> Lark:
+    grammar = Path(__file__).with_name("hoa.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer="basic", start=["automaton", "label"], maybe_placeholders=True)
+
+
+def _without_comments(source: SourceFile) -> str:
+    """The text with blanks for comments, which nest, so that every place in it stays."""
+    pieces: list[str] = []
+    kept = start = depth = 0
+    place = 0
+    while match := (_IN_A_COMMENT if depth else _OUTSIDE).search(source.text, place):
+        place = match.end()
+        if match.group() == "/*":
+            if depth == 0:
+                start = match.start()
+                pieces.append(source.text[kept:start])
+            depth += 1
+        elif match.group() == "*/":
+            depth -= 1
+            if depth == 0:
+                kept = place
+                pieces.append(" " * (kept - start))
+    if depth:
+        title, way_out = "this comment does not end", "comments nest: each `/*` needs a `*/`"
+        raise broken(source, Span(start, start + 2), title, way_out)
+    return "".join([*pieces, source.text[kept:]])
+
+
+# --- what is not of the format --------------------------------------------------------------------
+
+
+def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
+    """The message for where reading a part of the text stopped, behind which there is what ``at_end`` names."""
+    if not isinstance(error, UnexpectedToken):
+        start = whole.start + (error.pos_in_stream or 0)
+        if source.text.startswith("--ABORT--", start):
+            title, way_out = "the tool that wrote this automaton gave it up", "have it written again, to its end"
+            return other_kind(source, Span(start, start + len("--ABORT--")), title, way_out)
+        character = source.text[start]
+        endless = {'"': "this text does not end", "[": "this label does not end"}
+        return broken(source, Span(start, start + 1), endless.get(character, f"`{character}` is not expected here"))
+    token = error.token
+    if token.type != "$END":
+        span, title = _moved(_span(token), whole.start), f"`{_short(token)}` is not expected here"
+    elif source.text[whole.end :].strip():
+        span, title = Span(whole.end, whole.end + 1), f"{at_end} is not expected here"
+    else:
+        here = Span(whole.end, whole.end)
+        return broken(source, here, "the file ends too soon", "it was cut off: an automaton ends with `--END--`")
+    if error.accepts == {"$END"} and token == "HOA:":
+        title, way_out = f"`{source.name}` holds several automata", "give a file with one of them"
+        return other_kind(source, span, title, way_out, "another one")
+    expected = sorted(at_end if name == "$END" else _said(name) for name in error.accepts)
+    remark = f"expected {_listed(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
+    return broken(source, span, title, remark=remark)
+
+
+def _moved(span: Span, by: int) -> Span:
+    return Span(span.start + by, span.end + by)
+
+
+def _listed(names: list[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _said(terminal: str) -> str:
+    written = next((each.pattern for each in _parser().terminals if each.name == terminal), None)
+    if terminal in _NAMES or written is None:
+        return _NAMES.get(terminal, terminal)
+    return f"`{written.value}`"
+
+
+def _short(token: str) -> str:
+    return token if len(token) <= _LONGEST_SHOWN else f"{token[:_LONGEST_SHOWN]}…"
+
+
+# --- the tree -------------------------------------------------------------------------------------
+
+
+@v_args(inline=True)
+class _Tree(Transformer_NonRecursive[Token, Hoa]):
+    """Makes the records of :mod:`tltlc.tools.hoa.tree`, and tells what the grammar does not of the header."""
+
+    def __init__(self, source: SourceFile) -> None:
+        super().__init__()
+        self._source = source
+        self._labels: dict[str, Term] = {}
+        self._start = 0
+        """Where the text begins in the file that is being read: a label is read on its own."""
+
+    def automaton(self, version: Token, *items: Any) -> Hoa:
+        """The whole file."""
+        if version != "v1":
+            way_out = "this reads version 1 of the format, `HOA: v1`"
+            raise broken(self._source, self._span(version), f"`{_short(version)}` is no version known", way_out)
+        states = tuple(item for item in items if isinstance(item, State))
+        header: dict[str, list[Any]] = {}
+        for kind, value, span in (item for item in items if not isinstance(item, State)):
+            known = header.setdefault(kind, [])
+            if known and kind in _ONCE:
+                raise broken(self._source, span, f"`{kind}` stands here again", "keep one of the two")
+            known.append(value)
+        if "Acceptance:" not in header:
+            title, way_out = "the header says nothing of acceptance", "it needs a line as `Acceptance: 1 Inf(0)`"
+            raise broken(self._source, Span(0, 4), title, way_out)
+        ((sets, condition),) = header["Acceptance:"]
+        return Hoa(
+            source=self._source,
+            count=next(iter(header.get("States:", ())), None),
+            starts=tuple(header.get("Start:", ())),
+            atoms=next(iter(header.get("AP:", ())), ()),
+            aliases=tuple(header.get("Alias:", ())),
+            sets=sets,
+            condition=condition,
+            name=next(iter(header.get("name:", ())), None),
+            headers=tuple(header.get("", ())),
+            states=states,
+        )
+
+    # Of an item of the header: what it is, its value, and where it stands.
+
+    def states(self, word: Token, count: Token) -> Any:
+        """``States: 3``."""
+        return "States:", self._number(count), self._span(word)
+
+    def start(self, targets: Targets) -> Any:
+        """``Start: 0``."""
+        return "Start:", targets, targets.span
+
+    def atoms(self, word: Token, count: Token, *names: Name) -> Any:
+        """``AP: 2 "a" "b"``."""
+        if self._number(count) != len(names):
+            title = f"`AP:` says {count}, and {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
+            raise broken(self._source, self._span(word), title, "give the number of names")
+        return "AP:", names, self._span(word)
+
+    def alias(self, name: Token, term: Term) -> Any:
+        """``Alias: @a 0 & !1``."""
+        return "Alias:", Alias(str(name), term, self._span(name)), self._span(name)
+
+    def acceptance(self, word: Token, sets: Token, condition: Term) -> Any:
+        """``Acceptance: 2 Fin(0) & Inf(1)``."""
+        return "Acceptance:", (self._number(sets), condition), self._span(word)
+
+    def name(self, word: Token, text: Name) -> Any:
+        """``name: "G F a"``."""
+        return "name:", text, self._span(word)
+
+    def header(self, name: Token, *values: Token) -> Any:
+        """Any other item, as ``acc-name: Buchi``."""
+        return "", Header(str(name), tuple(map(_as_text, values)), self._span(name)), self._span(name)
+
+    # The body.
+
+    def state(self, label: Token | None, number: Token, name: Name | None, sets: Sets, *edges: Edge) -> State:
+        """``State: 0 "F a" {0}`` and its edges."""
+        text = None if name is None else name.text
+        return State(self._number(number), text, self._label(label), sets, edges, self._span(number))
+
+    def edge(self, label: Token | None, targets: Targets, sets: Sets) -> Edge:
+        """``[0 & !1] 3 {0}``."""
+        return Edge(self._label(label), targets, sets)
+
+    def _label(self, label: Token | None) -> Term | None:
+        """What stands in square brackets; places in it are those where it stands first."""
+        if label is None:
+            return None
+        if label not in self._labels:
+            span = self._span(label)
+            inside = Span(span.start + 1, span.end - 1)
+            try:
+                tree = _parser().parse(label[1:-1], start="label")
+            except UnexpectedInput as error:
+                raise _unreadable(self._source, error, inside, "`]`") from None
+            self._start = inside.start
+            term: Any = self.transform(tree)
+            self._start = 0
+            self._labels[str(label)] = term
+        return self._labels[label]
+
+    def sets(self, *numbers: Token | None) -> Sets:
+        """``{0 1}``."""
+        there = [number for number in numbers if number is not None]
+        return Sets(tuple(map(self._number, there)), self._span(there[0], there[-1])) if there else Sets()
+
+    def targets(self, *states: Token) -> Targets:
+        """``3``, or ``3 & 4``."""
+        return Targets(tuple(map(self._number, states)), self._span(states[0], states[-1]))
+
+    def string(self, text: Token) -> Name:
+        """A text in double quotes."""
+        whole = self._span(text)
+        return Name(_ESCAPE.sub(_escaped, text[1:-1]), Span(whole.start + 1, whole.end - 1))
+
+    # Boolean expressions.
+
+    def any_of(self, *terms: Term) -> Term:
+        """Operands of ``|``."""
+        return terms[0] if len(terms) == 1 else Term("or", terms)
+
+    def all_of(self, *terms: Term) -> Term:
+        """Operands of ``&``."""
+        return terms[0] if len(terms) == 1 else Term("and", terms)
+
+    def negation(self, _: Token, term: Term) -> Term:
+        """``!0``."""
+        return Term("not", (term,))
+
+    def atom(self, index: Token) -> Term:
+        """``0``."""
+        return Term("atom", (), self._number(index), False, self._span(index))
+
+    def aliased(self, name: Token) -> Term:
+        """``@a``."""
+        return Term("alias", (), str(name), False, self._span(name))
+
+    def constant(self, word: Token) -> Term:
+        """``t`` or ``f``."""
+        return Term("true" if word.type == "TRUE" else "false")
+
+    def set(self, kind: Token, outside: Token | None, number: Token) -> Term:
+        """``Fin(0)`` or ``Inf(!0)``."""
+        if kind not in ("Fin", "Inf"):
+            title, way_out = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
+            raise broken(self._source, self._span(kind), title, way_out)
+        op: Any = kind.lower()
+        return Term(op, (), self._number(number), outside is not None, self._span(number))
+
+    # Tokens.
+
+    def _number(self, digits: Token) -> int:
+        # Python refuses to read thousands of digits.
+        if len(digits) > len(str(_LARGEST)) or int(digits) > _LARGEST:
+            title, way_out = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
+            raise broken(self._source, self._span(digits), title, way_out)
+        return int(digits)
+
+    def _span(self, first: Token, last: Token | None = None) -> Span:
+        return _moved(_span(first, last), self._start)
+
+
+def _escaped(match: re.Match[str]) -> str:
+    code, long_code, character = match.groups()
+    return character or chr(int(code or long_code, 16))
+
+
+def _as_text(value: Token) -> str:
+    return _ESCAPE.sub(_escaped, value[1:-1]) if value.type == "STRING" else str(value)
+
+
+def _span(first: Token, last: Token | None = None) -> Span:
+    start, end = first.start_pos, (last or first).end_pos
+    assert start is not None and end is not None
+    return Span(start, end)

@@ -1,0 +1,167 @@
+"""The edges of a state as one function of the letter, which has to be deterministic and complete."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltlc.automaton.infinite.letters import Letters
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.tools.hoa.problems import DETERMINISTIC, broken
+from tltlc.tools.hoa.tree import Edge, Hoa, State, Term
+
+_MOST_UNLABELLED: Final = 64
+YES, NO = "yes", "no"
+"""Not True and False, which the table would take for numbers."""
+
+Move = tuple[int, frozenset[int]]
+"""A state and the acceptance sets that an edge to it is in, be it by itself or by where it begins."""
+
+NOT_ALLOWED: Final = None
+"""Where a letter leads that ``exclusive`` rules out."""
+
+
+class Transitions:
+    """Labels of edges over ``atoms``, which are names; letters do not count that are not ``allowed``, a function to
+    "yes" or "no".
+
+    Raises TltlError, TLT0651, where aliases are wrong.
+    """
+
+    def __init__(self, hoa: Hoa, atoms: Sequence[str], letters: Letters[Any], allowed: int) -> None:
+        self._hoa, self._atoms = hoa, atoms
+        self._letters, self._allowed = letters, allowed
+        self._aliases: dict[str, int] = {}
+        self._known: dict[int, int] = {}
+        """The functions of labels, by their identity."""
+        for alias in hoa.aliases:
+            if alias.name in self._aliases:
+                raise broken(hoa.source, alias.span, f"`{alias.name}` is declared again", "rename one")
+            self._aliases[alias.name] = self._function(alias.term)
+
+    def moves(self, state: State) -> int:
+        """Where a letter leads from a state and the sets that are met, as a function of the letter: :data:`Move`, and
+        ``NOT_ALLOWED`` for some.
+
+        Raises TltlError: TLT0651, a label is wrong; TLT0653, two edges are taken; TLT0654, none is.
+        """
+        letters = self._letters
+        found = self._unlabelled(state) if self._is_unlabelled(state) else self._labelled(state)
+        step = letters.combined(lambda taken, yes: taken if yes == YES else NOT_ALLOWED, found, self._allowed, {})
+        for taken in letters.values(step):
+            if taken is not NOT_ALLOWED and len(taken) != 1:
+                raise TltlError([self._not_one(state, taken, self._letter(step, taken))])
+
+        def move(taken: tuple[int] | None) -> Move | None:
+            if taken is NOT_ALLOWED:
+                return None
+            edge = state.edges[taken[0]]
+            return edge.targets.states[0], frozenset((*state.sets.numbers, *edge.sets.numbers))
+
+        return letters.mapped(move, step, {})
+
+    def _labelled(self, state: State) -> int:
+        """The places of the edges that a letter takes, of two at most: these are enough to know."""
+        letters = self._letters
+        found = letters.leaf(())
+        for place, edge in enumerate(state.edges):
+
+            def also(taken: tuple[int, ...], yes: str, place: int = place, edge: Edge = edge) -> tuple[int, ...]:
+                if yes == NO or len(taken) > 1 or any(_same(edge, state.edges[other]) for other in taken):
+                    return taken
+                return (*taken, place)
+
+            label = edge.label or state.label
+            assert label is not None
+            found = letters.combined(also, found, self._of_label(label), {})
+        return found
+
+    def _unlabelled(self, state: State) -> int:
+        """The first edge is that of the letter without atoms, the next one that of atom 0 alone, and so on."""
+        count, letters = len(self._hoa.atoms), self._letters
+        # Python refuses to write numbers of thousands of digits.
+        if count > _MOST_UNLABELLED or len(state.edges) != 2**count:
+            edges = f"{len(state.edges)} edge{'' if len(state.edges) == 1 else 's'}"
+            title = f"state {state.number} has {edges} without labels, for 2^{count} letters"
+            raise broken(self._hoa.source, state.span, title, "give one edge for each letter, or labels")
+
+        def function(atom: int, holding: int) -> int:
+            if atom == count:
+                return letters.leaf((holding,))
+            return letters.node(atom, function(atom + 1, holding), function(atom + 1, holding | 1 << atom))
+
+        return function(0, 0)
+
+    # --- labels -----------------------------------------------------------------------------------
+
+    def _of_label(self, label: Term) -> int:
+        if id(label) not in self._known:
+            self._known[id(label)] = self._function(label)
+        return self._known[id(label)]
+
+    def _function(self, term: Term) -> int:
+        """A label as a function to "yes" or "no"."""
+        letters = self._letters
+        yes, no = letters.leaf(YES), letters.leaf(NO)
+        match term.op:
+            case "true" | "false":
+                return yes if term.op == "true" else no
+            case "not":
+                return letters.mapped(lambda each: NO if each == YES else YES, self._function(term.args[0]), {})
+            case "and" | "or":
+                # What decides alone.
+                strong = NO if term.op == "and" else YES
+                found = no if strong == YES else yes
+                for operand in term.args:
+                    function = self._function(operand)
+                    found = letters.combined(lambda x, y: strong if strong in (x, y) else x, found, function, {})
+                return found
+            case "alias":
+                if term.value not in self._aliases:
+                    title = f"there is no alias `{term.value}` before this"
+                    raise broken(self._hoa.source, term.span, title, "declare it: `Alias: @name 0 & !1`")
+                return self._aliases[str(term.value)]
+        assert isinstance(term.value, int)
+        if term.value >= len(self._hoa.atoms):
+            title = f"there is no atom {term.value}: `AP:` has {len(self._hoa.atoms)}, counted from 0"
+            raise broken(self._hoa.source, term.span, title, "name one of those, or add it to `AP:`")
+        return letters.node(term.value, no, yes)
+
+    def _is_unlabelled(self, state: State) -> bool:
+        """Whether the edges of a state stand for the letters in order; those of one without edges do not."""
+        if state.label is not None:
+            for edge in state.edges:
+                if edge.label is not None:
+                    raise self._label_problem(edge, "this edge has a label, and its state has one, too")
+            return False
+        without = [edge for edge in state.edges if edge.label is None]
+        if without and len(without) < len(state.edges):
+            raise self._label_problem(without[0], "this edge has no label, and others of its state have one")
+        return bool(without)
+
+    def _label_problem(self, edge: Edge, title: str) -> TltlError:
+        way_out = "label the state alone, all of its edges, or none of them"
+        return broken(self._hoa.source, edge.targets.span, title, way_out)
+
+    # --- what is not one edge ---------------------------------------------------------------------
+
+    def _letter(self, step: int, taken: tuple[int, ...]) -> str:
+        """A letter with that value, as few atoms as may be holding."""
+        holding = self._letters.letter_with(step, taken)
+        names = [name if place in holding else f"!{name}" for place, name in enumerate(self._atoms)]
+        return " & ".join(names) or "true"
+
+    def _not_one(self, state: State, taken: tuple[int, ...], letter: str) -> Diagnostic:
+        source = self._hoa.source
+        if not taken:
+            title = f"this automaton is not complete: state {state.number} has no edge for `{letter}`"
+            return Diagnostic("TLT0654", title, (Label(source, state.span, "of this state"),), DETERMINISTIC)
+        title = f"this automaton is not deterministic: state {state.number} has two edges for `{letter}`"
+        one, other = (state.edges[place].targets.span for place in taken)
+        labels = (Label(source, one, "one"), Label(source, other, "the other"))
+        return Diagnostic("TLT0653", title, labels, DETERMINISTIC)
+
+
+def _same(one: Edge, other: Edge) -> bool:
+    """Whether two edges lead to the same state, in the same sets: a file may say so twice."""
+    return one.targets.states == other.targets.states and set(one.sets.numbers) == set(other.sets.numbers)

@@ -1,0 +1,83 @@
+"""Which signs the value of an atom can have, for all values of its signals and params."""
+
+from __future__ import annotations
+
+from itertools import islice
+from math import inf
+from typing import Final, Literal, Protocol
+
+from tltlc.io.limits import WORK
+from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
+from tltlc.resolve.range_proof.check import box_of
+from tltlc.resolve.range_proof.proof import TOLERANCE, Task, unproved
+from tltlc.resolve.range_proof.region import Region
+from tltlc.resolve.range_proof.witness import points, value_at
+from tltlc.resolve.range_proof.work import OutOfWorkError, limited
+from tltlc.resolve.spec import Atom, Param, Signal
+
+Sign = Literal["positive", "not positive", "negative", "not negative"]
+
+
+class Declares(Protocol):
+    """What declares signals and params, as an automaton does."""
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """The signals that atoms may read."""
+
+    @property
+    def params(self) -> tuple[Param, ...]:
+        """The params that atoms may read."""
+
+
+_MOST_POINTS: Final = 600
+_ABOVE_ZERO: Final = 1e3 * TOLERANCE
+"""What is proved to be no less than this is above 0, whatever the rounding."""
+
+_RANGES: Final[dict[Sign, tuple[float, float]]] = {
+    "positive": (_ABOVE_ZERO, inf),
+    "not positive": (-inf, 0.0),
+    "negative": (-inf, -_ABOVE_ZERO),
+    "not negative": (0.0, inf),
+}
+
+
+def can_be(sign: Sign, atom: Atom, of: Declares, tries: int = _MOST_POINTS) -> bool:
+    """Whether a search finds values of signals and params for which an atom has this sign.
+
+    It takes so many tries, and no more steps than a check of a predicate.
+    """
+    try:
+        with limited(WORK["check of a predicate"]):
+            box, bools = box_of(atom.expression, *_declared(of))
+            for point in islice(points(atom.expression, box, bools), tries):
+                value = value_at(atom.expression, point).value
+                if value is not None and _has(sign, value):
+                    return True
+    except OutOfWorkError:
+        pass
+    return False
+
+
+def is_always(sign: Sign, atom: Atom, of: Declares) -> bool:
+    """Whether it is proved that the value of an atom has this sign for all values of its signals and params."""
+    low, high = _RANGES[sign]
+    try:
+        with limited(WORK["check of a predicate"]):
+            box, _ = box_of(atom.expression, *_declared(of))
+            tasks = [Task(case.value, case.constraints, low, high) for case in cases(atom.expression)]
+            return not unproved(tasks, Region(box, {}))
+    except (OutOfWorkError, TooManyCasesError, RecursionError):
+        return False
+
+
+def _declared(of: Declares) -> tuple[dict[str, Signal], dict[str, Param]]:
+    return {signal.name: signal for signal in of.signals}, {param.name: param for param in of.params}
+
+
+def _has(sign: Sign, value: float) -> bool:
+    if sign == "positive":
+        return value > 0
+    if sign == "not positive":
+        return value <= 0
+    return value < 0 if sign == "negative" else value >= 0

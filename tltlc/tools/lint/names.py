@@ -1,0 +1,46 @@
+"""Which names the declarations of a module mention."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+
+from tltlc.core.record import record
+from tltlc.grammar.tree import Call, Declaration, Expr, Module, Name, Quantified, SpecDecl
+from tltlc.grammar.walk import expressions, parts
+
+_FORMULAS = ("reach", "keep", "avoid", "require")
+
+
+@record
+class Mentioned:
+    """The names that a file mentions itself, and those that others use of it."""
+
+    here: frozenset[str]
+    elsewhere: Container[str]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.here or name in self.elsewhere
+
+
+def mentions(module: Module) -> frozenset[str]:
+    """Every name that stands in an expression of a module, as it is written there."""
+    return frozenset(name for declaration in module.declarations for name in _in_declaration(declaration))
+
+
+def _in_declaration(declaration: Declaration) -> Iterator[str]:
+    for expression in _expressions(declaration):
+        for part in parts(expression):
+            if isinstance(part, (Name, Call)):
+                yield part.name
+            elif isinstance(part, Quantified):
+                yield from (entity.name for entity in part.entities)
+
+
+def _expressions(declaration: Declaration) -> Iterator[Expr]:
+    if not isinstance(declaration, SpecDecl):
+        yield from expressions(declaration)
+        return
+    # The name of a level, or of a tag, is no name of a declaration.
+    for clause in declaration.clauses:
+        if clause.kind in _FORMULAS and not isinstance(clause.value, tuple):
+            yield clause.value

@@ -1,0 +1,57 @@
+"""What a rule is, and what it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from tltlc.core.record import record
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, Label, Severity
+
+if TYPE_CHECKING:
+    from tltlc.tools.lint.file_view import View
+
+
+@record
+class Remark:
+    """The message of a rule.  Its fields mean what those of :class:`~tltlc.diagnostics.diagnostic.Diagnostic` mean.
+
+    The fix, if there is one, does not change the meaning of any spec in the file.
+    """
+
+    title: str
+    labels: tuple[Label, ...]
+    help: str
+    fix: Fix | None = None
+
+
+@record
+class Rule:
+    """A rule: the page of ``code`` says what it finds, what to write instead, and why.
+
+    ``check`` is a pure function from a file to remarks.  ``supersedes`` are codes that say less of the same place: they
+    are left out where one of their labels covers a remark of this rule.
+    """
+
+    code: str
+    severity: Severity
+    check: Callable[[View], Iterable[Remark]]
+    supersedes: tuple[str, ...] = ()
+
+
+@record
+class Finding:
+    """A diagnostic of the linter."""
+
+    diagnostic: Diagnostic
+
+    @property
+    def fix(self) -> tuple[Edit, ...]:
+        """The edits that make it go away and change nothing that a spec asks for, if there are any."""
+        return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
+
+
+def removal(title: str, spans: Iterable[Span]) -> Fix:
+    """Return the safe fix that removes these spans."""
+    return Fix(title, tuple(Edit(span, "") for span in spans), "safe")

@@ -1,0 +1,17 @@
+"""The rules: every module of this folder that is not itself a package is one, with its ``RULE``."""
+
+from __future__ import annotations
+
+import os
+from functools import lru_cache
+from importlib import import_module
+
+from tltlc.tools.lint.rule import Rule
+
+
+@lru_cache(maxsize=1)
+def rules() -> tuple[Rule, ...]:
+    """Every rule, by code."""
+    names = sorted(name[:-3] for name in os.listdir(os.path.dirname(__file__)) if name.endswith(".py"))  # noqa: PTH120, PTH208
+    found: list[Rule] = [import_module(f"{__name__}.{name}").RULE for name in names if not name.startswith("_")]
+    return tuple(sorted(found, key=lambda rule: rule.code))

@@ -1,0 +1,69 @@
+"""TLT0418: several `next` in a row, which count the steps of the game."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from decimal import ROUND_DOWN, Context
+
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import Expr, LetDecl, Number, Unary
+from tltlc.grammar.walk import parts
+from tltlc.resolve.constants import samples
+from tltlc.resolve.values import Env
+from tltlc.tools.lint.file_view import Expression, View, inner, operand
+from tltlc.tools.lint.rule import Remark, Rule
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each chain of two or more `next`, or `next after` of as many steps, in specs and lets."""
+    trees = [formula.tree for spec in view.specs for formula in spec.formulas()]
+    trees += [each.body for each in view.module.declarations if isinstance(each, LetDecl)]
+    inside: set[int] = set()
+    for tree in trees:
+        for part in parts(tree):
+            if isinstance(part, Unary) and part.op in ("X", "N") and id(part) not in inside:
+                steps, awaited = _chain(part, inside)
+                if steps > 1:
+                    yield _remark(view, part, steps, awaited)
+
+
+def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
+    """How many steps a chain takes, and what comes then; those that count on by seconds end it."""
+    steps, tree = 0.0, inner(first)
+    while isinstance(tree, Unary) and tree.op == first.op and _steps(tree):
+        inside.add(id(tree))
+        steps += _steps(tree)
+        tree = inner(tree.operand)
+    return steps, tree
+
+
+def _steps(tree: Unary) -> float:
+    if tree.bound is None:
+        return 1
+    return tree.bound.high.value if tree.bound.high.unit in (None, "step", "steps") else 0
+
+
+def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
+    text = operand(Expression(awaited, view.env))
+    way_out = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
+    if view.env.context.clock_s:
+        time = _seconds(steps, view.env.context.clock_s, view.env)
+        if chain.op == "N":
+            way_out = f"say it in seconds: `weak_next after {time} s {text}`"
+        else:
+            way_out = f"say it in seconds: `next after {time} s {text}`"
+            way_out += f", or `eventually within {time} s {text}` where it may come earlier"
+    label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
+    return Remark("this counts steps, whatever time they take", (label,), way_out)
+
+
+def _seconds(steps: float, period: float, env: Env) -> str:
+    """Return a short time in seconds that covers exactly this many steps.  Times round up, so it is never longer."""
+    exact = steps * period
+    shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))
+    texts = [f"{exact:.6g}", *shorter]
+    return next((text for text in texts if samples(Number(float(text), "s", Span(0, 0)), env) == steps), texts[-1])
+
+
+RULE = Rule("TLT0418", "warning", check)

@@ -1,0 +1,61 @@
+"""TLT0425: a clause that stands twice in a spec."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
+
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Fix
+from tltlc.grammar.tree import Clause
+from tltlc.logic.formula import Formula
+from tltlc.resolve.spec import Part
+from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.removal import without
+from tltlc.tools.lint.removal_advice import changes_judge
+from tltlc.tools.lint.rule import Remark, Rule, removal
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each clause, or part of one, that says the same as an earlier one in the same form."""
+    for spec in view.specs:
+        first: dict[Formula, Part] = {}
+        covering = _covering(spec.declaration.clauses, spec.spec.parts)
+        remaining = list(spec.spec.parts)
+        for part in spec.spec.parts:
+            earlier = first.setdefault(part.formula, part)
+            if earlier is not part:
+                labels = (view.label(part.span, "this again"), view.label(earlier.span, "said here"))
+                if part.unbounded != earlier.unbounded:
+                    others = [each for each in remaining if each is not part]
+                    if changes_judge(part, others, spec):
+                        # The bound of the later one, as in `F[0,0] a` behind `a`, makes it a goal.
+                        way_out = f"remove one of them and say `judge at {spec.fspa.judge}`"
+                        yield Remark(_TITLE, labels, way_out)
+                        continue
+                    remaining = others
+                yield Remark(_TITLE, labels, "remove one of them", _fix(covering.get(part.span), view))
+
+
+def _fix(clause: Clause | None, view: View) -> Fix | None:
+    """Without the clause, if there is one that says no more than the part."""
+    if clause is None:
+        return None
+    return removal("Remove one of them", (without(view.source, clause.span, view.module.comments),))
+
+
+def _covering(clauses: Sequence[Clause], parts: Iterable[Part]) -> dict[Span, Clause]:
+    """The clauses that consist of one part, by the span of this part."""
+    starts = [clause.span.start for clause in clauses]
+    covered: dict[int, list[Span]] = {}
+    for part in parts:
+        index = bisect_right(starts, part.span.start) - 1
+        if index >= 0 and clauses[index].span.covers(part.span):
+            covered.setdefault(index, []).append(part.span)
+    return {spans[0]: clauses[index] for index, spans in covered.items() if len(spans) == 1}
+
+
+_TITLE: Final = "this clause stands here twice"
+
+RULE = Rule("TLT0425", "warning", check)

@@ -1,0 +1,52 @@
+"""TLT0414: a goal of atoms that are exclusive, and so never hold together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.automaton.finite.contradiction import unsatisfiable
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.logic.formula import and_
+from tltlc.logic.text.phrases import is_state
+from tltlc.resolve.spec import Part, Spec
+from tltlc.tools.lint.file_view import Expression, SpecView, View, inner
+from tltlc.tools.lint.goals import conjuncts, goals
+from tltlc.tools.lint.rule import Remark, Rule
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each goal that asks at one step for what ``exclusive`` forbids."""
+    for spec in view.specs:
+        for goal in goals(spec) if spec.spec.exclusive else ():
+            names = _excluding(goal, spec)
+            if names:
+                title = "this goal asks for atoms that never hold together"
+                listed = " and ".join(f"`{name}`" for name in names)
+                label = Label(goal.source, inner(goal.tree).span, f"{listed} are `exclusive`")
+                way_out = "ask for one after the other with `then`, or for either with `or`"
+                yield Remark(title, (label,), way_out)
+
+
+def _excluding(goal: Expression, spec: SpecView) -> list[str]:
+    """The exclusive atoms by which a goal can never be met; none where it can, or where they are not to blame."""
+    found = [part.formula() for part in conjuncts(goal)]
+    formula = and_(*(each for each in found if each is not None and is_state(each)))
+    used = formula.atoms()
+    for group in spec.spec.exclusive:
+        names = [name for name in used if name in {spec.spec.atoms[index].name for index in group}]
+        part = Part(formula, goal.source, goal.tree.span)
+        if len(names) > 1 and _is_impossible(part, spec.spec) and not _is_impossible(part, _free(spec.spec)):
+            return names
+    return []
+
+
+def _is_impossible(part: Part, spec: Spec) -> bool:
+    return unsatisfiable((part,), spec)
+
+
+def _free(spec: Spec) -> Spec:
+    return replace(spec, exclusive=())
+
+
+RULE = Rule("TLT0414", "warning", check, supersedes=("TLT0410",))

@@ -1,0 +1,42 @@
+"""TLT0423: an automaton that is far larger than the spec reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.walk import parts
+from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.rule import Remark, Rule
+
+_FEW: Final = 100
+_PER_PART: Final = 10
+"""States that nobody minds, and states for each operator, name and number of the spec that are no surprise."""
+
+_MOST_LABELS: Final = 4
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each spec whose automaton has many more states than the spec has parts."""
+    for spec in view.specs:
+        written = sum(1 for formula in spec.formulas() for _ in parts(formula.tree))
+        states = len(spec.fspa.states)
+        if states > max(_FEW, _PER_PART * written):
+            yield _remark(spec, states)
+
+
+def _remark(spec: SpecView, states: int) -> Remark:
+    bounds = [bound for part in spec.spec.parts for bound in part.bounds]
+    title = f"the automaton of `{spec.spec.name}` has {states} states"
+    if bounds:
+        worst = max(bounds, key=lambda bound: bound.samples)
+        label = Label(worst.source, worst.span, f"this bound counts {worst.samples} samples, one state each at least")
+        return Remark(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
+    first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
+    message = "the states of its parts multiply" if rest else "this has to remember much"
+    way_out = "split the spec, say an order with `then`, or declare atoms that never hold together `exclusive`"
+    return Remark(title, (Label(first.source, first.span, message), *rest), way_out)
+
+
+RULE = Rule("TLT0423", "note", check)

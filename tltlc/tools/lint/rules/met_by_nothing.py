@@ -1,0 +1,118 @@
+"""TLT0412: a goal that is met where nothing has been done, because it may be met by what does not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import Binary
+from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
+from tltlc.resolve.spec import Part
+from tltlc.tools.lint.file_view import Expression, SpecView, View, inner, operand
+from tltlc.tools.lint.goals import conjuncts, goals
+from tltlc.tools.lint.relations import relations
+from tltlc.tools.lint.rule import Remark, Rule
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each goal that can be met while none of what it asks for holds, whatever the other clauses ask."""
+    for spec in view.specs:
+        if not spec.is_settled:
+            for goal in goals(spec):
+                yield from _remarks(goal, spec)
+
+
+def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
+    formula = goal.formula()
+    if formula is None:
+        return
+    still = _standing_still(formula)
+    holding, failing = _wanted(still)
+    # A goal that is only to hold, or only not to hold, is one that a player brings about.
+    if not failing or not set(holding) - set(failing):
+        return
+
+    known = relations(spec, spec.spec.formula.atoms())
+
+    def can_be(state: Formula) -> bool:
+        part = Part(eventually(state), goal.source, goal.tree.span)
+        return not spec.decision((*spec.spec.parts, *known, part), spec.spec)
+
+    # What the other clauses keep anyway is nothing to bring about.
+    missing = [name for name in holding if can_be(not_(atom(name)))]
+    awaited = [name for name in missing if name not in failing]
+    met = and_(formula, still, *(not_(atom(name)) for name in missing))
+    if awaited and can_be(met):
+        implications = _implications(goal)
+        conditions = (part.formula() or TRUE for part, _ in implications)
+        # A condition that always holds is not to blame.
+        if implications and can_be(and_(met, *map(not_, conditions))):
+            yield _of_implications(implications)
+        else:
+            listed = " and ".join(f"`{name}`" for name in awaited)
+            label = Label(goal.source, inner(goal.tree).span, f"can be met without {listed}")
+            yield Remark(_TITLE, (label,), f"ask with `and` for what is to be done, or for {listed} alone")
+
+
+def _standing_still(formula: Formula) -> Formula:
+    """What a formula comes to while nothing changes: one without temporal operators."""
+    found: dict[Formula, Formula] = {}
+    for part in formula.bottom_up():
+        args = tuple(found[each] for each in part.args)
+        if part.op in ("X", "N", "F", "G"):
+            found[part] = args[0]
+        elif part.op in ("U", "R"):
+            found[part] = args[1]
+        elif part.op == "W":
+            found[part] = or_(*args)
+        elif part.op == "M":
+            found[part] = and_(*args)
+        else:
+            found[part] = rebuild(part, args)
+    return found[formula]
+
+
+def _wanted(state: Formula) -> tuple[list[str], list[str]]:
+    """The atoms whose truth helps a formula, and those whose falsehood does; some may be both."""
+    signs: dict[tuple[Formula, bool], None] = {}
+    waiting = [(state, True)]
+    while waiting:
+        part, holds = waiting.pop()
+        if (part, holds) in signs:
+            continue
+        signs[part, holds] = None
+        if part.op == "not":
+            waiting.append((part.args[0], not holds))
+        elif part.op == "implies":
+            waiting += (part.args[1], holds), (part.args[0], not holds)
+        elif part.op == "iff":
+            waiting += [(each, sign) for each in part.args for sign in (True, False)]
+        else:
+            waiting += [(each, holds) for each in reversed(part.args)]
+    atoms = [(part.name, holds) for part, holds in signs if part.op == "atom"]
+    return [name for name, holds in atoms if holds], [name for name, holds in atoms if not holds]
+
+
+def _implications(goal: Expression) -> list[tuple[Expression, Expression]]:
+    """The condition and the result of each one that a goal asks for; the body of `all` is one, for all its entities."""
+    found: dict[Span, tuple[Expression, Expression]] = {}
+    for part in conjuncts(goal):
+        if isinstance(part.tree, Binary) and part.tree.op == "implies":
+            found[part.tree.span] = part.at(part.tree.left), part.at(part.tree.right)
+    return list(found.values())
+
+
+def _of_implications(implications: list[tuple[Expression, Expression]]) -> Remark:
+    labels, ways = [], []
+    for condition, result in implications:
+        span = condition.tree.span.to(result.tree.span)
+        labels.append(Label(condition.source, span, f"true while {condition.text} is false"))
+        ways.append(f"{operand(condition)} and {operand(result)}")
+    return Remark(_TITLE, tuple(labels), f"`{ways[0]}`" if len(ways) == 1 else f"`({') or ('.join(ways)})`")
+
+
+_TITLE: Final = "this goal can be met without doing anything"
+
+RULE = Rule("TLT0412", "warning", check)

@@ -1,0 +1,41 @@
+"""TLT0430: a clause that every trace satisfies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.logic.formula import not_
+from tltlc.resolve.spec import Part
+from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.relations import relations
+from tltlc.tools.lint.removal_advice import leave_out
+from tltlc.tools.lint.rule import Remark, Rule
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each clause that no trace breaks, whatever the other clauses ask."""
+    for spec in view.specs:
+        # Where all of it is so, the compiler says it.
+        if spec.fspa.states[0].verdict == "satisfied":
+            continue
+        remaining = list(spec.spec.parts)
+        for part in spec.spec.parts:
+            if _is_always_met(part, spec):
+                remaining = [each for each in remaining if each is not part]
+                label = Label(part.source, part.span, "every trace satisfies this")
+                yield Remark(
+                    "this clause asks nothing of the game", (label,), f"{leave_out(part, remaining, spec)}{_OR}"
+                )
+
+
+def _is_always_met(part: Part, spec: SpecView) -> bool:
+    negated = replace(part, formula=not_(part.formula))
+    return spec.decision((negated, *relations(spec, part.formula.atoms())), spec.spec)
+
+
+_OR: Final = ", or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
+
+RULE = Rule("TLT0430", "warning", check, supersedes=("TLT0429",))

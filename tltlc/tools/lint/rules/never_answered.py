@@ -1,0 +1,73 @@
+"""TLT0432: `p implies q` where q never holds at the step of p, so that p is forbidden."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.automaton.finite.contradiction import unsatisfiable
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import Binary, Clause, Unary
+from tltlc.logic.formula import Formula, always, and_
+from tltlc.logic.text.phrases import is_state
+from tltlc.resolve.spec import Part
+from tltlc.tools.lint.file_view import Expression, SpecView, View, operand
+from tltlc.tools.lint.relations import relations
+from tltlc.tools.lint.rule import Remark, Rule
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each implication of a rule whose two sides never hold at one step, and each of them does at some.
+
+    None for a clause that no trace satisfies: it does more than forbid one side.
+    """
+    for spec in view.specs:
+        for clause, value in spec.clauses("keep", "require"):
+            found = [part for part in _implications(value) if _never_together(part, spec)]
+            if found and _can_hold(clause, value, spec):
+                yield from map(_remark, found)
+
+
+def _implications(value: Expression) -> Iterator[Expression]:
+    """Those that are to hold as rules: not as a goal, negated, in a condition or in `iff`."""
+    waiting = [value]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part.tree, (Unary, Binary)) and part.tree.op in ("not", "F", "then", "iff"):
+            continue
+        found = part.children()
+        if isinstance(part.tree, Binary) and part.tree.op == "implies":
+            yield part
+            found = found[1:]
+        waiting += reversed(found)
+
+
+def _never_together(implication: Expression, spec: SpecView) -> bool:
+    formula = implication.formula()
+    if formula is None or formula.op != "implies" or not is_state(formula):
+        return False
+    known = relations(spec, formula.atoms())
+
+    def can_be(state: Formula) -> bool:
+        return not unsatisfiable((Part(state, implication.source, implication.tree.span), *known), spec.spec)
+
+    condition, result = formula.args
+    return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
+
+
+def _can_hold(clause: Clause, value: Expression, spec: SpecView) -> bool:
+    formula = value.formula()
+    if formula is None:
+        return False
+    whole = Part(always(formula) if clause.kind == "keep" else formula, value.source, value.tree.span)
+    return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
+
+
+def _remark(implication: Expression) -> Remark:
+    assert isinstance(implication.tree, Binary)
+    condition, result = implication.at(implication.tree.left), implication.at(implication.tree.right)
+    label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
+    way_out = f"where it comes later, write `{operand(condition)} implies eventually {operand(result)}`"
+    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), way_out)
+
+
+RULE = Rule("TLT0432", "warning", check)

@@ -1,0 +1,27 @@
+"""TLT0419: a spec without a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.rule import Remark, Rule
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each spec that is a block, where a limit could stand, and has none."""
+    for spec in view.specs:
+        if spec.spec.limit_steps is None and spec.declaration.block:
+            yield _remark(spec)
+
+
+def _remark(spec: SpecView) -> Remark:
+    if spec.fspa.judge == "limit":
+        message = "it is judged at its limit: without one no episode succeeds"
+    else:
+        message = "an episode that never gets there never ends, and haste is worth nothing"
+    clause = "limit 400 steps" if spec.spec.clock_s is None else "limit 30 s"
+    return Remark(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), f"add `{clause}`")
+
+
+RULE = Rule("TLT0419", "note", check)

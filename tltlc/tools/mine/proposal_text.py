@@ -1,0 +1,49 @@
+"""Proposals as a text for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from textwrap import fill
+from typing import Final
+
+from tltlc.tools.mine.bits import Bits
+from tltlc.tools.mine.clause import atoms_of
+from tltlc.tools.mine.confirm import Proposal
+from tltlc.tools.mine.evidence import Evidence
+from tltlc.tools.mine.measure import PRICE
+from tltlc.tools.mine.reasons import reasons
+
+_WIDTH: Final = 100
+_INDENT: Final = " " * 5
+_MEASURE: Final = (
+    f"The score is support + separation - 1, less {PRICE:g} for each atom. Support is the share of the traces that "
+    "satisfy a proposal, separation the share of the counterexamples that do not."
+)
+
+
+def shown(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits) -> str:
+    """Each proposal with its rank, its figures, its clauses, its English and its reasons, and by what they are ranked.
+
+    Lines are of 100 columns.
+    """
+    parts = ["\n".join(_proposal(rank, each, evidence, bits)) for rank, each in enumerate(proposals, start=1)]
+    if evidence.made_up:
+        parts.append("No counterexamples were given: made-up ones, cut short, reordered or broken, stand in for them.")
+    parts.append(fill(_MEASURE, _WIDTH))
+    return "\n\n".join(parts)
+
+
+def _proposal(rank: int, proposal: Proposal, evidence: Evidence, bits: Bits) -> Iterator[str]:
+    figures = proposal.figures
+    score = figures.score(atoms_of(proposal.clauses))
+    yield f"{rank:3}  score {score:.2f}  support {figures.support:.2f}  separation {figures.separation:.2f}"
+    yield ""
+    yield from (f"{_INDENT}    {clause.text}" for clause in proposal.clauses)
+    yield ""
+    yield _wrapped(proposal.fspa.formula.english)
+    yield from (_wrapped(reason, "- ") for reason in reasons(proposal, evidence, bits))
+
+
+def _wrapped(text: str, mark: str = "") -> str:
+    indent = _INDENT + " " * len(mark)
+    return fill(text, _WIDTH, initial_indent=_INDENT + mark, subsequent_indent=indent)

@@ -1,0 +1,38 @@
+"""What `tltlc mine --json` says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tltlc.tools.mine.clause import atoms_of
+from tltlc.tools.mine.confirm import Proposal
+from tltlc.tools.mine.evidence import Evidence
+from tltlc.tools.mine.reasons import reasons
+from tltlc.tools.mine.search import Search
+
+
+def document(proposals: Sequence[Proposal], evidence: Evidence, search: Search, *, whole: bool) -> dict[str, Any]:
+    """The proposals with their figures; ``whole``: the search came to its end, and no limit left anything out."""
+    return {
+        "traces": len(evidence.traces),
+        "counterexamples": len(evidence.counterexamples),
+        "made_up": evidence.made_up,
+        "complete": whole,
+        "proposals": [
+            {
+                "rank": rank,
+                "clauses": [clause.text for clause in proposal.clauses],
+                "formula": proposal.fspa.formula.ascii,
+                "english": proposal.fspa.formula.english,
+                "score": proposal.figures.score(atoms_of(proposal.clauses)),
+                "support": proposal.figures.support,
+                "separation": proposal.figures.separation,
+                "atoms": atoms_of(proposal.clauses),
+                "reasons": list(reasons(proposal, evidence, search.bits)),
+                "not_satisfied": [each.trace.name for each in proposal.traces if not each.accepted],
+                "not_violated": [each.trace.name for each in proposal.counterexamples if each.accepted],
+            }
+            for rank, proposal in enumerate(proposals, start=1)
+        ],
+    }

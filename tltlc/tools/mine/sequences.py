@@ -1,0 +1,186 @@
+"""Sequences of goals, `reach a then b then c`, grown step by step and not enumerated.
+
+Beam search: the best sequences of a length are extended by every step at every place.  A sequence is met as soon as
+can be by the first `a`, then the first `b` after that, and so on, so that all traces together cost a few operations on
+whole numbers per step.  An extension is satisfied by fewer traces, never by more: one that lacks support is not
+extended.
+
+A step is an atom, two atoms at once, or a choice between two of these, each of which lacks the support at that place:
+with a choice a sequence is met by the traces that meet it with the one or with the other.  No step follows an equal
+one, which would be met by waiting for a sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Final
+
+from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.io.limits import WORK
+from tltlc.tools.mine.bits import Bits, Samples, Verdicts, count
+from tltlc.tools.mine.clause import Clause
+from tltlc.tools.mine.measure import figures
+from tltlc.tools.mine.templates import clause
+from tltlc.tools.witness.blocks import bracketed
+
+BEAM: Final = 60
+"""Sequences of one length that are extended, of atoms alone, and as many with other steps."""
+ALIKE: Final = 3
+"""Of those that accept the same traces, as many are kept."""
+MOST_PAIRS: Final = 60
+"""Steps of two atoms, those of the most traces."""
+MOST_PARTS: Final = 16
+"""Steps among which there is a choice at one place."""
+
+
+class Step:
+    """One step of a sequence: its text, its atoms, `and` and `or` counting as one each, and where it holds."""
+
+    __slots__ = ("atoms", "samples", "text")
+
+    def __init__(self, text: str, atoms: int, samples: Samples) -> None:
+        self.text, self.atoms, self.samples = text, atoms, samples
+
+
+Steps = tuple[Step, ...]
+Found = tuple[Steps, Verdicts]
+
+
+def sequences(
+    bits: Bits, atoms: Collection[str], least: int, most_atoms: int, *, again: bool = True, work: Work | None = None
+) -> Iterator[list[Clause]]:
+    """The sequences of these atoms that at least ``least`` traces satisfy, in portions as they are found.
+
+    They name at most ``most_atoms`` atoms, `and` and `or` counting as one each.  ``again``: a step may come again.
+    ``work`` counts the steps of sequences that are tried; the search ends where none is left.
+    """
+    material = yield from _material(bits, atoms)
+    search = _Sequences(bits, material, least, most_atoms, again=again, work=work or Work(WORK["mined sequences"]))
+    beam: list[Steps] = [()]
+    while beam:
+        found: dict[Steps, Verdicts] = {}
+        for sequence in beam:
+            try:
+                portion = dict(search.extended(sequence, found))
+            except OutOfWork:
+                return
+            found |= portion
+            yield [_clause(each, accepts, bits) for each, accepts in portion.items()]
+        beam = _beam(found, bits)
+
+
+class _Sequences:
+    """What sequences are made of."""
+
+    def __init__(
+        self, bits: Bits, material: Sequence[Step], least: int, most_atoms: int, *, again: bool, work: Work
+    ) -> None:
+        self._bits, self._material, self._least, self._most_atoms = bits, material, least, most_atoms
+        self._again, self._work = again, work
+        # Sequences are compared by their steps, so there is one of each.
+        self._choices: dict[tuple[Step, Step], Step] = {}
+
+    def extended(self, sequence: Steps, known: Mapping[Steps, Verdicts]) -> Iterator[Found]:
+        """The sequences with one step more, at any place, that are not known yet and have the support."""
+        bits = self._bits
+        room = self._most_atoms - sum(step.atoms for step in sequence)
+        left = bits.all
+        for place in range(len(sequence) + 1):
+            before, after = sequence[:place], sequence[place:]
+            parts = []
+            for step in self._material:
+                if step.atoms > room or step in ((*before[-1:], *after[:1]) if self._again else sequence):
+                    continue
+                longer = (*before, step, *after)
+                accepts = known.get(longer)
+                if accepts is None:
+                    self._work.spend(len(longer))
+                    accepts = _met((step, *after), left, bits)
+                    if count(accepts & bits.traces) >= self._least:
+                        yield longer, accepts
+                        continue
+                    parts.append((step, accepts))
+            for choice, accepts in self._chosen(parts, room):
+                longer = (*before, choice, *after)
+                if longer not in known:
+                    yield longer, accepts
+            if after:
+                left = bits.after_first(after[0].samples & left)
+
+    def _chosen(self, parts: Sequence[tuple[Step, Verdicts]], room: int) -> Iterator[tuple[Step, Verdicts]]:
+        """The choices between two of the steps that together have the support, each with what accepts it."""
+        bits = self._bits
+
+        def worth(part: tuple[Step, Verdicts]) -> tuple[float, int, str]:
+            return (-figures(bits, part[1]).score(part[0].atoms), part[0].atoms, part[0].text)
+
+        best = sorted((part for part in parts if part[1] & bits.traces), key=worth)[:MOST_PARTS]
+        for (one, these), (other, those) in combinations(best, 2):
+            accepts = these | those
+            if one.atoms + other.atoms < room and count(accepts & bits.traces) >= self._least:
+                yield self._choice(one, other), accepts
+
+    def _choice(self, one: Step, other: Step) -> Step:
+        if (one.atoms, one.text) > (other.atoms, other.text):
+            one, other = other, one
+        found = self._choices.get((one, other))
+        if found is None:
+            text = f"({one.text} or {other.text})"
+            found = Step(text, one.atoms + other.atoms + 1, one.samples | other.samples)
+            self._choices[one, other] = found
+        return found
+
+
+def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[Clause], None, list[Step]]:
+    """Those of the atoms that hold in some of the traces, then pairs of them, those of the most traces.
+
+    It yields nothing, many times, so that whoever searches may stop.
+    """
+    single = [Step(bracketed(name), 1, bits.holds[name]) for name in atoms]
+    single = [step for step in single if bits.some(step.samples) & bits.traces]
+    known = {step.samples for step in single}
+    pairs: list[tuple[int, str, Samples]] = []
+    for number, one in enumerate(single):
+        for other in single[number + 1 :]:
+            both = one.samples & other.samples
+            met = count(bits.some(both) & bits.traces)
+            if met and both not in known:
+                known.add(both)
+                pairs.append((-met, f"({one.text} and {other.text})", both))
+        pairs = sorted(pairs)[:MOST_PAIRS]
+        yield []
+    return [*single, *(Step(text, 3, both) for _, text, both in pairs)]
+
+
+def _met(rest: Steps, left: Samples, bits: Bits) -> Verdicts:
+    """The traces that meet the steps one after the other, within the samples that are left."""
+    for step in rest[:-1]:
+        left = bits.after_first(step.samples & left)
+    return bits.some(rest[-1].samples & left)
+
+
+def _beam(found: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
+    """The best of the sequences; of those that accept the same traces a few."""
+
+    def worth(item: Found) -> tuple[float, list[str]]:
+        sequence, accepts = item
+        size = sum(step.atoms for step in sequence)
+        return (-figures(bits, accepts).score(size), [step.text for step in sequence])
+
+    alike: dict[tuple[bool, Verdicts], int] = {}
+    # There are so many more sequences with choices that they would leave no room for others.
+    plain: list[Steps] = []
+    others: list[Steps] = []
+    for sequence, accepts in sorted(found.items(), key=worth):
+        is_plain = all(step.atoms == 1 for step in sequence)
+        alike[is_plain, accepts] = alike.get((is_plain, accepts), 0) + 1
+        kept = plain if is_plain else others
+        if alike[is_plain, accepts] <= ALIKE and len(kept) < BEAM:
+            kept.append(sequence)
+    return plain + others
+
+
+def _clause(sequence: Steps, accepts: Verdicts, bits: Bits) -> Clause:
+    text = "reach " + " then ".join(step.text for step in sequence)
+    return clause("reach", text, sum(step.atoms for step in sequence), accepts, bits.everything)

@@ -1,0 +1,66 @@
+"""A small set of traces that together take every edge that samples can take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from tltlc.core.record import record
+from tltlc.tools.witness.nearest import Nearest
+from tltlc.tools.witness.samples import Obstacle
+from tltlc.tools.witness.traces import Witness
+from tltlc.tools.witness.transitions import Move, Moves
+
+
+@record
+class Untaken:
+    """An edge, by its index, that no trace takes: for want of samples or, without obstacles, of a way to its source."""
+
+    edge: int
+    obstacles: tuple[Obstacle, ...]
+
+
+@record
+class Cover:
+    """The traces, shortest first, and the edges that none of them takes, in order."""
+
+    traces: tuple[Witness, ...]
+    untaken: tuple[Untaken, ...]
+
+
+def cover(moves: Moves) -> Cover:
+    """Traces that take every edge which samples take: each goes on to the nearest edge that is not taken yet.
+
+    A trace ends where no such edge is ahead.  Over infinite traces these are the beginnings of traces.
+    """
+    edges = moves.fspa.edges
+    nearest = Nearest([[(edge, edges[edge].target) for edge in there if moves.move(edge)] for there in moves.leaving])
+    traces: list[tuple[Move, ...]] = []
+    while trace := tuple(_trace(moves, nearest)):
+        traces.append(trace)
+    traces.sort(key=len)
+    taken = {move.edge for trace in traces for move in trace}
+    untaken = [Untaken(edge, moves.obstacles.get(edge, ())) for edge in range(len(edges)) if edge not in taken]
+    return Cover(tuple(_with_news(traces)), tuple(untaken))
+
+
+def _trace(moves: Moves, nearest: Nearest) -> Iterator[Move]:
+    """A trace from the initial state that takes edges which no trace has taken; without moves where there is none."""
+    state = 0
+    while way := nearest.take(state):
+        for edge in way:
+            move = moves.move(edge)
+            assert move is not None
+            yield move
+        state = moves.fspa.edges[way[-1]].target
+
+
+def _with_news(traces: Iterable[tuple[Move, ...]]) -> Iterator[Witness]:
+    """The traces as witnesses, each with the steps that are the first to take their edge."""
+    seen: set[int] = set()
+    for trace in traces:
+        news = []
+        for number, move in enumerate(trace, start=1):
+            if move.edge not in seen:
+                seen.add(move.edge)
+                news.append(number)
+        yield Witness("cover", trace, news=tuple(news))

@@ -1,0 +1,262 @@
+"""The search for points at which atoms have a truth: simple points, points between borders, then a climb."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import pairwise
+from math import copysign, inf, isfinite, sqrt
+from sys import float_info
+
+from tltlc.automaton.fspa import Fspa, Implicant
+from tltlc.expression.python import compile_expressions
+from tltlc.expression.tree import Const, Expression, Op, nodes
+from tltlc.expression.tree import Signal as Variable
+from tltlc.resolve.range_proof.interval import Interval, midpoint
+from tltlc.resolve.range_proof.region import Box
+from tltlc.resolve.range_proof.region import Variable as AnyVariable
+from tltlc.resolve.range_proof.witness import points
+from tltlc.resolve.spec import Signal
+
+Point = Mapping[str, float]
+
+Candidate = tuple[Point, tuple[float, ...]]
+"""A point, and the values of the atoms there."""
+
+_CLEAR = 0.05
+"""A point this far inside is taken at once: the first such point is the simplest."""
+_STARTS = 3
+_ROUNDS = 100
+_HALVINGS = 60
+_FAR = tuple(
+    sign * size for size in (1e9, 1e12, 1e20, 1e50, 1e100, 1e200, 1e300, 1e308, float_info.max) for sign in (1.0, -1.0)
+)
+"""Where simple points do not lead, along a signal without a range."""
+_LARGE = 1e6
+"""From here on, halving a range of values would take too long to find their size."""
+_UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
+
+
+class Group:
+    """Atoms that share signals, directly or through others; ``atoms`` are indices, and so are those in literals."""
+
+    def __init__(self, fspa: Fspa, atoms: Sequence[int], signals: Sequence[Signal]) -> None:
+        self.atoms = tuple(atoms)
+        self._place = {atom: place for place, atom in enumerate(self.atoms)}
+        self._names = tuple(signal.name for signal in signals)
+        self._ranges: dict[str, Interval] = {signal.name: _range(signal) for signal in signals}
+        self._bools = frozenset(signal.name for signal in signals if signal.type == "bool")
+        self._params = {param.name: param.value for param in fspa.params}
+        self._expressions = [fspa.atoms[atom].expression for atom in self.atoms]
+        self._functions = compile_expressions(self._expressions, self._names, self._params)
+        self._goals: dict[tuple[int, bool], list[tuple[Callable[[Sequence[float]], float], bool]]] = {}
+        self._exclusive = [[self._place[atom] for atom in group if atom in self._place] for group in fspa.exclusive]
+        self._known: dict[Implicant, Point | None] = {}
+
+    def find(self, literals: Implicant) -> Point | None:
+        """Values of the group's signals at which the literals are true, and no two exclusive atoms of the group."""
+        if literals not in self._known:
+            self._known[literals] = self._find(literals)
+        return self._known[literals]
+
+    def _find(self, literals: Implicant) -> Point | None:
+        """The best of the simple candidates, else what a climb from them finds, else the best of very large values."""
+        inside = self._best(self._candidates, literals)
+        if inside is not None:
+            return inside
+        outside = [(self._margin(values, literals), point) for point, values in self._candidates]
+        starts = sorted(outside, key=lambda each: -each[0])[:_STARTS]
+        climbed = next((found for _, start in starts if (found := self._climb(start, literals))), None)
+        return climbed or self._best(self._far_candidates, literals)
+
+    def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
+        """The first candidate that is clearly inside, else the one furthest inside."""
+        inside: list[tuple[float, Point]] = []
+        for point, values in candidates:
+            if self._are_true(values, literals):
+                margin = self._margin(values, literals)
+                if margin >= _CLEAR:
+                    return point
+                inside.append((margin, point))
+        return max(inside, key=lambda each: each[0])[1] if inside else None
+
+    # --- truth ------------------------------------------------------------------------------------
+
+    def _values(self, point: Point) -> tuple[float, ...] | None:
+        """The values of the atoms, None where one has none."""
+        given = [point[name] for name in self._names]
+        try:
+            values = tuple([function(given) for function in self._functions])
+        except _UNDEFINED:
+            return None
+        return values if all(map(isfinite, values)) else None
+
+    def _are_true(self, values: Sequence[float], literals: Implicant) -> bool:
+        return all((values[self._place[atom]] > 0.0) == holds for atom, holds in literals) and not any(
+            sum(values[place] > 0.0 for place in places) > 1 for places in self._exclusive
+        )
+
+    def _margin(self, values: Sequence[float], literals: Implicant) -> float:
+        sides = (values[self._place[atom]] if holds else -values[self._place[atom]] for atom, holds in literals)
+        return min(sides, default=1.0)
+
+    # --- points -----------------------------------------------------------------------------------
+
+    @cached_property
+    def _candidates(self) -> list[Candidate]:
+        return [(point, values) for point in self._points() if (values := self._values(point))]
+
+    @cached_property
+    def _far_candidates(self) -> list[Candidate]:
+        return [(point, values) for point in self._far_points() if (values := self._values(point))]
+
+    @cached_property
+    def _simple(self) -> list[Point]:
+        """Simple points; none where there are no signals."""
+        whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
+        box: Box = {Variable(name): self._ranges[name] for name in self._names}
+        bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
+        return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
+
+    def _points(self) -> Iterator[Point]:
+        """Simple points, then points between the borders of atoms along each signal."""
+        yield from self._simple
+        for name in self._names:
+            if name not in self._bools and self._simple:
+                ladder = sorted({point[name] for point in self._simple})
+                yield from self._between_borders(self._simple[0], name, ladder)
+
+    def _far_points(self) -> Iterator[Point]:
+        """Points along each signal whose range has no end there, up to the largest numbers."""
+        for name in self._names:
+            low, high = self._ranges[name]
+            far = [value for value in _FAR if low <= value <= high]
+            if isfinite(high - low) or not self._simple:
+                continue
+            yield from ({**self._simple[0], name: value} for value in far)
+            ladder = sorted({*far, *(point[name] for point in self._simple)})
+            yield from self._between_borders(self._simple[0], name, ladder)
+
+    def _between_borders(self, start: Point, name: str, ladder: Sequence[float]) -> Iterator[Point]:
+        """Both sides of each border of an atom along one signal, and the middles between one border and the next."""
+        borders: list[float] = []
+        for index in range(len(self._functions)):
+            signs = [self._sign({**start, name: value}, index) for value in ladder]
+            for low, high, below, above in zip(ladder, ladder[1:], signs, signs[1:], strict=False):
+                if None not in (below, above) and below != above:
+                    borders += self._border({**start}, name, index, low, high)
+        borders = sorted(set(borders))
+        for value in (*borders, *(midpoint(low, high) for low, high in pairwise(borders))):
+            yield {**start, name: value}
+
+    def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
+        """Two values, next to each other or nearly so, between which an atom's truth changes."""
+        below = self._sign({**start, name: low}, index)
+        for _ in range(_HALVINGS):
+            middle = _middle(low, high)
+            if self._sign({**start, name: middle}, index) == below:
+                low = middle
+            else:
+                high = middle
+        return low, high
+
+    def _sign(self, point: Point, index: int) -> bool | None:
+        try:
+            value = self._functions[index]([point[name] for name in self._names])
+        except _UNDEFINED:
+            return None
+        return value > 0.0
+
+    def _climb(self, start: Point, literals: Implicant) -> Point | None:
+        """A point where the literals are true, by steps along the signals: longer ones after one that helps."""
+        goals = [goal for literal in literals for goal in self._slopes(literal)]
+        best, lack = dict(start), self._lack(start, goals)
+        sides = {name: side for name, side in self._ranges.items() if name not in self._bools}
+        steps = {name: (high - low) / 8 if isfinite(high - low) else 1.0 for name, (low, high) in sides.items()}
+        for _ in range(_ROUNDS):
+            for name, step in steps.items():
+                low, high = sides[name]
+                steps[name] = step / 2
+                for value in (min(best[name] + step, high), max(best[name] - step, low)):
+                    point = {**best, name: value}
+                    values, here = self._values(point), self._lack(point, goals)
+                    if values is not None and self._are_true(values, literals):
+                        return point
+                    if here < lack:
+                        best, lack, steps[name] = point, here, step * 2
+        return None
+
+    def _lack(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
+        """By how much, in all, a point misses what is to be positive or not to be."""
+        given = [point[name] for name in self._names]
+        try:
+            # Beyond the border, where an atom has the value 0 and does not hold.
+            return sum(max(0.0, _CLEAR + (-goal(given) if holds else goal(given))) for goal, holds in goals)
+        except _UNDEFINED:
+            return inf
+
+    def _slopes(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
+        """What is to be positive, or not, for a literal to be true, without the plateaus that `clamp` makes."""
+        if literal not in self._goals:
+            atom, holds = literal
+            parts = list(_slopes(self._expressions[self._place[atom]], holds))
+            functions = compile_expressions([each for each, _ in parts], self._names, self._params)
+            self._goals[literal] = [(function, part[1]) for function, part in zip(functions, parts, strict=True)]
+        return self._goals[literal]
+
+
+def _middle(low: float, high: float) -> float:
+    """The middle of two numbers; of large ones of different sizes, the one whose size lies between theirs."""
+    least, most = sorted((abs(low), abs(high)))
+    if (low > 0) != (high > 0) or least < _LARGE or most / least < 4:
+        return midpoint(low, high)
+    return copysign(sqrt(least) * sqrt(most), low)
+
+
+def _slopes(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
+    """The parts of an expression that decide its sign, each with the sign that it is to have."""
+    stack = [(expression, holds)]
+    while stack:
+        node, holds = stack.pop()
+        if isinstance(node, Op) and (node.op == "clamp" or (node.op == "/" and _is_positive(node.args[1]))):
+            stack.append((node.args[0], holds))
+        elif isinstance(node, Op) and node.op == ("min" if holds else "max"):
+            stack += [(part, holds) for part in node.args]
+        elif isinstance(node, Op) and node.op == "neg":
+            stack.append((node.args[0], not holds))
+        else:
+            yield node, holds
+
+
+def _is_positive(node: Expression) -> bool:
+    return isinstance(node, Const) and node.value > 0
+
+
+def groups(fspa: Fspa) -> tuple[Group, ...]:
+    """The atoms of an automaton in groups that share no signal, in the order of the atoms."""
+    used = [_signals(atom.expression) for atom in fspa.atoms]
+    found: list[tuple[list[int], set[str]]] = []
+    for index, names in enumerate(used):
+        joined: tuple[list[int], set[str]] = ([index], set(names))
+        apart = []
+        for other in found:
+            if other[1] & joined[1]:
+                joined = ([*other[0], *joined[0]], other[1] | joined[1])
+            else:
+                apart.append(other)
+        found = [*apart, joined]
+    found.sort(key=lambda each: min(each[0]))
+    signals = fspa.signals
+    return tuple(
+        Group(fspa, sorted(atoms), [signal for signal in signals if signal.name in names]) for atoms, names in found
+    )
+
+
+def _signals(expression: Expression) -> frozenset[str]:
+    return frozenset(node.name for node in nodes(expression) if isinstance(node, Variable))
+
+
+def _range(signal: Signal) -> Interval:
+    if signal.type == "bool":
+        return 0.0, 1.0
+    return -inf if signal.low is None else signal.low, inf if signal.high is None else signal.high
