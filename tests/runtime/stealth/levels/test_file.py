@@ -20,8 +20,7 @@ from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
 
-GOLDEN = Path(__file__).parents[3] / "golden" / "level"
-CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
+CASES = cases("level")
 SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]
 ROOM = """doc = "A room."
 [bounds]
@@ -49,17 +48,14 @@ def write(path: str, text: str) -> None:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_message(case: Path, folder: Path) -> None:
-    shutil.copytree(case, folder / "case")
+def test_message(case: Case, folder: Path) -> None:
+    case.unpack(folder / "case")
     os.chdir(folder / "case")
-    arguments = (case / "cmd").read_text().split() if (case / "cmd").exists() else ["level.toml"]
+    _, _, *arguments = case.arguments
     with pytest.raises(TltlError) as error:
         load_level(*arguments)
     found = render(error.value.diagnostics)
-    expected = case / "expected.txt"
-    if os.environ.get("UPDATE_GOLDEN") == "1":
-        expected.write_text(found, encoding="utf-8")
-    assert found == expected.read_text(encoding="utf-8")
+    case.check(found)
     assert case.name[:7] in found
     # Each message says where, unless it is about an argument, and a way out.
     messages = re.split(r"^(?=error\[)", found, flags=re.MULTILINE)[1:]
