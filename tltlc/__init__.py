@@ -1,4 +1,4 @@
-"""The compiler of .tltl specifications to finite state predicate automata (FSPA): its public names.
+"""Compile .tltl specifications to finite state predicate automata (FSPA).
 
 >>> import tltlc
 >>> fspa, = tltlc.compile_text('''
@@ -9,10 +9,10 @@
 >>> [state.label.ascii for state in fspa.states]
 ['F exit_reached & G(health > 0)', 'G(health > 0)', 'false']
 
-Importing this package loads nothing else: each name below is loaded when it is first used.
+Importing this package loads nothing else. Each public name below is loaded on first use.
 """
 
-# Type checkers take it for true; to import it from `typing` would cost each start some milliseconds.
+# Type checkers treat this as true. Importing it from `typing` would add some milliseconds to each start.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa as Fspa

@@ -1,7 +1,7 @@
-"""From source text to automata: parse, resolve, build, each stage once and in order.
+"""Compile source text to automata: parse, resolve, build, in this order.
 
-A stage runs to its end and reports everything that it found; the next one starts only when there
-was no error.
+A stage runs to its end and reports all its diagnostics. The next stage starts only if there are
+no errors.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 
 _NO_ATOM = "write a signal, a predicate or a comparison in place of `true` or `false`"
 _MOST_LABELS = 4
-"""Of clauses that contradict each other, as many are pointed at."""
+"""The most parts of a contradiction that get a label."""
 
 
 @record
 class CompileOptions:
-    """How to compile.
+    """Options of the compiler.
 
-    ``library_dirs`` are searched for imports after the file's own folder; ``params`` override the
-    values of params, as written (``{"level_size": "30 m"}``); ``state_budget`` is the greatest number
-    of states that a construction may explore, and over infinite traces a measure of its work; ``specs``
-    are the names to build, none for all.
+    ``library_dirs`` are searched for imports, after the folder of the file itself. ``params``
+    overrides the values of params, as written (``{"level_size": "30 m"}``). ``state_budget`` is the
+    greatest number of states that a construction may explore; over infinite traces, it bounds the
+    steps of the construction in proportion. ``specs`` names the specs to build; empty means all.
     """
 
     library_dirs: tuple[Path, ...] = ()
@@ -51,9 +51,9 @@ class CompileOptions:
 
 @record
 class Compiled:
-    """A compiled file: its ``automata`` in the order of its specs, and what is to be said of it.
+    """A compiled file: its ``automata`` in the order of its specs, and its ``diagnostics``.
 
-    ``diagnostics`` are no errors, and no comment in the file where they are allows them.
+    ``diagnostics`` contains no errors, and none that a comment in the file allows.
     """
 
     program: Program
@@ -63,31 +63,31 @@ class Compiled:
 
 @bounded()
 def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:
-    """Compile every spec of a source text, or those that the options name.
+    """Compile all specs of a source text, or the specs that the options name.
 
-    Errors: :class:`TltlError` with everything that was found up to the end of the stage that failed;
-    TLT0720 where the options name a spec that is not there.
+    Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed; TLT0720
+    if the options name a spec that does not exist.
     """
     options = options or CompileOptions()
-    module, found = parse(source)
-    stop_at_errors(found)
+    module, diagnostics = parse(source)
+    stop_at_errors(diagnostics)
     resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
     program, modules = resolved.program, [loaded.module for loaded in resolved.modules]
-    found += resolved.diagnostics
-    stop_at_errors(unsilenced(modules, found))
+    diagnostics += resolved.diagnostics
+    stop_at_errors(unsilenced(modules, diagnostics))
     automata: list[Fspa] = []
     for spec in pick_specs(program.specs, options.specs, source.name):
-        fspa, remarks = build_spec(spec, options)
-        found += remarks
+        fspa, spec_diagnostics = build_spec(spec, options)
+        diagnostics += spec_diagnostics
         if fspa is not None:
             automata.append(fspa)
-    found = unsilenced(modules, found)
-    stop_at_errors(found)
-    return Compiled(program, tuple(automata), found)
+    diagnostics = unsilenced(modules, diagnostics)
+    stop_at_errors(diagnostics)
+    return Compiled(program, tuple(automata), diagnostics)
 
 
 def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
-    """The automaton of a spec, or None and the errors why not; with warnings."""
+    """Return the automaton of a spec and its warnings, or None and the errors."""
     try:
         if spec.semantics == "infinite":
             from tltlc.automaton.infinite.build import build_infinite
@@ -101,9 +101,9 @@ def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[
 
 
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
-    """The specs of these names in the order of the file, all for no names.
+    """Return the specs with these names in the order of the file; without names, all specs.
 
-    Errors: TLT0720 for a name that is none of them.
+    Errors: TLT0720 if a name belongs to no spec.
     """
     known = [spec.name for spec in specs]
     for name in names:
@@ -113,21 +113,20 @@ def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tu
 
 
 def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
-    """The message for a name that is no spec of the file."""
+    """Return the error for a name that is no spec of the file."""
     from difflib import get_close_matches
 
     close = get_close_matches(name, known, n=1)
-    listed = ", ".join(f"`{other}`" for other in known[:10]) + (", …" if len(known) > 10 else "")
-    way_out = f"did you mean `{close[0]}`?" if close else f"it holds {listed}" if known else "it holds no spec"
-    return Diagnostic("TLT0720", f"`{file}` has no spec `{name}`", help=way_out)
+    listed = ", ".join(f"`{spec}`" for spec in known[:10]) + (", …" if len(known) > 10 else "")
+    suggestion = f"did you mean `{close[0]}`?" if close else f"it holds {listed}" if known else "it holds no spec"
+    return Diagnostic("TLT0720", f"`{file}` has no spec `{name}`", help=suggestion)
 
 
 def compile_text(text: str, name: str = "<text>", options: CompileOptions | None = None) -> tuple[Fspa, ...]:
-    """The automata of the specs of a text, in order.
+    """Return the automata of the specs of a text, in order.
 
-    ``name`` is what messages call the text; imports are looked up in the folder of that path, too.
+    Messages call the text ``name``. If ``name`` is a path, imports are also searched in its folder.
     Errors: :class:`TltlError`.
-
     >>> import tltlc
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
     >>> fspa.name, len(fspa.states), fspa.judge
@@ -145,10 +144,9 @@ def compile_text(text: str, name: str = "<text>", options: CompileOptions | None
 
 
 def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = None) -> tuple[Fspa, ...]:
-    """The automata of the specs of a file, in order.
+    """Return the automata of the specs of a file, in order.
 
-    Errors: :class:`TltlError`, with code TLT0001 to TLT0004 where the file is no readable text.
-
+    Errors: :class:`TltlError`, with code TLT0001 to TLT0004 if the file is not readable text.
     >>> import tltlc
     >>> fspa, = tltlc.compile_file("examples/cover_and_hide.tltl")
     >>> fspa.spec_size
@@ -159,10 +157,9 @@ def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = 
 
 @bounded()
 def load(path: str | os.PathLike[str]) -> Fspa:
-    """The automaton that an artefact ``NAME.fspa.json`` holds.
+    """Return the automaton in an artefact ``NAME.fspa.json``.
 
-    Errors: :class:`TltlError` where the file cannot be read, is no artefact, or contradicts itself.
-
+    Errors: :class:`TltlError` if the file cannot be read, is not an artefact, or is inconsistent.
     >>> import tltlc, tempfile, pathlib
     >>> from tltlc.backends import emit
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
@@ -178,51 +175,52 @@ def load(path: str | os.PathLike[str]) -> Fspa:
 
 @bounded()
 def read_artefact(source: SourceFile) -> Fspa:
-    """The automaton in the text of an artefact; errors as for :func:`load`."""
+    """Return the automaton in the text of an artefact. Errors are as for :func:`load`."""
     from tltlc.backends.json import read
 
     return read(source.text, source.name)
 
 
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
-    """The automaton with other values of its params, as written (``{"level_size": "30 m"}``).
+    """Return the automaton with other values of its params, as written (``{"level_size": "30 m"}``).
 
-    Errors: TLT0307 out of range, TLT0308 no such param or no such value.
+    Errors: TLT0307 if a value is out of range; TLT0308 if a param does not exist or a text is not a
+    value for it.
     """
     if not values:
         return fspa
     from tltlc.resolve.overrides import overridden
 
-    params, found = overridden({param.name: param for param in fspa.params}, values)
-    stop_at_errors(found)
+    params, errors = overridden({param.name: param for param in fspa.params}, values)
+    stop_at_errors(errors)
     return replace(fspa, params=tuple(params.values()))
 
 
 def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
-    """Warnings for a spec that is decided before anything has happened."""
+    """Return a warning if the initial state already decides the spec."""
     verdict = fspa.states[0].verdict
     if verdict == "violated":
         return (_unsatisfiable(spec),)
     if verdict == "satisfied":
         title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
-        way_out = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
-        way_out = way_out if spec.formula.atoms() else _NO_ATOM
-        return (Diagnostic("TLT0411", title, (label,), way_out, severity="warning"),)
+        suggestion = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
+        suggestion = suggestion if spec.formula.atoms() else _NO_ATOM
+        return (Diagnostic("TLT0411", title, (label,), suggestion, severity="warning"),)
     return ()
 
 
 def _recurs(formula: Formula) -> bool:
-    """Whether it is ``G F p``, which finite traces meet by p at their last sample alone."""
+    """Whether the formula is ``G F p``. A finite trace satisfies it if p holds at its last sample."""
     return formula.op == "G" and formula.args[0].op == "F"
 
 
 def _unsatisfiable(spec: Spec) -> Diagnostic:
-    """The warning that no trace satisfies a spec, with the parts that are to blame."""
+    """Return the warning that no trace satisfies a spec; its labels mark the parts that contradict."""
     from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
 
-    endless = spec.semantics == "infinite"
+    is_infinite = spec.semantics == "infinite"
     decision = unsatisfiable
-    if endless:
+    if is_infinite:
         from tltlc.automaton.infinite import contradiction as over_infinite_traces
 
         decision = over_infinite_traces.unsatisfiable
@@ -230,21 +228,23 @@ def _unsatisfiable(spec: Spec) -> Diagnostic:
     excluded = bool(spec.exclusive) and not decision(parts, replace(spec, exclusive=()))
     title = f"no trace satisfies `{spec.name}`"
     if len(parts) == 1:
-        message, way_out = "this cannot be met", "weaken it"
+        message, suggestion = "this cannot be met", "weaken it"
         (part,) = parts
         if not part.formula.atoms():
-            way_out = _NO_ATOM
+            suggestion = _NO_ATOM
         elif excluded:
-            way_out = "weaken it: atoms that are `exclusive` never hold together"
-        elif part.formula.op == "G" and not endless:
+            suggestion = "weaken it: atoms that are `exclusive` never hold together"
+        elif part.formula.op == "G" and not is_infinite:
             once = replace(part, formula=part.formula.args[0])
             if not decision([once], spec):
-                way_out = "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
+                suggestion = (
+                    "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
+                )
     else:
-        message, way_out = "together with the others", "these contradict each other: weaken one of them"
-        if not endless and any(_recurs(part.formula) for part in parts):
-            way_out += "; where play has no end and one comes again and again, say `semantics infinite`"
+        message, suggestion = "together with the others", "these contradict each other: weaken one of them"
+        if not is_infinite and any(_recurs(part.formula) for part in parts):
+            suggestion += "; where play has no end and one comes again and again, say `semantics infinite`"
         elif excluded:
-            way_out += "; atoms that are `exclusive` never hold together"
+            suggestion += "; atoms that are `exclusive` never hold together"
     labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])
-    return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), way_out, severity="warning")
+    return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), suggestion, severity="warning")

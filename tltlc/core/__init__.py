@@ -1,1 +1,1 @@
-"""Records, source texts and the places in them."""
+"""Records, source texts and spans."""

@@ -1,8 +1,8 @@
-"""Frozen records with slots: what ``dataclass(frozen=True, slots=True)`` gives, made twenty times faster.
+"""Frozen records with slots, like ``dataclass(frozen=True, slots=True)`` but twenty times faster to define.
 
-The compiler's data are some ninety small classes.  ``dataclasses`` compiles the text of several
-methods for each, 0.4 ms a class, which would be a quarter of the time of a whole ``tltlc compile``; here the
-methods are shared closures (``docs/adr/0003``).
+The compiler defines about ninety small classes. ``dataclasses`` compiles the source of several
+methods for each class, which takes 0.4 ms a class: a quarter of the time of a whole
+``tltlc compile``. Here, the methods are shared closures (``docs/adr/0003``).
 """
 
 from __future__ import annotations
@@ -23,19 +23,20 @@ if TYPE_CHECKING:
 else:
 
     def dataclass_transform(**_: object) -> Callable[[T], T]:
-        """Nothing at run time."""
+        """Do nothing at run time."""
         return lambda function: function
 
 
 @dataclass_transform(frozen_default=True)
 def record(cls: type[R]) -> type[R]:
-    """Class decorator: the annotated fields, in order, become slots and the arguments of the constructor.
+    """Turn the annotated fields of a class, in order, into slots and arguments of the constructor.
 
-    A value given in the class is a field's default.  Records compare and hash by class and fields,
-    cannot be changed, can be pickled, and match positionally.  A method ``__post_init__`` checks the fields of a new
-    one.  A class with ``hashed_once = True`` keeps its hash: that of a deep tree takes long.
+    A value assigned in the class is the field's default. Records compare and hash by class and
+    fields, are immutable, can be pickled, and match positionally. A method ``__post_init__`` checks
+    the fields of a new record. A class with ``hashed_once = True`` caches its hash, since hashing a
+    deep tree is slow.
 
-    Raises TypeError where a field without default follows one with a default.
+    Raises TypeError if a field without a default follows a field with a default.
     """
     names = tuple(cls.__annotations__)
     body = {key: value for key, value in cls.__dict__.items() if key not in (*names, "__dict__", "__weakref__")}
@@ -44,18 +45,18 @@ def record(cls: type[R]) -> type[R]:
         raise TypeError(f"{cls.__name__}: a field without a default follows one with a default")
     body["__slots__"] = (*names, "_hash") if body.get("hashed_once") else names
     body["__match_args__"] = names
-    made: Any = type(cls.__name__, cls.__bases__, body)
-    fill = [(index, made.__dict__[name].__set__) for index, name in enumerate(names)]
+    new_class: Any = type(cls.__name__, cls.__bases__, body)
+    fill = [(index, new_class.__dict__[name].__set__) for index, name in enumerate(names)]
     values_of = _values_getter(names)
 
     def initialise(self: Any, *given: Any, **named: Any) -> None:
-        left = len(fill) - len(given)
-        if named or not 0 <= left <= len(defaults):
-            given = _arguments(made.__qualname__, names, defaults, given, named)
-        elif left:
-            given += defaults[-left:]
-        for index, put in fill:
-            put(self, given[index])
+        missing = len(fill) - len(given)
+        if named or not 0 <= missing <= len(defaults):
+            given = _arguments(new_class.__qualname__, names, defaults, given, named)
+        elif missing:
+            given += defaults[-missing:]
+        for index, set_field in fill:
+            set_field(self, given[index])
 
     def initialise_checked(self: Any, *given: Any, **named: Any) -> None:
         initialise(self, *given, **named)
@@ -63,23 +64,25 @@ def record(cls: type[R]) -> type[R]:
 
     methods = {
         "__init__": initialise_checked if "__post_init__" in body else initialise,
-        "__eq__": lambda self, other: values_of(self) == values_of(other) if type(other) is made else NotImplemented,
-        "__hash__": lambda self: hash((made, values_of(self))),
-        "__reduce__": lambda self: (made, values_of(self)),
-        "__repr__": _shown,
-        "__setattr__": _refused,
-        "__delattr__": _refused,
+        "__eq__": lambda self, other: (
+            values_of(self) == values_of(other) if type(other) is new_class else NotImplemented
+        ),
+        "__hash__": lambda self: hash((new_class, values_of(self))),
+        "__reduce__": lambda self: (new_class, values_of(self)),
+        "__repr__": _repr,
+        "__setattr__": _refuse_change,
+        "__delattr__": _refuse_change,
     }
     if body.get("hashed_once"):
-        methods["__hash__"] = _kept_hash(made, values_of)
+        methods["__hash__"] = _cached_hash(new_class, values_of)
     for name, method in methods.items():
         if name not in body:
-            setattr(made, name, method)
-    return made  # type: ignore[no-any-return]
+            setattr(new_class, name, method)
+    return new_class  # type: ignore[no-any-return]
 
 
 def replace(value: R, /, **fields: object) -> R:
-    """A copy of a record with some fields replaced."""
+    """Return a copy of a record with some fields replaced."""
     names = type(value).__match_args__  # type: ignore[attr-defined]
     unknown = fields.keys() - set(names)
     if unknown:
@@ -94,25 +97,25 @@ def _values_getter(names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
     return get if len(names) > 1 else lambda value: (get(value),)
 
 
-def _kept_hash(made: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
-    """The method ``__hash__`` that computes it once."""
-    keep = made.__dict__["_hash"].__set__
+def _cached_hash(cls: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
+    """Return a method ``__hash__`` that computes the hash once."""
+    set_hash = cls.__dict__["_hash"].__set__
 
-    def kept_hash(self: Any) -> int:
+    def cached_hash(self: Any) -> int:
         try:
             return self._hash  # type: ignore[no-any-return]
         except AttributeError:
-            value = hash((made, values_of(self)))
-            keep(self, value)
+            value = hash((cls, values_of(self)))
+            set_hash(self, value)
             return value
 
-    return kept_hash
+    return cached_hash
 
 
 def _arguments(
     owner: str, names: tuple[str, ...], defaults: tuple[Any, ...], given: tuple[Any, ...], named: dict[str, Any]
 ) -> tuple[Any, ...]:
-    """The fields' values in order, from positions, names and defaults."""
+    """Return the values of the fields in order, from positions, names and defaults."""
     if len(given) > len(names):
         raise TypeError(f"{owner} takes {len(names)} values, {len(given)} were given")
     values = dict(zip(names[len(names) - len(defaults) :], defaults, strict=True))
@@ -127,10 +130,10 @@ def _arguments(
     return tuple(values[name] for name in names)
 
 
-def _shown(self: Any) -> str:
+def _repr(self: Any) -> str:
     fields = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.__match_args__)
     return f"{type(self).__qualname__}({fields})"
 
 
-def _refused(self: Any, name: str, *_: object) -> None:
+def _refuse_change(self: Any, name: str, *_: object) -> None:
     raise AttributeError(f"a {type(self).__qualname__} cannot be changed: {name}")

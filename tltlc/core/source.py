@@ -1,4 +1,4 @@
-"""Source texts and the places in them that diagnostics point at."""
+"""Source texts, and the spans in them that diagnostics point at."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ class Span:
     end: int
 
     def to(self, other: Span) -> Span:
-        """The smallest span that covers this one and ``other``."""
+        """Return the smallest span that covers this span and ``other``."""
         return Span(min(self.start, other.start), max(self.end, other.end))
 
     def covers(self, other: Span) -> bool:
-        """Whether the other span lies in this one, or is the same."""
+        """Whether this span contains ``other`` or equals it."""
         return self.start <= other.start and other.end <= self.end
 
 
 class SourceFile:
-    """A text and the name under which messages speak of it (a path, or ``<stdin>``).
+    """A text and its name in messages: a path, or ``<stdin>``.
 
-    A lone carriage return is kept as a newline: all later stages then see the lines that an editor shows,
-    and offsets stay the same.
+    A lone carriage return is stored as a newline, so that all later stages see the same lines as an
+    editor shows. Offsets do not change.
     """
 
     __slots__ = ("_line_starts", "name", "text")
@@ -56,16 +56,16 @@ class SourceFile:
         return f"SourceFile(name={self.name!r})"
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Line and column of a character offset, both from 1; columns count characters."""
+        """Return the line and column of a character offset; both start at 1, columns count characters."""
         line = bisect_right(self._line_starts, offset)
         return line, offset - self._line_starts[line - 1] + 1
 
     def line(self, number: int) -> str:
-        """The text of a line (from 1), without its line end."""
+        """Return the text of a line, without its line end; line numbers start at 1."""
         start = self._line_starts[number - 1]
         end = self._line_starts[number] if number < len(self._line_starts) else len(self.text)
         return self.text[start:end].rstrip("\r\n")
 
     def slice(self, span: Span) -> str:
-        """The text that a span covers."""
+        """Return the text that a span covers."""
         return self.text[span.start : span.end]

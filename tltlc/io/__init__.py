@@ -1,1 +1,1 @@
-"""Files, limits and the project file: everything that touches the system."""
+"""Files, limits and the project file: all access to the operating system."""

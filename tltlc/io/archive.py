@@ -1,4 +1,4 @@
-"""Unpack archives: write files under paths that somebody else chose, and never outside the folder for them."""
+"""Unpack archives safely: the paths in an archive are foreign input, and no file may land outside its folder."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ _DEVICES: Final = {
     *("con", "prn", "aux", "nul", "conin$", "conout$"),
     *(f"{port}{digit}" for port in ("com", "lpt") for digit in "0123456789¹²³"),
 }
-"""Names that mean devices on Windows, in small letters; an ending such as `.txt` changes nothing."""
+"""Device names on Windows, in lower case; with an extension such as `.txt`, they mean the same device."""
 
 
 @record
 class Archive:
-    """What messages say about an archive.
+    """The texts for messages about an archive.
 
-    ``name`` is what they call it. ``damaged`` is their help where somebody damaged it or made it by hand, ``elsewhere``
-    their help where it is sound, but this system cannot hold its files.
+    Messages call the archive ``name``. ``damaged`` is the help for an archive that was damaged or
+    made by hand; ``elsewhere`` is the help for a sound archive whose files this system cannot store.
     """
 
     name: str
@@ -35,18 +35,18 @@ class Archive:
 
 
 def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -> None:
-    """Write files into a folder that exists, each at its path below it, with ``/`` between the parts.
+    """Write files into a folder that exists; the path of each is relative to it, with ``/`` between its parts.
 
     Raises:
-        TltlError: TLT0009, a path leads out of the folder, is too long, or is no file's path on this system, or two
-            paths cannot both be there; TLT0005, the system refuses to write.
+        TltlError: TLT0009 if a path leads out of the folder, is too long, or is not valid on this
+            system, or if two paths cannot both exist; TLT0005 if the system refuses to write.
     """
     written: list[str] = []
     for name, content in files:
         path = inside(folder, name, archive)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            # Two entries of one name, or a file and a folder of one name, are no archive of ours.
+            # No archive that tltlc makes has two entries of one name, or a file and a folder of one name.
             with path.open("xb") as file:
                 file.write(content)
         except (FileExistsError, NotADirectoryError, IsADirectoryError):
@@ -58,7 +58,7 @@ def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -
 
 
 def inside(folder: Path, name: str, archive: Archive) -> Path:
-    """The place of an archive's path below a folder; raises TltlError, TLT0009, if there is no such place."""
+    """Return the path of an archive's entry below a folder; raise TltlError, TLT0009, if there is none."""
     check_extent(name, archive)
     parts = name.split("/")
     if _IS_WINDOWS and any(map(_is_foreign, parts)):
@@ -73,31 +73,31 @@ def inside(folder: Path, name: str, archive: Archive) -> Path:
 def check_extent(name: str, archive: Archive) -> None:
     """Raise TltlError, TLT0009, if a path has more bytes or parts than :data:`tltlc.io.limits.UNPACKED_PATH` allows.
 
-    So does a part that is longer than most file systems allow.
+    Raise it also if a part is longer than most file systems allow.
     """
     depth = UNPACKED_PATH.depth or 0
     if len(name.encode(errors="surrogatepass")) > UNPACKED_PATH.size:
-        what = f"which is longer than {UNPACKED_PATH.size:,} bytes"
+        problem = f"which is longer than {UNPACKED_PATH.size:,} bytes"
     elif name.count("/") >= depth:
-        what = f"which has more than {depth} parts"
+        problem = f"which has more than {depth} parts"
     elif any(len(part.encode(errors="surrogatepass")) > UNPACKED_NAME.size for part in name.split("/")):
         title = f"{archive.name} holds the path `{name}`, a part of which is longer than {UNPACKED_NAME.size} bytes"
         raise _refused(title, "use a version of it in which that part has a shorter name")
     else:
         return
-    raise _refused(f"{archive.name} holds the path `{name}`, {what}", archive.damaged)
+    raise _refused(f"{archive.name} holds the path `{name}`, {problem}", archive.damaged)
 
 
 def _is_foreign(part: str) -> bool:
-    """Whether Windows takes a part of a path for something else than the name of a file or folder."""
-    # Windows leaves out blanks and points at the end of a name.
+    """Whether Windows does not accept this part of a path as the name of a file or folder."""
+    # Windows drops spaces and dots at the end of a name.
     has_odd_end = part not in (".", "..") and part.endswith((".", " "))
-    has_sign = any(character in '\\:*?"<>|' or character < " " for character in part)
-    return has_odd_end or has_sign or part.partition(".")[0].rstrip(" ").lower() in _DEVICES
+    has_reserved_character = any(character in '\\:*?"<>|' or character < " " for character in part)
+    return has_odd_end or has_reserved_character or part.partition(".")[0].rstrip(" ").lower() in _DEVICES
 
 
 def _two_entries(name: str, written: Sequence[str], archive: Archive) -> TltlError:
-    """TLT0009: a path cannot be there beside those that have been written."""
+    """Return TLT0009: a path cannot exist beside those that are already written."""
     other = next((other for other in written if _clash(_folded(name), _folded(other))), name)
     if _clash(name, other):
         return _refused(f"{archive.name} holds two entries for `{name}`", archive.damaged)
@@ -111,7 +111,7 @@ def _clash(name: str, other: str) -> bool:
 
 
 def _folded(name: str) -> str:
-    """The same text for all names that some file system takes for one."""
+    """Return the same text for all names that some file system treats as equal."""
     return normalize("NFC", normalize("NFD", name).casefold())
 
 

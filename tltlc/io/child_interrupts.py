@@ -1,6 +1,6 @@
-"""Treat the interrupt of a child process as one of this process: Ctrl-C in a terminal reaches both.
+"""Treat an interrupt of a child process as an interrupt of this process: Ctrl-C in a terminal reaches both.
 
-The child may end first. Its exit status would then look like a fault of the child.
+The child may end first. Without this, its exit status would look like an error of the child.
 """
 
 from __future__ import annotations
@@ -15,13 +15,17 @@ _BY_STATUS: Final = {
     143: signal.SIGTERM,
     0xC000013A: signal.SIGINT,
 }
-"""Signals by the exit statuses of :mod:`subprocess`, of shells, and of Windows; git uses 129, SIGHUP's, itself."""
+"""Signals by exit status: of :mod:`subprocess`, of shells, and of Windows.
+
+129, a shell's status for SIGHUP, is missing: git itself exits with 129.
+"""
 
 
 def raise_if_interrupted(returncode: int) -> None:
-    """Raise KeyboardInterrupt if a child process has ended by SIGINT, SIGTERM or SIGHUP.
+    """Raise KeyboardInterrupt if SIGINT, SIGTERM or SIGHUP has ended a child process.
 
-    This process handles that signal first, if it has a handler for it, so that its exit status is that of the signal.
+    If this process has a handler for the signal, the handler runs first, so that the exit status of
+    this process is the one for that signal.
     """
     number = _BY_STATUS.get(returncode)
     if number is None:

@@ -1,4 +1,4 @@
-"""Source files are looked for and read: every way in which one can fail to be a text becomes a diagnostic."""
+"""Find and read source files. Every reason why a file is not a readable text becomes a diagnostic."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ MAX_ARTEFACT_BYTES: Final = ARTEFACT.size
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 
 Stamp = Union[tuple[int, ...], None]
-"""What tells one state of a file from another; of a folder or a device only that it is there, and None of nothing."""
+"""Identifies one state of a file. For a folder or a device, it is only the kind; None means that nothing is there."""
 
 
 class Notes(dict[str, Stamp]):
-    """The paths that were looked for or read, with their states before that.
+    """The paths that were looked up or read, each with its state before that.
 
-    ``read`` identifies the regular files that were read, by their device and their number there.
+    ``read`` identifies the regular files that were read, by device and inode number.
     """
 
     def __init__(self) -> None:
@@ -35,20 +35,20 @@ class Notes(dict[str, Stamp]):
 
 
 _noted: Final[list[Notes]] = []
-"""Who asks for notes of what is looked at."""
+"""The active recordings of :func:`noted`, the innermost last."""
 
 _unsaved: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
-"""The texts that an editor has not saved, by absolute paths."""
+"""The unsaved texts of an editor, by absolute path."""
 
 _folders: Final[ContextVar[frozenset[str] | None]] = ContextVar("folders", default=None)
-"""The folders that may be read, each as it is written and with its links followed; None where every file may be."""
+"""The readable folders, each as written and with links resolved; None if every file is readable."""
 
 
 @contextmanager
 def confined(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
-    """Within, only these folders and what is below them can be read; :func:`may_read` says how links count."""
-    ways = (os.path.abspath, os.path.realpath)
-    token = _folders.set(frozenset(os.path.normcase(way(folder)) for folder in folders for way in ways))
+    """Inside, only files in these folders and below can be read; :func:`may_read` describes how links count."""
+    resolvers = (os.path.abspath, os.path.realpath)
+    token = _folders.set(frozenset(os.path.normcase(resolve(folder)) for folder in folders for resolve in resolvers))
     try:
         yield
     finally:
@@ -56,24 +56,24 @@ def confined(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
 
 
 def may_read(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is inside the folders of :func:`confined`: as it is written, and after links are followed."""
+    """Whether a path is inside the folders of :func:`confined`, both as written and with links resolved."""
     folders = _folders.get()
     if folders is None:
         return True
     try:
-        # The written path comes first, so that nothing outside is even looked at.
+        # Check the path as written first, so that no path outside is even looked up.
         return _is_inside(os.path.abspath(path), folders) and _is_inside(os.path.realpath(path), folders)  # noqa: PTH100
     except (OSError, ValueError):
         return False
 
 
 def _is_inside(path: str, folders: Iterable[str]) -> bool:
-    own = os.path.normcase(path)
-    return any(own == folder or own.startswith(os.path.join(folder, "")) for folder in folders)  # noqa: PTH118
+    key = os.path.normcase(path)
+    return any(key == folder or key.startswith(os.path.join(folder, "")) for folder in folders)  # noqa: PTH118
 
 
 def outside(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
-    """TLT0777: a file or folder is outside of those that may be read."""
+    """Return TLT0777: a file or folder is outside the readable folders."""
     title = f"`{name}` is outside the folder of the playground, so it is not read"
     return Diagnostic(
         "TLT0777", title, labels, "move it into that folder, or start `tltlc serve` in a folder above both"
@@ -82,7 +82,7 @@ def outside(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
 
 @contextmanager
 def unsaved(texts: Mapping[str, str]) -> Iterator[None]:
-    """Within, these texts are read in place of the files at their absolute paths, be there such a file or not."""
+    """Inside, these texts replace the files at their absolute paths, whether or not such a file exists."""
     token = _unsaved.set(texts)
     try:
         yield
@@ -97,9 +97,10 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
 
 @contextmanager
 def noted() -> Iterator[Notes]:
-    """Within, every path that is looked for or read here is noted with its state before that, if it is there or not.
+    """Inside, record every path that is looked up or read in this module, with its state before that.
 
-    They are what a result depends on: as long as :func:`stamp` says the same of each, it would come out the same.
+    A result depends on these paths: as long as :func:`stamp` returns the same state for each, the
+    result does not change.
     """
     notes = Notes()
     _noted.append(notes)
@@ -110,7 +111,7 @@ def noted() -> Iterator[Notes]:
 
 
 def note(path: str | os.PathLike[str]) -> None:
-    """Tell those who asked by :func:`noted` that this path is about to be looked at."""
+    """Record in all active :func:`noted` that this path is about to be looked up."""
     for notes in _noted:
         name = os.fspath(path)
         if name not in notes:
@@ -118,31 +119,34 @@ def note(path: str | os.PathLike[str]) -> None:
 
 
 def note_read(path: str | os.PathLike[str]) -> None:
-    """Tell those who asked by :func:`noted` that this file is about to be read."""
+    """Record in all active :func:`noted` that this file is about to be read."""
     note(path)
     _note_identity(path)
 
 
 def note_stream(stream: BinaryIO) -> None:
-    """Tell those who asked by :func:`noted` that a stream is about to be read, which may come from a file."""
+    """Record in all active :func:`noted` that a stream is about to be read, if it comes from a file."""
     with suppress(OSError, ValueError):
         _note_identity(stream.fileno())
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at a path, under this name or another, was read since the innermost :func:`noted` began.
+    """Whether the file at a path, by this or another name, was read since the innermost :func:`noted` began.
 
-    A command that watches begins one for each round.  The system may give a source's number to an output once an
-    editor has replaced the source, so what earlier rounds read does not count.
+    A command that watches files begins a new :func:`noted` in each round. What earlier rounds read
+    does not count: after an editor has replaced a source file, the system may give its inode number
+    to an output.
     """
-    # What is written to a device or a pipe replaces nothing.
+    # Devices and pipes have no identity: writing to them replaces nothing.
     return bool(_noted) and _identity(path) in _noted[-1].read
 
 
 def descriptor_of(path: str | os.PathLike[str]) -> int | None:
-    """1 or 2 where standard output or standard error of this process goes to the file at a path, by any name of it."""
-    there = _identity(path)
-    return next((number for number in (1, 2) if there is not None and _identity(number) == there), None)
+    """Return 1 or 2 if standard output or standard error of this process goes to the file at a path, else None."""
+    identity = _identity(path)
+    return next(
+        (descriptor for descriptor in (1, 2) if identity is not None and _identity(descriptor) == identity), None
+    )
 
 
 def _note_identity(file: str | os.PathLike[str] | int) -> None:
@@ -153,36 +157,36 @@ def _note_identity(file: str | os.PathLike[str] | int) -> None:
 
 
 def _identity(file: str | os.PathLike[str] | int) -> tuple[int, int] | None:
-    """The device of a regular file, and its number there; None for anything else."""
+    """Return the device and inode number of a regular file, and None for anything else."""
     try:
-        found = os.stat(file)  # noqa: PTH116
+        status = os.stat(file)  # noqa: PTH116
     except (OSError, ValueError):
         return None
-    return (found.st_dev, found.st_ino) if stat.S_ISREG(found.st_mode) else None
+    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
 
 
 def stamp(path: str) -> Stamp:
-    """The state of what is at a path now."""
+    """Return the current state of a path."""
     try:
-        found = os.stat(path)  # noqa: PTH116
+        status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
         return None
-    if not stat.S_ISREG(found.st_mode):
-        return (stat.S_IFMT(found.st_mode),)
-    return (found.st_mtime_ns, found.st_size, found.st_ino)
+    if not stat.S_ISREG(status.st_mode):
+        return (stat.S_IFMT(status.st_mode),)
+    return (status.st_mtime_ns, status.st_size, status.st_ino)
 
 
 def exists(path: str | os.PathLike[str]) -> bool:
-    """Whether something is there, as far as the system tells: where it allows no such name or look, nothing is."""
+    """Whether something exists at a path; False if the system rejects the name or denies access."""
     if not may_read(path):
         return False
     note(path)
-    # pathlib's raises there, before Python 3.14.
+    # pathlib's method raises an exception in those cases before Python 3.14.
     return os.path.exists(path)  # noqa: PTH110
 
 
 def is_file(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is there, as :func:`exists` has it; devices and pipes are none."""
+    """Whether a regular file exists at a path, or an unsaved text; devices and pipes do not count."""
     if not may_read(path):
         return False
     note(path)
@@ -190,9 +194,9 @@ def is_file(path: str | os.PathLike[str]) -> bool:
 
 
 def may_be_file(path: str | os.PathLike[str]) -> bool:
-    """Whether a command that walks a folder may read this entry: not if it is a pipe, device, socket or folder.
+    """Whether a command that walks a folder may read this entry: not a pipe, device, socket or folder.
 
-    Links are followed. A link that leads nowhere passes, so that whoever reads it reports it.
+    Links are followed. A broken link passes, so that the code that reads it reports it.
     """
     try:
         return stat.S_ISREG(os.stat(path).st_mode)  # noqa: PTH116
@@ -201,7 +205,7 @@ def may_be_file(path: str | os.PathLike[str]) -> bool:
 
 
 def is_dir(path: str | os.PathLike[str]) -> bool:
-    """Whether a folder is there, as :func:`exists` has it."""
+    """Whether a folder exists at a path."""
     if not may_read(path):
         return False
     note(path)
@@ -213,24 +217,24 @@ def walk(
 ) -> Iterator[tuple[str, list[str], list[str]]]:
     """Yield what :func:`os.walk` yields from the top down, for folders of any depth.
 
-    Before Python 3.12 that one calls itself for each level, and ends in a RecursionError.
+    Before Python 3.12, :func:`os.walk` recurses once per level and may end in a RecursionError.
     """
-    waiting = [os.fspath(folder)]
-    while waiting:
-        place = waiting.pop()
+    pending = [os.fspath(folder)]
+    while pending:
+        current = pending.pop()
         folders: list[str] = []
         files: list[str] = []
         try:
-            with os.scandir(place) as entries:
+            with os.scandir(current) as entries:
                 for entry in entries:
                     (folders if _leads_to_folder(entry) else files).append(entry.name)
         except OSError as error:
             if onerror is not None:
                 onerror(error)
             continue
-        yield place, folders, files
-        paths = (os.path.join(place, name) for name in reversed(folders))  # noqa: PTH118
-        waiting += [path for path in paths if not os.path.islink(path)]  # noqa: PTH114
+        yield current, folders, files
+        paths = (os.path.join(current, name) for name in reversed(folders))  # noqa: PTH118
+        pending += [path for path in paths if not os.path.islink(path)]  # noqa: PTH114
 
 
 def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
@@ -243,18 +247,19 @@ def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
 def read_source(
     path: str | os.PathLike[str], name: str | None = None, *, max_bytes: int = MAX_SOURCE_BYTES
 ) -> SourceFile:
-    """The text of a file; ``name`` is what messages call it, by default its path.
+    """Return the text of a file; messages call it ``name``, by default its path.
 
-    Errors (:class:`TltlError`): those of :func:`read_bytes` and of :func:`decode`.
+    Errors (:class:`TltlError`) are as for :func:`read_bytes` and :func:`decode`.
     """
     shown = name if name is not None else os.fspath(path)
     return decode(read_bytes(path, shown, max_bytes), shown, max_bytes=max_bytes)
 
 
 def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
-    """The bytes of a file, which messages call ``name``; of a larger one the first ``max_bytes`` and one more.
+    """Return the bytes of a file, which messages call ``name``; at most ``max_bytes`` and one more.
 
-    Errors (:class:`TltlError`): TLT0001 where the system cannot read it, TLT0777 where :func:`confined` forbids it.
+    Errors (:class:`TltlError`): TLT0001 if the system cannot read it, TLT0777 if :func:`confined`
+    forbids it.
     """
     if not may_read(path):
         raise TltlError([outside(name)])
@@ -270,7 +275,7 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
 
 
 def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> SourceFile:
-    """The text that the bytes of a file hold: UTF-8, with or without a byte order mark.
+    """Return the text in the bytes of a file: UTF-8, with or without a byte order mark.
 
     Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than ``max_bytes``.
     """
@@ -290,17 +295,17 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
 
 
 def reading_error(name: str, error: OSError | ValueError) -> TltlError:
-    """TLT0001 for a file that the system does not give us."""
-    way_out: str | None = "check its name and its permissions"
+    """Return TLT0001 for a file that the system cannot read."""
+    suggestion: str | None = "check its name and its permissions"
     if isinstance(error, FileNotFoundError):
-        way_out = _neighbour(name) or "check its spelling, and the folder that you are in"
+        suggestion = _neighbour(name) or "check its spelling, and the folder that you are in"
     elif isinstance(error, IsADirectoryError):
-        way_out = "name a file in it"
-    return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}", help=way_out)])
+        suggestion = "name a file in it"
+    return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}", help=suggestion)])
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Why the system refused, in plain words."""
+    """Return why the system refused, in plain words."""
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
@@ -317,7 +322,7 @@ def reason(error: OSError | ValueError) -> str:
 
 
 def _neighbour(name: str) -> str | None:
-    """A file of the same folder with a name much like that one's."""
+    """Return a suggestion for a missing file, e.g. a file in its folder with a similar name."""
     from difflib import get_close_matches
 
     folder, file = os.path.split(name)
@@ -331,7 +336,7 @@ def _neighbour(name: str) -> str | None:
 
 
 def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
-    """The error for the first bad byte, shown in a text where every bad byte is replaced."""
+    """Return the error for the first invalid byte, with a label in the text where each one is replaced."""
     source = SourceFile(name, data.decode(errors="replace"))
     offset = len(data[:start].decode())
     label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is no UTF-8")

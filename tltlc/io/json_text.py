@@ -1,4 +1,4 @@
-"""Read JSON within the limits of :mod:`tltlc.io.limits`; no number in it is too large to be computed with."""
+"""Read JSON within the limits of :mod:`tltlc.io.limits`, without integers of more than 64 bits."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from tltlc.io.limits import Limit
 
 _WHOLE_NUMBERS: Final = range(-(2**63), 2**63)
 _MOST_DIGITS: Final = 20
-"""The most digits, with a sign, of a number in that range."""
+"""The most characters of an integer in that range, including its sign."""
 
 
 class JsonLimitError(ValueError):
-    """JSON that is larger than its reader takes; the message says how."""
+    """The JSON exceeds a limit of its reader; the message names the limit."""
 
 
 def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
-    """The value in a text; ``parse_constant`` is called for ``NaN`` and ``Infinity``, as :func:`json.loads` has it.
+    """Return the value in a text; ``parse_constant`` is called for ``NaN`` and ``Infinity``, as in :func:`json.loads`.
 
-    A whole number of more than 64 bits is a float, as in most readers of JSON: Python's own have no limit, and to make
-    a float of a large one, or to read thousands of digits, fails.
+    An integer of more than 64 bits becomes a float, as in most readers of JSON. Python integers have
+    no limit, so converting a large one to a float, or reading thousands of digits, would fail.
 
     Raises:
-        JsonLimitError: it nests deeper, or holds more values, than ``limit`` allows.
-        json.JSONDecodeError: it is not JSON.
-        ValueError: it is not UTF-8.
-        TypeError: it is no text.
+        JsonLimitError: the text nests deeper, or has more values, than ``limit`` allows.
+        json.JSONDecodeError: the text is not JSON.
+        ValueError: the text is not UTF-8.
+        TypeError: ``text`` is neither a str nor bytes.
     """
-    # Commas inside strings count, too: that errs by little, and takes no time.
+    # This also counts commas inside strings: a small error, but it is fast.
     commas = text.count(b",") if isinstance(text, bytes) else str.count(text, ",")
     if limit.values is not None and commas >= limit.values:
         raise JsonLimitError(f"it holds more than {limit.values:,} values")
@@ -44,7 +44,7 @@ def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] 
 
 
 def load(path: Path, limit: Limit) -> Any:
-    """The value in a file; raises what :func:`loads` raises, and OSError."""
+    """Return the value in a file; raises OSError, and the exceptions of :func:`loads`."""
     with path.open("rb") as file:
         data = file.read(limit.size + 1)
     if len(data) > limit.size:
@@ -53,7 +53,7 @@ def load(path: Path, limit: Limit) -> Any:
 
 
 def _nests_deeper(value: Any, depth: int) -> bool:
-    """Whether lists and objects stand in each other more than ``depth`` levels deep; takes no recursion."""
+    """Whether lists and objects nest more than ``depth`` levels deep; does not recurse."""
     level = [value] if isinstance(value, (dict, list)) else []
     for _ in range(depth):
         if not level:
@@ -64,7 +64,7 @@ def _nests_deeper(value: Any, depth: int) -> bool:
 
 
 def _whole_number(digits: str) -> int | float:
-    """The number, infinity beyond the range of floats."""
+    """Return the number; a float if it has more than 64 bits, infinity beyond the range of floats."""
     if len(digits) <= _MOST_DIGITS and (number := int(digits)) in _WHOLE_NUMBERS:
         return number
     return float(digits)

@@ -1,8 +1,8 @@
-"""The limits of everything that is read or checked: one table, so that no reader of foreign input is without one.
+"""The limits of all input that is read or checked, in one table, so that no reader of foreign input lacks a limit.
 
-A reader takes its row from here. It reports input that is larger with TLT0004 (bytes) or TLT0006 (nesting, number of
-values), or with the error of its own format. A checker counts its steps against a row of :data:`WORK`. Steps, not
-seconds, decide, so that every machine gives the same answer.
+A reader takes its limit from here. It reports larger input with TLT0004 (bytes) or TLT0006 (nesting,
+number of values), or with an error of its own format. A checker counts its steps against an entry of
+:data:`WORK`. It counts steps instead of seconds, so that every machine gives the same answer.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 
 @record
 class Limit:
-    """How much a reader takes of one kind of input.
+    """The limits of one kind of input.
 
-    ``size`` is in bytes, as the input lies on the disk; ``depth`` counts levels of nesting; ``values`` counts values,
-    keys and separators; ``unpacked`` is in bytes, after decompression. None where the format has no such thing.
+    ``size`` is in bytes, as stored on disk. ``depth`` counts levels of nesting. ``values`` counts
+    values, keys and separators. ``unpacked`` is in bytes, after decompression. A limit is None if the
+    format has no such quantity.
     """
 
     size: int
@@ -31,10 +32,11 @@ class Limit:
 
 @record
 class Connections:
-    """How many connections a server keeps open, and how long each may take over each part, in seconds.
+    """The most connections that a server keeps open, and the time for each phase of a connection, in seconds.
 
-    ``idle_s`` is the time between requests, ``request_s`` that of a whole request from its first byte to its last,
-    ``write_s`` that in which an answer must be taken, ``linger_s`` that in which the other side hangs up.
+    ``idle_s`` limits the time between requests, ``request_s`` the time from the first to the last
+    byte of a request, ``write_s`` the time in which the client must receive an answer, and
+    ``linger_s`` the time in which the client must close the connection.
     """
 
     most: int
@@ -46,7 +48,7 @@ class Connections:
 
 @record
 class Process:
-    """What a process may use: ``memory`` in bytes, ``work_s`` in seconds of processor time."""
+    """The resources of a process: ``memory`` in bytes, ``work_s`` in seconds of processor time."""
 
     memory: int
     work_s: int
@@ -54,10 +56,10 @@ class Process:
 
 @record
 class Arithmetic:
-    """How large an expression may be: ``depth`` counts operators in each other, functions, conditions and ``when`` too.
+    """The limits of an expression: ``depth`` counts nested operators, including functions, conditions and ``when``.
 
-    ``compared`` is the depth of two such expressions that an atom compares; ``parts`` counts the cases of one ``when``,
-    or the arguments of one function.
+    ``compared`` is the depth of an atom that compares two such expressions. ``parts`` counts the
+    cases of one ``when``, or the arguments of one function.
     """
 
     depth: int
@@ -66,49 +68,49 @@ class Arithmetic:
 
 
 ARITHMETIC: Final = Arithmetic(depth=100, compared=110, parts=500)
-"""The arithmetic of an atom: all code that walks expressions by recursion has room for it, Python's compiler, too."""
+"""The arithmetic of an atom. All code that walks expressions recursively, Python's compiler included, copes with it."""
 
 SOURCE: Final = Limit(size=1 << 20)
-"""A source text; the grammar has more limits of its own, on words and on nesting."""
+"""A source text. The grammar limits the number of tokens and the nesting, too."""
 
 IMPORTED: Final = Limit(size=1 << 24, values=100_000)
-"""The names that all imports of a program offer: a file that is imported twice offers its names twice.
+"""The names that all imports of a program bring in. A file that is imported twice counts twice.
 
-``size`` counts letters: `as` writes each name anew.
+``size`` bounds the characters of the names that imports with `as` create.
 """
 
 TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
 """A level, an asset, an overlay, a suite, settings, ``tltl.toml``."""
 
 LEVEL: Final = Limit(size=1 << 20, values=4_000)
-"""A level with the parts that it uses; ``values`` counts things, steps of stairs, and points of ways and routes."""
+"""A level with its parts; ``values`` counts things, steps of stairs, and points of paths and routes."""
 
 SUITE: Final = Limit(size=1 << 20, values=2_000)
-"""A suite; ``values`` counts cases, each of which names files that are read."""
+"""A suite; ``values`` counts cases. Each case names files to read."""
 
 OVERLAYS: Final = 100
-"""The overlays of one variant of a level."""
+"""The most overlays of one variant of a level."""
 
 ARTEFACT: Final = Limit(size=1 << 27, depth=400, values=10_000_000)
-"""An artefact, an automaton of another tool, or a run of a training, which holds an artefact.
+"""An artefact, an automaton of another tool, or a training run, which contains an artefact.
 
-``depth`` leaves room for :data:`ARITHMETIC`, of which an operator takes three levels of JSON at most.
+``depth`` leaves room for :data:`ARITHMETIC`: an operator takes at most three levels of JSON.
 """
 
 REPORT: Final = Limit(size=1 << 27, depth=100, values=10_000_000)
-"""A baseline or a record of a training."""
+"""A baseline, or a record of a training run."""
 
 MESSAGE: Final = Limit(size=1 << 22, depth=100, values=1_000_000)
 """A request to the playground or to the language server."""
 
 ANSWER: Final = Limit(size=1 << 25)
-"""An answer of the playground; a browser takes far more, but nobody looks at it."""
+"""An answer of the playground. A browser accepts far more, but too much for a person to read."""
 
 WORKSPACE: Final = Limit(size=1 << 26, values=200_000)
-"""The source texts in the folders that an editor shows; ``values`` counts files and folders of any kind."""
+"""The source texts in the folders that are open in an editor; ``values`` counts all files and folders."""
 
 WORKSPACE_PARSED: Final = Limit(size=1 << 22)
-"""Those source texts that one request of the editor needs parsed."""
+"""The source texts that one request of the editor parses."""
 
 REQUEST_LINE: Final = Limit(size=1 << 13)
 """The first line of a request to the playground, with its line end."""
@@ -120,13 +122,14 @@ MESSAGE_HEAD: Final = Limit(size=1 << 13)
 """A header line of the language server's protocol."""
 
 TRACE_LINE: Final = Limit(size=1 << 20, depth=32, values=50_000)
-"""A row of a trace; the number of rows has no limit, since traces are read as a stream.
+"""A row of a trace. The number of rows has no limit, since traces are read as a stream.
 
-``depth`` and ``values``, counted as commas, are those of a line of JSON. Generated monitors have the same limits.
+``depth`` and ``values`` limit a row of JSON; ``values`` counts commas. Generated monitors have the
+same limits.
 """
 
 MINED_TRACE: Final = Limit(size=1 << 28)
-"""A trace that `tltlc mine` holds in memory."""
+"""A trace that `tltlc mine` keeps in memory."""
 
 RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 """A recorded episode."""
@@ -135,31 +138,31 @@ RECORDED_TEXTS: Final[Mapping[str, Limit]] = {
     "meta": Limit(size=1 << 24, depth=100, values=200_000),
     "artefact": ARTEFACT,
 }
-"""The JSON in a recorded episode, unpacked: a file may be a thousand times smaller than what is compressed in it."""
+"""The JSON in a recorded episode, after decompression, which may yield a thousand times the size of the file."""
 
 POLICY: Final = Limit(size=1 << 26)
 """A trained policy."""
 
 CHECKPOINT: Final = Limit(size=1 << 30, depth=32, values=1_000_000)
-"""A checkpoint of a training."""
+"""A checkpoint of a training run."""
 
 MEASUREMENTS: Final = Limit(size=1 << 30)
-"""The measurements of a training, a line an iteration; each line has the limits of :data:`TRACE_LINE`."""
+"""The measurements of a training run, one line per iteration; :data:`TRACE_LINE` limits each line."""
 
 REVISION: Final = Limit(size=1 << 28, values=20_000)
 """The files of a git revision that are read."""
 
 REVISION_PATHS: Final = Limit(size=1 << 29, values=5_000_000)
-"""All paths of a git revision, folders too: ``values`` counts paths, ``size`` the bytes of the list of them."""
+"""All paths of a git revision, including folders: ``values`` counts paths, ``size`` the bytes of the whole list."""
 
 REVISION_PATH: Final = Limit(size=1 << 20)
-"""One path in that list."""
+"""One path in the list of :data:`REVISION_PATHS`."""
 
 UNPACKED_PATH: Final = Limit(size=4096, depth=100)
 """A path in a git revision or another archive that is unpacked; ``depth`` counts its parts."""
 
 UNPACKED_NAME: Final = Limit(size=255)
-"""A part of such a path: no common file system allows longer ones."""
+"""A part of a path that is unpacked: no common file system allows longer names."""
 
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""
@@ -168,9 +171,9 @@ PLAYGROUND_CHILD: Final = Process(memory=2 << 30, work_s=60)
 """A process that answers one request to the playground."""
 
 COMMAND: Final = Process(memory=4 << 30, work_s=120)
-"""What a command that reads files and ends by itself uses at most, unless `tltlc --max-cpu --max-memory` say otherwise.
+"""A command that reads files and ends by itself, unless `tltlc --max-cpu --max-memory` sets other values.
 
-The last bound: the work that :data:`WORK` counts ends long before.
+This is the last bound: the limits of :data:`WORK` stop the work long before.
 """
 
 WORK: Final[Mapping[str, int]] = {
@@ -195,20 +198,20 @@ WORK: Final[Mapping[str, int]] = {
     "mined sequences": 800_000,
     "mined candidates": 50_000,
 }
-"""How many steps a checker may take, by what it counts."""
+"""The most steps of a checker, by what it counts."""
 
 
 def too_deep(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
-    """TLT0006: a text nests deeper than a reader takes; ``span`` is where, if that is known."""
+    """Return TLT0006: a text nests too deep for its reader; ``span`` is the place, if known."""
     return _structure(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
 
 
 def too_many(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
-    """TLT0006: a text holds more values than a reader takes; ``span`` is where, if that is known."""
-    what = f"holds more than {limit.values:,} values"
-    return _structure(source, what, "split it, or leave out what nothing reads", span)
+    """Return TLT0006: a text has too many values for its reader; ``span`` is the place, if known."""
+    problem = f"holds more than {limit.values:,} values"
+    return _structure(source, problem, "split it, or leave out what nothing reads", span)
 
 
-def _structure(source: SourceFile, what: str, help_: str, span: Span | None) -> TltlError:
+def _structure(source: SourceFile, problem: str, help_: str, span: Span | None) -> TltlError:
     labels = (Label(source, span),) if span is not None else ()
-    return TltlError([Diagnostic("TLT0006", f"`{source.name}` {what}", labels, help_)])
+    return TltlError([Diagnostic("TLT0006", f"`{source.name}` {problem}", labels, help_)])

@@ -1,4 +1,4 @@
-"""Locks on files: the system releases them when the process that holds them ends, however it ends."""
+"""File locks. The system releases them when the process ends, even if it is killed."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import IO
 
 
 def try_lock(file: IO[bytes]) -> bool:
-    """Lock an open file until it is closed; False where another process holds the lock.
+    """Lock an open file until it is closed; return False if another process has locked it.
 
     Raises:
-        OSError: the file system has no locks.
+        OSError: the file system does not support locks.
     """
     try:
         import fcntl

@@ -1,4 +1,4 @@
-"""The optional project file ``tltl.toml``, found upwards from a source file.
+"""Read the optional project file ``tltl.toml``, found in the folder of a source file or above it.
 
 libraries = ["predicates"]            # folders, relative to the project file
 targets = ["json", "dot", "python"]   # what `tltlc compile` writes without -t
@@ -8,7 +8,7 @@ notation = "unicode"                  # of formulas in pictures: unicode, ascii 
 formatting = "words"                  # of what `tltlc fmt` writes: words, letters, symbols or unicode
 
 [lint]
-allow = ["TLT0419"]                   # what nothing is said of; note, warning and error change a severity
+allow = ["TLT0419"]                   # codes that are not reported; note, warning and error change a severity
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _STYLE_KEYS: Final = ("notation", "formatting")
 
 @record
 class Project:
-    """What a project file says; ``targets`` is empty where it says nothing of them.
+    """The settings of a project file; ``targets`` is empty if the file does not set them.
 
     ``lint`` maps codes to one of :data:`LINT_LEVELS`.
     """
@@ -51,13 +51,15 @@ class Project:
     formatting: str = "words"
 
     def levelled(self, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """What the compiler says, with the severities of ``lint``, less what that allows."""
-        left = [each for each in found if self.lint.get(each.code) != "allow"]
-        return tuple(replace(each, severity=self.lint.get(each.code, each.severity)) for each in left)
+        """Return the diagnostics with the severities that ``lint`` sets, without those that it allows."""
+        kept = [diagnostic for diagnostic in found if self.lint.get(diagnostic.code) != "allow"]
+        return tuple(
+            replace(diagnostic, severity=self.lint.get(diagnostic.code, diagnostic.severity)) for diagnostic in kept
+        )
 
     @contextmanager
     def levelling(self) -> Iterator[None]:
-        """Within it, what a :class:`TltlError` says beside its errors is :meth:`levelled`, too."""
+        """Apply :meth:`levelled` to the diagnostics of a :class:`TltlError` that is raised inside."""
         try:
             yield
         except TltlError as error:
@@ -65,15 +67,16 @@ class Project:
 
 
 def project_for(path: str) -> Project:
-    """The project that a source file belongs to, by the nearest project file in its folder or above.
+    """Return the project that a source file belongs to: the nearest project file in its folder or above.
 
-    For standard input that is the current folder.  Libraries inside the current folder are named from there, unless
-    the file's own path is absolute: as in messages on the file.  Errors: those of :func:`read_project`.
+    For standard input, the search starts in the current folder. The paths of libraries inside the
+    current folder are relative to it, unless the path of the source file is absolute; so messages
+    name both in the same way. Errors are as for :func:`read_project`.
     """
     try:
         folder = Path(path).absolute().parent if path != "-" else Path.cwd()
     except FileNotFoundError:
-        return Project()  # the current folder has been deleted: nothing is above it
+        return Project()  # the current folder has been deleted, so it has no parents
     file = project_file(folder)
     if file is None:
         return Project()
@@ -83,17 +86,18 @@ def project_for(path: str) -> Project:
 
 
 def project_file(folder: Path) -> Path | None:
-    """The nearest project file in an absolute folder or above it; None where there is none."""
-    files = (place / FILE_NAME for place in (folder, *folder.parents))
-    # A link that leads nowhere counts: whoever reads it reports it.
+    """Return the nearest project file in an absolute folder or above it, or None."""
+    files = (parent / FILE_NAME for parent in (folder, *folder.parents))
+    # A broken link counts, so that the code that reads it reports it.
     return next((file for file in files if is_file(file) or (os.path.lexists(file) and may_read(file))), None)
 
 
 def read_project(path: Path) -> Project:
-    """The contents of a project file.
+    """Return the contents of a project file.
 
-    Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind,
-    TLT0777 a library that :func:`tltlc.io.files.confined` forbids.
+    Errors: TLT0701 if it is not TOML; otherwise all of these: TLT0702 for each unknown key, TLT0703
+    for each value of the wrong kind, TLT0777 for each library that :func:`tltlc.io.files.confined`
+    forbids.
     """
     from tltlc.io.toml_text import parse
 
@@ -103,66 +107,66 @@ def read_project(path: Path) -> Project:
     source = read_source(path, _shown(path))
     table = parse(source, "TLT0701", 'values are written as in `targets = ["json", "dot"]`')
     style = table.get("style", {})
-    wrong = _unknown(table, _KEYS, source)
+    errors = _unknown(table, _KEYS, source)
     if not isinstance(style, dict):
-        wrong.append(_wrong(source, "style", "a table, e.g. `[style]`", style))
+        errors.append(_wrong(source, "style", "a table, e.g. `[style]`", style))
         style = {}
-    wrong += _unknown(style, _STYLE_KEYS, source)
+    errors += _unknown(style, _STYLE_KEYS, source)
     for key, example in (("libraries", '["predicates"]'), ("targets", '["json", "dot"]')):
         if not _is_list_of_texts(table.get(key, [])):
-            wrong.append(_wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
+            errors.append(_wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
     notation, formatting = style.get("notation", "unicode"), style.get("formatting", "words")
     for key, value, known in (("notation", notation, NOTATIONS), ("formatting", formatting, FORMATTINGS)):
         if value not in known:
-            wrong.append(_wrong(source, key, "one of " + ", ".join(f'"{word}"' for word in known), value))
-    lint = _lint(table.get("lint", {}), source, wrong)
+            errors.append(_wrong(source, key, "one of " + ", ".join(f'"{word}"' for word in known), value))
+    lint = _lint(table.get("lint", {}), source, errors)
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
         if not may_read(folder):
-            wrong.append(outside(library, _place(source, "libraries")))
+            errors.append(outside(library, _place(source, "libraries")))
         elif not is_dir(folder):
-            wrong.append(_no_folder(source, library))
-    if wrong:
-        raise TltlError(wrong)
+            errors.append(_no_folder(source, library))
+    if errors:
+        raise TltlError(errors)
     return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation, lint, formatting)
 
 
 def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
-    """An error for each key that a table cannot have."""
+    """Return an error for each key that the table does not allow."""
     from difflib import get_close_matches
 
-    found = []
+    errors = []
     for key in table:
         if key not in keys:
             close = get_close_matches(key, keys, n=1)
-            way_out = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
-            found.append(Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), way_out))
-    return found
+            suggestion = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
+            errors.append(Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), suggestion))
+    return errors
 
 
-def _lint(table: object, source: SourceFile, wrong: list[Diagnostic]) -> dict[str, str]:
-    """The level of each code that the table ``lint`` names; what is wrong with it joins the rest."""
+def _lint(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
+    """Return the level of each code that the table ``lint`` names; add its errors to ``errors``."""
     if not isinstance(table, dict):
-        wrong.append(_wrong(source, "lint", "a table, e.g. `[lint]`", table))
+        errors.append(_wrong(source, "lint", "a table, e.g. `[lint]`", table))
         return {}
-    wrong += _unknown(table, LINT_LEVELS, source)
-    found: dict[str, str] = {}
+    errors += _unknown(table, LINT_LEVELS, source)
+    levels: dict[str, str] = {}
     for level in LINT_LEVELS:
         listed = table.get(level, [])
         if not _is_list_of_texts(listed):
-            wrong.append(_wrong(source, level, f'a list of codes, e.g. `{level} = ["TLT0419"]`', listed))
+            errors.append(_wrong(source, level, f'a list of codes, e.g. `{level} = ["TLT0419"]`', listed))
             continue
         for code in listed:
             if not _is_code(code):
-                wrong.append(_wrong(source, level, "codes that `tltlc lint` has, TLT04 and two digits", code))
-            elif code in found:
-                wrong.append(_wrong(source, level, f"each code once; `{found[code]}` has it, too", code))
-            found[code] = level
-    return found
+                errors.append(_wrong(source, level, "codes that `tltlc lint` has, TLT04 and two digits", code))
+            elif code in levels:
+                errors.append(_wrong(source, level, f"each code once; `{levels[code]}` has it, too", code))
+            levels[code] = level
+    return levels
 
 
 def _is_code(text: str) -> bool:
-    """Whether it is the code of a remark."""
+    """Whether the text is the code of a lint diagnostic."""
     from tltlc.diagnostics.codes import codes
 
     return text.startswith("TLT04") and text in codes()
@@ -192,20 +196,20 @@ _KINDS: Final = {
 
 
 def _place(source: SourceFile, key: str) -> tuple[Label, ...]:
-    """Where the key stands first at the start of a line, as far as that can be told."""
+    """Return a label where the key is the first word of a line, if there is such a line."""
     span = _first_words(source.text).get(key)
     return (Label(source, span),) if span else ()
 
 
 @lru_cache(maxsize=1)
 def _first_words(text: str) -> Mapping[str, Span]:
-    """The first place of each word, or text in quotes, with which a line begins, perhaps behind a bracket."""
+    """Return the first span of each word or quoted text that begins a line, perhaps after a bracket."""
     import re
 
-    found: dict[str, Span] = {}
+    spans: dict[str, Span] = {}
     for match in re.finditer(r"""^[ \t]*\[?[ \t]*(?:"([^"\n]*)"|'([^'\n]*)'|([\w-]+))""", text, re.MULTILINE):
-        found.setdefault(match[match.lastindex or 0], Span(*match.span(match.lastindex or 0)))
-    return found
+        spans.setdefault(match[match.lastindex or 0], Span(*match.span(match.lastindex or 0)))
+    return spans
 
 
 def _from_here(library: Path) -> Path:
@@ -213,7 +217,7 @@ def _from_here(library: Path) -> Path:
 
 
 def _shown(path: Path) -> str:
-    """The path, relative to the current folder where it lies inside."""
+    """Return the path, relative to the current folder if it is inside."""
     try:
         return str(path.relative_to(Path.cwd()))
     except ValueError:

@@ -1,8 +1,8 @@
-"""Bounds on the processor time and the memory of a command, for where no limit of :mod:`tltlc.io.limits` ends it first.
+"""Bound the processor time and the memory of a command, for input that no limit of :mod:`tltlc.io.limits` stops.
 
-Limits that count bytes or steps give the same answer on every machine.  These depend on the machine, so they are far
-above what any file needs that is not made to do harm.  Only a process that is one command has them: a program that
-imports tltlc keeps its signals and its limits.
+Limits that count bytes or steps give the same answer on every machine. These bounds depend on the
+machine, so they are far above what any file needs that is not made to do harm. They apply only to a
+process that runs one command. A program that imports tltlc keeps its own signal handlers and limits.
 """
 
 from __future__ import annotations
@@ -19,72 +19,78 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import Process
 
 _AGAIN_S = 1.0
-"""From one signal to the next: where Python drops what a handler raises, as in a destructor, the next one ends it."""
+"""Seconds between two signals. Python drops an exception that a handler raises in, for example, a destructor; then the
+next signal ends the command.
+"""
 
 _permitted: list[Process] = []
-"""What the command of this process may use; empty where the process is none."""
+"""The resources of the command that this process runs; empty if the process runs none."""
 
-_holding: list[bool] = []
-"""Not empty while bounds are held."""
+_active: list[bool] = []
+"""Not empty while the bounds apply."""
 
 
 class OutOfTimeError(BaseException):
-    """The processor time is used up.  No ``except Exception`` on the way keeps the command from ending."""
+    """The processor time is used up. It is a BaseException, so that no ``except Exception`` catches it."""
 
 
 def permit(process: Process) -> None:
-    """Make this process one command, which may use so much; 0 stands for no bound."""
+    """Make this process a command with these resources; 0 means no bound."""
     _permitted[:] = [process]
 
 
 @contextmanager
 def bounded() -> Iterator[None]:
-    """Within, the work ends with OutOfTimeError or MemoryError beyond what :func:`permit` has permitted.
+    """End the work inside with OutOfTimeError or MemoryError when it uses more than :func:`permit` allows.
 
-    Bounds within bounds are one: the outer ones count.  Where nothing was permitted there are none.
+    Nested bounds have no effect: the outermost applies. Without a call of :func:`permit`, there are
+    no bounds.
     """
-    if not _permitted or _holding or current_thread() is not main_thread():
-        # Signals come to the main thread.
+    if not _permitted or _active or current_thread() is not main_thread():
+        # Only the main thread receives signals.
         yield
         return
-    _holding.append(True)
+    _active.append(True)
     try:
         with _memory(_permitted[0].memory), _time(_permitted[0].work_s), _quiet_destructors():
             yield
     finally:
-        _holding.clear()
+        _active.clear()
 
 
 def limit(name: str, most: int) -> None:
-    """Limit this process for good, as ``RLIMIT_AS`` or another name of :mod:`resource` says, where the system can."""
-    # Windows has no such module, and other systems refuse some limits.
+    """Set a resource limit of this process for good; ``name`` is, for example, ``RLIMIT_AS`` of :mod:`resource`.
+
+    It does nothing where the system does not support the limit.
+    """
+    # Windows has no `resource` module, and other systems refuse some limits.
     with suppress(ImportError, AttributeError, OSError, ValueError):
         import resource
 
         kind = getattr(resource, name)
         hard = resource.getrlimit(kind)[1]
-        least = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        resource.setrlimit(kind, (least, least))
+        soft = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(kind, (soft, soft))
 
 
 @contextmanager
 def _quiet_destructors() -> Iterator[None]:
-    """Keep Python from printing that a destructor ran out of memory or time: the command itself soon does, and says so.
+    """Suppress Python's message that a destructor ran out of memory or time: the command soon reports it itself.
 
-    A generator that is thrown away is ended by such a destructor.  Where there is not even room to call the hook,
-    Python prints one line.
+    Such a destructor ends, for example, a generator that is dropped. If there is no memory left to
+    call the hook, Python still prints one line.
     """
-    before = sys.unraisablehook
+    previous = sys.unraisablehook
 
     def hook(unraisable: sys.UnraisableHookArgs) -> None:
         if not issubclass(unraisable.exc_type, (MemoryError, OutOfTimeError)):
-            before(unraisable)
+            previous(unraisable)
 
     sys.unraisablehook = hook
     try:
         yield
     finally:
-        sys.unraisablehook = before
+        sys.unraisablehook = previous
 
 
 @contextmanager
@@ -92,13 +98,13 @@ def _time(seconds: float) -> Iterator[None]:
     if not seconds or not hasattr(signal, "setitimer"):
         yield
         return
-    before = signal.signal(signal.SIGPROF, _end)
+    previous = signal.signal(signal.SIGPROF, _end)
     signal.setitimer(signal.ITIMER_PROF, seconds, _AGAIN_S)
     try:
         yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
+        signal.signal(signal.SIGPROF, previous)
 
 
 def _end(number: int, frame: FrameType | None) -> NoReturn:
@@ -107,29 +113,29 @@ def _end(number: int, frame: FrameType | None) -> NoReturn:
 
 @contextmanager
 def _memory(size: int) -> Iterator[None]:
-    """Bound what the process writes to; files that it maps, such as libraries, do not count."""
+    """Bound the memory that the process writes to; files that it maps, such as libraries, do not count."""
     try:
         import resource
     except ImportError:
         yield
         return
-    before, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    lower = [limit for limit in (before, size) if limit not in (resource.RLIM_INFINITY, 0)]
-    if not size or not lower:
+    previous, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    bounds = [limit for limit in (previous, size) if limit not in (resource.RLIM_INFINITY, 0)]
+    if not size or not bounds:
         yield
         return
-    # Some systems know the limit and refuse to set it.
+    # Some systems have the limit but refuse to set it.
     with suppress(OSError, ValueError):
-        resource.setrlimit(resource.RLIMIT_DATA, (min(lower), hard))
+        resource.setrlimit(resource.RLIMIT_DATA, (min(bounds), hard))
     try:
         yield
     finally:
         with suppress(OSError, ValueError):
-            resource.setrlimit(resource.RLIMIT_DATA, (before, hard))
+            resource.setrlimit(resource.RLIMIT_DATA, (previous, hard))
 
 
 def exhausted(error: BaseException) -> TltlError | None:
-    """TLT0007 for OutOfTimeError, MemoryError and RecursionError; None for others."""
+    """Return TLT0007 for OutOfTimeError, MemoryError and RecursionError, and None for other exceptions."""
     permitted = _permitted[0] if _permitted else Process(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
         title = f"the command was not done after {permitted.work_s} seconds of processor time"

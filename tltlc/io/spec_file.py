@@ -1,4 +1,4 @@
-"""A file that holds specs, as it is named and read: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, ``-``."""
+"""Name and read a file that contains specs: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-``."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 STDIN: Final = "-"
-"""The path that stands for standard input."""
+"""The path of standard input."""
 
 ARTEFACT_ENDING: Final = ".json"
 
 STDIN_NAME: Final = "<stdin>"
-"""What standard input is called in messages; it can be named so, too."""
+"""The name of standard input in messages; users may write it for :data:`STDIN` in ``PATH:NAME``."""
 
 _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 
 def split(argument: str) -> tuple[str, str | None]:
-    """The path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
+    """Return the path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
     path, colon, name = argument.rpartition(":")
     if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110
         return argument, None
@@ -45,17 +45,17 @@ def split(argument: str) -> tuple[str, str | None]:
 
 
 def is_plain_name(text: str) -> bool:
-    """Whether a text can be the NAME of ``PATH:NAME``: a word of ASCII letters, digits and _."""
+    """Whether a text can be the NAME of ``PATH:NAME``: ASCII letters, digits and _, no digit first."""
     return bool(_PLAIN_NAME.match(text))
 
 
 def read(path: str) -> tuple[SourceFile, bool]:
-    """The text of a file or of standard input, and whether it is an artefact.
+    """Return the text of a file or of standard input, and whether it is an artefact.
 
-    An artefact begins with a brace, as no source does. A file ``….json`` is one, too, even if it was cut off at its
-    first byte.
+    An artefact begins with a brace, and no source does. A file ``….json`` counts as an artefact even
+    if it is empty.
 
-    Errors: those of :func:`tltlc.io.files.read_source`.
+    Errors are as for :func:`tltlc.io.files.read_source`.
     """
     name = STDIN_NAME if path == STDIN else path
     try:
@@ -71,13 +71,13 @@ def read(path: str) -> tuple[SourceFile, bool]:
 
 
 def read_text(path: str, max_bytes: int) -> SourceFile:
-    """The text of a file or of standard input; errors as of :func:`tltlc.io.files.read_source`."""
+    """Return the text of a file or of standard input; errors are as for :func:`tltlc.io.files.read_source`."""
     data, name = read_data(path, max_bytes)
     return decode(data, name, max_bytes=max_bytes)
 
 
 def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
-    """The bytes of a file or of standard input, and what messages call it; errors as of :func:`read_bytes`."""
+    """Return the bytes of a file or of standard input, and its name in messages; errors as for :func:`read_bytes`."""
     if path == STDIN:
         try:
             stream = standard_input()
@@ -89,15 +89,15 @@ def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
 
 
 def standard_input() -> BinaryIO:
-    """Standard input, as bytes; error TLT0001 where it is closed."""
-    # A process may be started without one.
+    """Return standard input as a stream of bytes; error TLT0001 if it is closed."""
+    # A process can start without standard input.
     if sys.stdin is None:
         raise input_error(STDIN_NAME, OSError(EBADF, "it is closed"))
     return sys.stdin.buffer
 
 
 def input_error(name: str, error: OSError | ValueError) -> TltlError:
-    """TLT0001 for a file, or for standard input, that cannot be read."""
+    """Return TLT0001 for a file, or for standard input, that cannot be read."""
     if name == STDIN_NAME and isinstance(error, OSError) and error.errno == EBADF:
         help_ = "send it something, as in `tltlc check - < level.tltl`, or name a file"
         return TltlError([Diagnostic("TLT0001", "cannot read standard input: it is closed", help=help_)])

@@ -1,13 +1,14 @@
-"""Temporary files beside the files that they are to become; those of killed processes are removed later.
+"""Temporary files beside their final paths, and the removal of files that killed processes left.
 
-A process that writes into a folder creates a lock file there, ``.tltlc-PID-TOKEN.lock``, and holds a lock on it for as
-long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system releases the lock when the process
-ends, even if it is killed. So whoever gets the lock knows that the owner is gone, and may remove its files.
-A temporary folder, :func:`temporary_folder`, has such a name and such a lock, too.
+A process that writes into a folder creates a lock file ``.tltlc-PID-TOKEN.lock`` there, and keeps it
+locked as long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system releases
+the lock when the process ends, even if it is killed. So a process that gets the lock knows that the
+owner is gone, and may remove its files. A temporary folder (:func:`temporary_folder`) has such a name
+and such a lock, too.
 
-No signal that :mod:`tltlc.interfaces.cli.interrupts` handles interrupts a function of this module: it could leave a
-lock file that
-nobody knows of, or stop the removal half-way.
+Signals that :mod:`tltlc.interfaces.cli.interrupts` handles do not interrupt the functions of this
+module. Otherwise an interrupt could leave a lock file that no code tracks, or stop the removal
+half-way.
 """
 
 from __future__ import annotations
@@ -25,136 +26,137 @@ from tltlc.io.locking import try_lock
 
 _NAME: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})(?:(\.lock)|-[0-9]+(?:\.[^.]+)?)")
 _MOST_LOCKS: Final = 200
-"""Lock files of others that one write looks at; what is left waits for the next one."""
+"""The most lock files of other processes that one write checks; later writes check the rest."""
 _ATTEMPTS: Final = 100
-"""To get a lock file before another process that cleans up removes it; each failure takes such a process."""
+"""The most attempts to create a lock file. An attempt fails only if another process removes the file meanwhile."""
 
 
 class Temporaries:
-    """Temporary files in several folders, until :meth:`close` removes those that still have their temporary names."""
+    """Temporary files in several folders; :meth:`close` removes those that were not renamed."""
 
     def __init__(self) -> None:
         self._owned: dict[Path, tuple[str, IO[bytes] | None]] = {}
-        """By folder: how names of temporary files begin there, and the lock file."""
+        """By folder: the prefix of the names of temporary files there, and the lock file."""
         self._made: list[Path] = []
         self._kept: list[tuple[Path, Path | None]] = []
-        """Places, each with another name of the file that was there, None where there was none."""
+        """Paths to restore, each with the backup of its file; the backup is None if there was no file."""
 
     def path(self, place: Path, ending: str = ".tmp") -> Path:
-        """A path for a new temporary file in the folder of ``place``.
+        """Return a path for a new temporary file in the folder of ``place``.
 
         Raises:
-            OSError: nothing can be written into that folder.
+            OSError: the folder is not writable.
         """
         folder = place.parent
         if folder not in self._owned:
             remove_abandoned(folder)
             self._owned[folder] = _lock_file(folder)
-        beginning, _ = self._owned[folder]
-        self._made.append(folder / f"{beginning}-{len(self._made)}{ending}")
+        prefix, _ = self._owned[folder]
+        self._made.append(folder / f"{prefix}-{len(self._made)}{ending}")
         return self._made[-1]
 
     def keep(self, place: Path) -> None:
-        """Keep the file at a place, or that there is none, so that :meth:`restore` can undo its replacement.
+        """Back up the file at a path, or note that there is none, so that :meth:`restore` can undo its replacement.
 
         Raises:
             OSError: the system refuses.
         """
-        kept = self.path(place)
+        backup = self.path(place)
         try:
-            kept.hardlink_to(place)
+            backup.hardlink_to(place)
         except FileNotFoundError:
             self._kept.append((place, None))
             return
         except OSError:
-            # Some file systems have no hard links, and some files may have none.
+            # Some file systems have no hard links, and some files do not allow them.
             import shutil
 
-            shutil.copy2(place, kept)
-        self._kept.append((place, kept))
+            shutil.copy2(place, backup)
+        self._kept.append((place, backup))
 
     def restore(self) -> list[Path]:
-        """Put the files back that were kept, the last one first; the places where the system refuses that."""
+        """Put the files back, the last one first; return the paths where the system refuses."""
         kept, self._kept = self._kept, []
-        return [place for place, older in reversed(kept) if not _is_restored(place, older)]
+        return [place for place, backup in reversed(kept) if not _is_restored(place, backup)]
 
     def close(self) -> None:
-        """Remove what is left, the lock files last: files without a lock file would stay for ever."""
+        """Remove what is left; lock files last, since files without a lock file would never be removed."""
         for path in self._made:
             _remove(path)
-        for folder, (beginning, lock) in self._owned.items():
+        for folder, (prefix, lock) in self._owned.items():
             if lock is not None:
-                _remove_lock(folder / f"{beginning}.lock", lock)
+                _remove_lock(folder / f"{prefix}.lock", lock)
         self._made.clear()
         self._owned.clear()
 
 
 @contextmanager
 def temporaries() -> Iterator[Temporaries]:
-    """Within, there are temporary files; at the end, those that were not renamed are removed.
+    """Yield an owner of temporary files; at the end, remove those that were not renamed.
 
-    If the body fails, files that were kept are put back first.
+    If the body fails, first put back the files that were backed up.
     """
-    made = Temporaries()
+    owner = Temporaries()
     try:
-        yield made
+        yield owner
     except BaseException:
-        made.restore()
+        owner.restore()
         raise
     finally:
-        made.close()
+        owner.close()
 
 
 @contextmanager
 def new_folders(folders: Iterable[Path]) -> Iterator[None]:
-    """Make folders and those above them where they are missing; if the body fails, remove them where they are empty.
+    """Create missing folders and their missing parents; if the body fails, remove the new ones that are empty.
 
     Raises:
-        OSError, ValueError: the system refuses to make one.
+        OSError, ValueError: the system refuses to create one.
     """
-    made: list[Path] = []
+    created: list[Path] = []
     try:
         for folder in folders:
-            _make_folder(folder, made)
+            _make_folder(folder, created)
         yield
     except BaseException:
-        for folder in reversed(made):
+        for folder in reversed(created):
             with suppress(OSError):
                 folder.rmdir()
         raise
 
 
-def _make_folder(folder: Path, made: list[Path]) -> None:
-    """Make a folder and those above it; those that were missing join ``made``."""
+def _make_folder(folder: Path, created: list[Path]) -> None:
+    """Create a folder and its missing parents; append the new folders to ``created``."""
     missing = []
     while not folder.exists():
         missing.append(folder)
         folder = folder.parent
     if not folder.is_dir():
-        # Raises what fits.
+        # This raises the right exception.
         folder.mkdir()
-    for place in reversed(missing):
+    for new_folder in reversed(missing):
         try:
-            place.mkdir()
+            new_folder.mkdir()
         except FileExistsError:
-            if not place.is_dir():
+            if not new_folder.is_dir():
                 raise
         else:
-            made.append(place)
+            created.append(new_folder)
 
 
 @contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """Within, there is a folder that only this user can read; at the end, it is removed with all that is in it.
+    """Yield a new folder that only this user can read; at the end, remove it with its contents.
 
-    If the process is killed, the next one that makes such a folder removes it. Error: TLT0005, there is no room for it.
+    If the process is killed, the next process that makes such a folder removes it. Error: TLT0005 if
+    the folder cannot be created.
     """
-    # Loaded late: both take long.
+    # Imported here because `tempfile` takes long to load.
     import tempfile
 
-    with temporaries() as made:
+    with temporaries() as owner:
         try:
-            folder = made.path(Path(os.path.realpath(tempfile.gettempdir()), "folder"), "")
+            folder = owner.path(Path(os.path.realpath(tempfile.gettempdir()), "folder"), "")
             folder.mkdir(mode=0o700)
         except OSError as error:
             raise _no_folder(error) from None
@@ -168,23 +170,23 @@ def _no_folder(error: OSError) -> TltlError:
 
 
 def remove_abandoned(folder: Path) -> None:
-    """Remove the temporary files and folders in a folder whose owners are gone; what cannot be removed stays.
+    """Remove the temporary files and folders in a folder whose owners are gone; ignore what cannot be removed.
 
-    Only regular files with names of our own are touched, and folders of this user; no link is followed.
+    It removes only regular files with names of this module, and folders of this user. It follows no link.
     """
     with suppress(OSError):
-        names = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
-        temporary: dict[str, list[str]] = {}
-        for name in names:
-            if not name[2]:
-                temporary.setdefault(name[1], []).append(name[0])
-        for lock in [name for name in names if name[2]][:_MOST_LOCKS]:
+        matches = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
+        names_by_prefix: dict[str, list[str]] = {}
+        for match in matches:
+            if not match[2]:
+                names_by_prefix.setdefault(match[1], []).append(match[0])
+        for lock in [match for match in matches if match[2]][:_MOST_LOCKS]:
             with suppress(OSError):
-                _remove_of(folder, lock[1], temporary.get(lock[1], []))
+                _remove_if_abandoned(folder, lock[1], names_by_prefix.get(lock[1], []))
 
 
-def _remove_of(folder: Path, beginning: str, names: list[str]) -> None:
-    lock = folder / f"{beginning}.lock"
+def _remove_if_abandoned(folder: Path, prefix: str, names: list[str]) -> None:
+    lock = folder / f"{prefix}.lock"
     file = _open_lock(lock)
     if file is None:
         return
@@ -201,7 +203,7 @@ def _remove_of(folder: Path, beginning: str, names: list[str]) -> None:
 
 
 def _remove(path: Path) -> None:
-    """Remove a temporary file, or a temporary folder of this user; what cannot be removed stays."""
+    """Remove a temporary file, or a temporary folder of this user; ignore it if it cannot be removed."""
     with suppress(OSError):
         if _is_file(path):
             path.unlink(missing_ok=True)
@@ -212,24 +214,24 @@ def _remove(path: Path) -> None:
 
 
 def _is_own_folder(path: Path) -> bool:
-    # Folders are made without an ending.
-    found = path.lstat()
-    return stat.S_ISDIR(found.st_mode) and not path.suffix and (os.name == "nt" or found.st_uid == os.getuid())
+    # Temporary folders have no extension.
+    status = path.lstat()
+    return stat.S_ISDIR(status.st_mode) and not path.suffix and (os.name == "nt" or status.st_uid == os.getuid())
 
 
-def _is_restored(place: Path, older: Path | None) -> bool:
+def _is_restored(place: Path, backup: Path | None) -> bool:
     try:
-        if older is None:
+        if backup is None:
             place.unlink(missing_ok=True)
         else:
-            older.replace(place)
+            backup.replace(place)
     except OSError:
         return False
     return True
 
 
 def _open_lock(path: Path) -> IO[bytes] | None:
-    """The lock file of another process, opened; None if it is a link, a pipe, or anything else but a file."""
+    """Open the lock file of another process; return None if it is a link, a pipe, or another special file."""
     if not _is_file(path):
         return None
     flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
@@ -245,21 +247,21 @@ def _is_file(path: Path) -> bool:
 
 
 def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
-    """How names of temporary files are to begin in a folder, and the lock file, None where there are no locks."""
+    """Return the prefix for names of temporary files in a folder, and the lock file; None if locks do not work."""
     for _ in range(_ATTEMPTS):
-        beginning = f".tltlc-{os.getpid()}-{os.urandom(8).hex()}"
-        path = folder / f"{beginning}.lock"
+        prefix = f".tltlc-{os.getpid()}-{os.urandom(8).hex()}"
+        path = folder / f"{prefix}.lock"
         file = path.open("xb")
         try:
             locked = try_lock(file)
         except OSError:
             _remove_lock(path, file)
-            return beginning, None
-        # Until it is locked, another process may take it for one of an owner that is gone.
+            return prefix, None
+        # Before it is locked, another process may take it for an abandoned file and remove it.
         if locked and _is_there(path, file):
-            return beginning, file
+            return prefix, file
         file.close()
-    return beginning, None
+    return prefix, None
 
 
 def _is_there(path: Path, file: IO[bytes]) -> bool:
@@ -270,7 +272,7 @@ def _is_there(path: Path, file: IO[bytes]) -> bool:
 
 
 def _remove_lock(path: Path, file: IO[bytes]) -> None:
-    """Remove a lock file that this process holds.  Windows removes only files that are closed."""
+    """Remove a lock file that this process has locked. Windows removes only closed files."""
     if os.name == "nt":
         file.close()
     with suppress(OSError):

@@ -1,4 +1,4 @@
-"""Read TOML within the limits of :mod:`tltlc.io.limits`; what the standard reader says becomes a diagnostic."""
+"""Read TOML within the limits of :mod:`tltlc.io.limits`; errors of the standard reader become diagnostics."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ _MANY_DIGITS: Final = re.compile(
     r"(?<![\w.+-])(?:[+-]?[1-9](?:_?[0-9]){18,}|0x[0-9A-Fa-f](?:_?[0-9A-Fa-f]){15,}"
     r"|0o[0-7](?:_?[0-7]){20,}|0b[01](?:_?[01]){62,})(?![\w.])"
 )
-"""Whole numbers that may have more than 64 bits."""
+"""Integers that may have more than 64 bits."""
 _MOST_CHARACTERS: Final = 200
-"""Of a whole number with 64 bits, whatever its base, with signs that part its digits."""
+"""The most characters of an integer of 64 bits in any base, with signs between its digits."""
 
 
 def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
-    """The values in a text.
+    """Return the values in a text.
 
     Raises:
-        TltlError: ``code`` with ``help_``, it is no TOML; TLT0006, it nests deeper or holds more values than
-            :data:`tltlc.io.limits.TOML` allows.
+        TltlError: ``code`` with ``help_`` if the text is not TOML; TLT0006 if it nests deeper or has
+            more values than :data:`tltlc.io.limits.TOML` allows.
     """
     _check_limits(source)
     if sys.version_info >= (3, 11):
@@ -48,7 +48,7 @@ def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
         message = str(error) or "it is nested too deeply"
         raise TltlError([_syntax_error(source, message, code, help_)]) from None
     except ValueError:
-        # Python refuses to read whole numbers of thousands of digits.
+        # Python refuses to read integers of thousands of digits.
         raise _too_large(source, code) from None
     if not _fits(table):
         raise _too_large(source, code)
@@ -56,7 +56,7 @@ def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
 
 
 def _fits(value: object) -> bool:
-    """Whether all whole numbers have 64 bits, as TOML has it; to make a float of a much larger one fails."""
+    """Whether all integers have at most 64 bits, as TOML requires. Much larger ones cannot become floats."""
     if isinstance(value, dict):
         return all(map(_fits, value.values()))
     if isinstance(value, list):
@@ -66,7 +66,7 @@ def _fits(value: object) -> bool:
 
 def _too_large(source: SourceFile, code: str) -> TltlError:
     numbers = [match for match in _MANY_DIGITS.finditer(source.text) if not _is_whole_number(match[0])]
-    # One in a comment or a string looks the same: where there are several, none is named.
+    # A number in a comment or a string matches, too. With several matches, label none.
     label = (Label(source, Span(*numbers[0].span()), "this whole number"),) if len(numbers) == 1 else ()
     title = f"`{source.name}` is not TOML: a whole number is too large"
     help_ = f"whole numbers end at {_WHOLE_NUMBERS[-1]:,}; write a larger number with an exponent, as in 1e20"
@@ -78,9 +78,10 @@ def _is_whole_number(digits: str) -> bool:
 
 
 def _check_limits(source: SourceFile) -> None:
-    """Refuse what the standard reader, whose time and memory grow with the square of the nesting, should not see.
+    """Raise an error for a text that the standard reader should not see.
 
-    Each part of a dotted key and each open bracket is a level.
+    The time and memory of the standard reader grow with the square of the nesting. Each part of a
+    dotted key and each open bracket counts as a level.
     """
     assert TOML.depth is not None
     assert TOML.values is not None
@@ -95,9 +96,9 @@ def _check_limits(source: SourceFile) -> None:
         elif kind == "value":
             values += 1
         elif kind in ("unclosed", "unclosed_long"):
-            # The standard reader stops there, too.
+            # The standard reader stops here, too.
             return
-        # A quoted part may hold points: count exactly where there are many.
+        # A quoted part may contain dots, so count the parts exactly if there may be too many.
         is_long = kind == "key" and token[0].count(".") >= TOML.depth - depth
         if depth + (len(re.findall(_PART, token[0])) if is_long else 0) > TOML.depth:
             raise too_deep(source, TOML, Span(token.start(), min(token.end(), token.start() + 40)))
@@ -106,14 +107,14 @@ def _check_limits(source: SourceFile) -> None:
 
 
 def _syntax_error(source: SourceFile, message: str, code: str, help_: str) -> Diagnostic:
-    """The TOML reader's message; its place becomes a label."""
-    found = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
-    reason = message[: found.start()] if found else message
+    """Return the error of the TOML reader, with its position as a label."""
+    location = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
+    reason = message[: location.start()] if location else message
     label = Label(source, Span(len(source.text), len(source.text)), reason[:1].lower() + reason[1:])
-    if found and found[1]:
+    if location and location[1]:
         end_of_line = 0
-        for _ in range(int(found[1]) - 1):
+        for _ in range(int(location[1]) - 1):
             end_of_line = source.text.index("\n", end_of_line) + 1
-        start = min(end_of_line + int(found[2]) - 1, len(source.text))
+        start = min(end_of_line + int(location[2]) - 1, len(source.text))
         label = Label(source, Span(start, min(start + 1, len(source.text))), label.message)
     return Diagnostic(code, f"`{source.name}` is not TOML", (label,), help_)

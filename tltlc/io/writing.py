@@ -1,4 +1,4 @@
-"""Writing files so that a failure leaves neither a part of one nor harm to an older one."""
+"""Write files so that a failure neither leaves a partial file nor damages an existing file."""
 
 from __future__ import annotations
 
@@ -27,20 +27,25 @@ def write_files(
     durable: bool = False,
     over_inputs: bool = False,
 ) -> tuple[Path, ...]:
-    """Write all of the files into the folder, or none of them.  Folders are made where missing.
+    """Write all files into a folder, or none of them; create missing folders.
 
-    Files that hold this already stay untouched, so that nothing is made again from them; the result is the paths of
-    the others, in order.  Every file is first written under a temporary name beside its place, and only when all of
-    them are there are they renamed.  If the system refuses a rename, the files that were renamed before it get their
-    older content back, and folders that were made are removed.  Text is UTF-8 with line feeds.  Errors, with
-    ``advice`` on where else to write: TLT0005; TLT0700 if a file would change that the command has read, unless
-    ``over_inputs``.
+    A file that already has the same content stays untouched, so that build tools do not rebuild
+    what depends on it. Return the paths of the other files, in order.
 
-    Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned, as long as
-    its folder is not.
+    Each file is first written under a temporary name beside its final path. The temporary files are
+    renamed only when all of them are complete. If the system refuses a rename, the files that were
+    already renamed get their old content back, and new folders are removed. Text is written as
+    UTF-8 with line feeds.
 
-    A process that is killed may leave temporary files; the next one that writes into the same folder removes them.
-    Between two renames, it leaves some files new and some as they were, and none of them half written.
+    Errors, with ``advice`` on where else to write: TLT0005 if the system refuses; TLT0700 if a file
+    that the command has read would change, unless ``over_inputs``.
+
+    With ``durable``, each file is complete even after a loss of power, and is not lost once this
+    function has returned, as long as its folder is not lost.
+
+    A process that is killed may leave temporary files. The next process that writes into the same
+    folder removes them. A process that is killed between two renames leaves some files new and some
+    old, but none half written.
     """
     try:
         with new_folders({(folder / name).parent: None for name in files}):
@@ -53,29 +58,32 @@ def write_files(
 def write_file(
     path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False, over_inputs: bool = False
 ) -> None:
-    """Write one file into a folder that exists, in the same way; a device, a pipe, and the file that standard output or
-    standard error goes to are written to directly.
+    """Write one file into a folder that exists, as :func:`write_files` does.
+
+    A device, a pipe, and the file that standard output or standard error goes to are written to
+    directly.
     """
     _write({path: content}, advice, durable=durable, over_inputs=over_inputs)
 
 
 def check_not_read(path: Path, advice: str = _OPTION) -> None:
-    """Raise TLT0700 if the command has read the file at this path: no output takes the place of an input."""
+    """Raise TLT0700 if the command has read the file at this path: an output must not replace an input."""
     if was_read(path):
         raise TltlError([Diagnostic("TLT0700", f"`{path}` would be written over: it is an input", help=advice)])
 
 
 def rewrite(path: Path, content: str) -> None:
-    """Write a source file anew, in the same way.
+    """Replace the content of a source file, as :func:`write_files` does.
 
     Raises:
-        TltlError: the file stays as it is: TLT0005, it is marked as read-only; TLT0004, it would be too large to read.
+        TltlError: and the file does not change: TLT0005 if it is read-only; TLT0004 if the new
+            content would be too large to read.
     """
     if len(content.encode(errors="replace")) > SOURCE.size:
         title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB"
         raise TltlError([Diagnostic("TLT0004", title, help="it stays as it is; split it: a file may `import` others")])
     mode = _mode(path)
-    # To be renamed over, a file need not be writable.
+    # A rename also replaces a file that is not writable, so check here.
     if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):
         help_ = "check its owner and its attributes" if mode & _WRITABLE else "make it writable"
         raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: it is read-only", help=help_)])
@@ -83,7 +91,7 @@ def rewrite(path: Path, content: str) -> None:
 
 
 def remove_file(path: Path, advice: str) -> None:
-    """Remove a file, unless it is not there; raises TltlError, TLT0005, with ``advice`` on what else can be done."""
+    """Remove a file if it exists; raise TltlError, TLT0005, with ``advice`` if the system refuses."""
     try:
         path.unlink(missing_ok=True)
     except OSError as error:
@@ -92,66 +100,67 @@ def remove_file(path: Path, advice: str) -> None:
 
 @contextmanager
 def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
-    """A temporary path beside ``path``, of the same ending, for a program that writes by itself.
+    """Yield a temporary path beside ``path``, with the same extension, for a program that writes the file itself.
 
-    What is there at the end becomes ``path``; where anything is raised, Ctrl-C too, it is removed.  Error: TLT0005.
+    At the end, the temporary file is renamed to ``path``. If an exception is raised, Ctrl-C
+    included, it is removed. Error: TLT0005.
     """
-    with temporaries() as made:
+    with temporaries() as temporary_files:
         try:
-            place = Path(os.path.realpath(path))
-            temporary = made.path(place, place.suffix)
-            # The place may refuse: better to know before an hour of work.
+            target = Path(os.path.realpath(path))
+            temporary = temporary_files.path(target, target.suffix)
+            # Fail now if the folder refuses, not after an hour of work.
             temporary.touch()
             yield temporary
-            temporary.replace(place)
+            temporary.replace(target)
         except (OSError, ValueError) as error:
             raise _error(path, error, advice) from None
 
 
 def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, over_inputs: bool) -> tuple[Path, ...]:
-    waiting: list[tuple[Path, Path]] = []
+    renames: list[tuple[Path, Path]] = []
     written: list[Path] = []
-    shown = Path()
-    with temporaries() as made:
+    path = Path()
+    with temporaries() as temporary_files:
         try:
-            for shown, content in files.items():
+            for path, content in files.items():
                 data = content.encode() if isinstance(content, str) else content
-                mode = _mode(shown)
-                descriptor = descriptor_of(shown)
-                # Nobody knows whether what is there would outlast a loss of power.
-                if not durable and descriptor is None and mode is not None and _holds(shown, mode, data):
+                mode = _mode(path)
+                descriptor = descriptor_of(path)
+                # The existing file, although equal, may not have reached the disk.
+                if not durable and descriptor is None and mode is not None and _holds(path, mode, data):
                     continue
                 if not over_inputs:
-                    check_not_read(shown, advice)
-                written.append(shown)
+                    check_not_read(path, advice)
+                written.append(path)
                 if descriptor is not None:
-                    # What others write there, before and after this command, stays.
+                    # Keep what other processes write there before and after this command.
                     with os.fdopen(descriptor, "wb", closefd=False) as file:
                         file.write(data)
                     continue
                 if mode is not None and not stat.S_ISREG(mode):
-                    # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.
-                    with shown.open("wb") as file:
+                    # A device or a pipe stays; it may have no name but a link in `/dev/fd`. Opening a folder fails.
+                    with path.open("wb") as file:
                         file.write(data)
                     continue
-                place = Path(os.path.realpath(shown))
-                temporary = made.path(place)
+                target = Path(os.path.realpath(path))
+                temporary = temporary_files.path(target)
                 _fill(temporary, data, mode, durable)
-                waiting.append((temporary, place))
-            for temporary, shown in waiting:
-                # A single file needs no way back: no rename comes after it.
-                if len(waiting) > 1:
-                    made.keep(shown)
-                temporary.replace(shown)
-            for shown in {place.parent for _, place in waiting} if durable else ():
-                _sync_folder(shown)
+                renames.append((temporary, target))
+            for temporary, path in renames:
+                # A single file needs no backup: no later rename can fail.
+                if len(renames) > 1:
+                    temporary_files.keep(path)
+                temporary.replace(path)
+            for path in {target.parent for _, target in renames} if durable else ():
+                _sync_folder(path)
         except (OSError, ValueError) as error:
-            raise _error(shown, error, advice) from None
+            raise _error(path, error, advice) from None
     return tuple(written)
 
 
 def _fill(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None:
-    """Write a temporary file, with the permissions of the one that it is to replace."""
+    """Write a temporary file, with the permissions of the file that it replaces."""
     with temporary.open("wb") as file:
         file.write(data)
         if durable:
@@ -162,7 +171,7 @@ def _fill(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None
 
 
 def _holds(path: Path, mode: int, data: bytes) -> bool:
-    """Whether this is a file with that content."""
+    """Whether the path is a regular file with this content."""
     try:
         return stat.S_ISREG(mode) and path.stat().st_size == len(data) and path.read_bytes() == data
     except OSError:
@@ -170,7 +179,7 @@ def _holds(path: Path, mode: int, data: bytes) -> bool:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Have the system write down that files were renamed, where it knows how to."""
+    """Flush a folder, so that its renames reach the disk; do nothing on Windows."""
     if os.name == "nt":
         return
     descriptor = os.open(folder, os.O_RDONLY)
@@ -188,7 +197,7 @@ def _mode(path: Path) -> int | None:
 
 
 def _error(path: Path, error: OSError | ValueError, advice: str) -> TltlError:
-    # A file that we are to make is never missing itself.
+    # The file itself need not exist, so the folder is missing.
     why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
     title = f"cannot write `{path}`: {why}"
     if isinstance(error, OSError) and error.errno == errno.EMFILE:
