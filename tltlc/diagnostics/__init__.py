@@ -1,1 +1,1 @@
-"""Everything that tltlc has to say about a source text, and how it is shown."""
+"""Diagnostics: errors, warnings and notes about source texts, and their output formats."""

@@ -1,4 +1,4 @@
-"""The closed list of diagnostic codes: the pages in the folder ``pages``, one file per code.
+"""The closed list of diagnostic codes. Each code has a page, a file in the folder ``pages``.
 
 The first line of a page is ``# TLTnnnn: title``.
 """
@@ -14,35 +14,35 @@ _PAGES: Final = os.path.join(os.path.dirname(__file__), "pages")  # noqa: PTH118
 _NAME: Final = re.compile(r"(TLT[0-9]{4})\.md")
 
 _ALIKE: Final = 0.8
-"""How alike two codes are where a digit is wrong, or two have changed places."""
+"""The least similarity of two codes that differ in one digit, or by two exchanged digits."""
 
 
 @lru_cache(maxsize=1)
 def codes() -> tuple[str, ...]:
-    """Every code that a diagnostic can have, in order."""
+    """Return all codes of diagnostics, in order."""
     return tuple(sorted(match[1] for name in os.listdir(_PAGES) if (match := _NAME.fullmatch(name))))  # noqa: PTH208
 
 
 def family(beginning: str) -> tuple[str, ...]:
-    """The codes that begin so, in order."""
+    """Return the codes with this prefix, in order."""
     return tuple(code for code in codes() if code.startswith(beginning))
 
 
 def nearest(code: str, most: int = 3) -> tuple[str, ...]:
-    """The codes that are most like one that is none: those that differ by a slip, else the next ones; in order."""
+    """Return the codes most like an unknown code, in order: codes that differ by a typo, else the nearest numbers."""
     from difflib import get_close_matches
 
-    number = int("0" + "".join(sign for sign in code if sign.isdecimal()))
+    number = int("0" + "".join(character for character in code if character.isdecimal()))
     alike = get_close_matches(code, codes(), n=len(codes()), cutoff=_ALIKE) or codes()
 
-    def distance(each: str) -> tuple[bool, int]:
-        return sorted(each) != sorted(code), abs(int(each[3:]) - number)
+    def distance(candidate: str) -> tuple[bool, int]:
+        return sorted(candidate) != sorted(code), abs(int(candidate[3:]) - number)
 
     return tuple(sorted(sorted(alike, key=distance)[:most]))
 
 
 def page(code: str) -> str:
-    """The page of a code, in Markdown; raises KeyError for what is no code."""
+    """Return the page of a code, in Markdown; raise KeyError if the code does not exist."""
     if code not in codes():
         raise KeyError(code)
     with open(os.path.join(_PAGES, f"{code}.md"), encoding="utf-8") as file:  # noqa: PTH118, PTH123
@@ -50,5 +50,5 @@ def page(code: str) -> str:
 
 
 def title(code: str) -> str:
-    """What a code means in one line; raises KeyError for what is no code."""
+    """Return what a code means, in one line; raise KeyError if the code does not exist."""
     return page(code).splitlines()[0].removeprefix(f"# {code}: ")

@@ -1,4 +1,4 @@
-"""The one type for everything that tltlc has to say about a source text."""
+"""The type of all messages of tltlc about a source text, and the exception that carries them."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tltlc.core.source import SourceFile, Span
 
 Severity = Literal["error", "warning", "note"]
 Applicability = Literal["safe", "maybe"]
-"""A ``safe`` fix keeps what the text asks of the game; one that is ``maybe`` right is a guess, and may change that."""
+"""A ``safe`` fix keeps the meaning of the text; a ``maybe`` fix is a guess, and may change the meaning."""
 
 
 @record
 class Label:
-    """A place in a source, with an optional short remark printed under its caret."""
+    """A span of a source, with an optional short message that is printed under its caret."""
 
     source: SourceFile
     span: Span
@@ -24,7 +24,7 @@ class Label:
 
 @record
 class Edit:
-    """Another text in place of what a span covers."""
+    """The replacement of a span by another text."""
 
     span: Span
     text: str
@@ -32,7 +32,7 @@ class Edit:
 
 @record
 class Fix:
-    """One way to mend the text that a message is about: a short title, and edits that do not overlap."""
+    """One way to fix the text: a short title, and edits that do not overlap."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -41,10 +41,10 @@ class Fix:
 
 @record
 class Diagnostic:
-    """A message: what happened (title), where (labels, the first is the main one), one way out (help).
+    """A message: what happened (``title``), where (``labels``, the main one first), and a suggestion (``help``).
 
-    ``code`` is one of the closed list in :mod:`tltlc.diagnostics.codes`.  ``fixes`` are the ways out that a program can
-    take, the likeliest first, as edits of the source of the first label.
+    ``code`` is in the closed list of :mod:`tltlc.diagnostics.codes`. ``fixes`` are the fixes that a
+    program can apply, the likeliest first; they edit the source of the first label.
     """
 
     code: str
@@ -56,10 +56,10 @@ class Diagnostic:
 
 
 def instead(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
-    """Return the fix that writes a text in place of a span, with a space wherever two words would touch."""
-    before, behind = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
+    """Return the fix that replaces a span by a text, with spaces where two words would otherwise touch."""
+    before, after = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
     start = " " if _is_word(before) and _is_word(text[:1]) else ""
-    end = " " if _is_word(behind) and _is_word(text[-1:]) else ""
+    end = " " if _is_word(after) and _is_word(text[-1:]) else ""
     return Fix(f"Write `{text}`", (Edit(span, f"{start}{text}{end}"),), applicability)
 
 
@@ -68,14 +68,14 @@ def around(span: Span, opening: str = "(", closing: str = ")") -> tuple[Edit, ..
     return Edit(Span(span.start, span.start), opening), Edit(Span(span.end, span.end), closing)
 
 
-def _is_word(sign: str) -> bool:
-    return sign.isalnum() or sign == "_"
+def _is_word(character: str) -> bool:
+    return character.isalnum() or character == "_"
 
 
 class TltlError(Exception):
-    """Raised where a stage cannot go on; carries every diagnostic found so far.
+    """Raised if a stage cannot go on; contains all diagnostics up to that point.
 
-    ``diagnostics`` is never empty and holds at least one error.
+    ``diagnostics`` contains at least one error.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -83,12 +83,12 @@ class TltlError(Exception):
         super().__init__("; ".join(f"{d.code}: {d.title}" for d in self.diagnostics))
 
     def __reduce__(self) -> tuple[type[TltlError], tuple[tuple[Diagnostic, ...]]]:
-        # Its text is not what it is made of; processes send it to each other.
+        # The default would pickle the text only; processes send these errors to each other.
         return type(self), (self.diagnostics,)
 
 
-def stop_at_errors(found: Iterable[Diagnostic]) -> None:
-    """Raise what was found where an error is among it."""
-    found = tuple(found)
-    if any(each.severity == "error" for each in found):
-        raise TltlError(found)
+def stop_at_errors(diagnostics: Iterable[Diagnostic]) -> None:
+    """Raise a TltlError with all diagnostics if one of them is an error."""
+    diagnostics = tuple(diagnostics)
+    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
+        raise TltlError(diagnostics)

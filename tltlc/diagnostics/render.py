@@ -1,4 +1,4 @@
-"""Diagnostics as text, for people and for programs: one module of ``tltlc.diagnostics.formats`` per format."""
+"""Render diagnostics, for people and for programs; each format is a module of ``tltlc.diagnostics.formats``."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.diagnostics.shortening import shortened
 
 FORMATS: Final = ("text", "json", "sarif", "github")
-"""The formats there are; each is the name of a module with a function ``render``."""
+"""All formats; each is the name of a module with a function ``render``."""
 
 
 class Renderer(Protocol):
-    """The function ``render`` of a format's module."""
+    """The type of the function ``render`` of a format."""
 
     def __call__(self, diagnostics: Sequence[Diagnostic], *, color: bool) -> str:
-        """All diagnostics as one text that ends with a newline, or is empty; ``color`` asks for ANSI codes."""
+        """Return all diagnostics as one text, empty or with a newline at its end; ``color`` adds ANSI codes."""
 
 
 def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool = False) -> str:  # noqa: A002
-    """The diagnostics in one of the :data:`FORMATS`; raises ValueError for any other.
+    """Return the diagnostics in one of the :data:`FORMATS`; raise ValueError for any other format.
 
-    ``color`` matters to ``text`` alone.  Very long names in messages are shortened in all formats.
+    ``color`` affects only ``text``. All formats shorten very long names in messages.
     """
     if format not in FORMATS:
         raise ValueError(f"no format {format!r}: one of {', '.join(FORMATS)}")

@@ -1,4 +1,4 @@
-"""Shorten what messages quote: a name in a file that somebody else made may be megabytes long."""
+"""Shorten the quotes in messages: a name in a foreign file may be megabytes long."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 
 _QUOTED: Final = re.compile("`([^`]*)`")
 LONGEST_QUOTE: Final = 300
-"""Characters of a text in backticks; of a longer one, messages show the beginning and the end."""
+"""The most characters of a text in backticks. Messages show the beginning and the end of a longer text."""
 LONGEST_TEXT: Final = 4000
-"""Characters of a title, a help or a remark as a whole."""
+"""The most characters of a whole title, help or label."""
 
 
 def shortened(diagnostic: Diagnostic) -> Diagnostic:
-    """The diagnostic with no text longer than :data:`LONGEST_TEXT`, and no quoted one than :data:`LONGEST_QUOTE`."""
+    """Return the diagnostic with texts of at most :data:`LONGEST_TEXT`, and quotes of at most :data:`LONGEST_QUOTE`."""
     labels = tuple(
         label if len(label.message) <= LONGEST_QUOTE else replace(label, message=short_text(label.message))
         for label in diagnostic.labels
@@ -27,14 +27,14 @@ def shortened(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def short_text(text: str) -> str:
-    """A text for people, with long quotes in it cut in the middle."""
+    """Return a message with long quotes cut in the middle."""
     if len(text) <= LONGEST_QUOTE:
         return text
     return _cut(_QUOTED.sub(lambda quote: f"`{_cut(quote[1], LONGEST_QUOTE)}`", text), LONGEST_TEXT)
 
 
 def _cut(text: str, most: int) -> str:
-    """The first two thirds and the end of ``most`` characters of a longer text."""
+    """Return the text; if it is longer than ``most`` characters, its first two thirds of ``most`` and its end."""
     if len(text) <= most:
         return text
     end = most // 3

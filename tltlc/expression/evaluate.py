@@ -1,9 +1,9 @@
-"""The value of an expression at one sample, in IEEE double precision.
+"""Evaluate an expression at one sample, in IEEE double precision.
 
-The order of operations is part of the meaning, since every monitor must agree to the last bit:
-operands from left to right; ``x ^ 2`` is ``x * x`` and ``x ^ 3`` is ``x * x * x``, any other power the
-C library's ``pow``; ``clamp(x, low, high)`` is ``min(max(x, low), high)``; of equal operands ``min`` and
-``max`` give the first; a case whose condition is false is not computed.
+The order of operations is part of the meaning, since all monitors must agree to the last bit.
+Operands are computed from left to right. ``x ^ 2`` is ``x * x``, ``x ^ 3`` is ``x * x * x``, and any
+other power is the C library's ``pow``. ``clamp(x, low, high)`` is ``min(max(x, low), high)``. Of
+equal operands, ``min`` and ``max`` return the first. A case whose condition is false is not computed.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from typing import Final
 from tltlc.expression.tree import Condition, Const, Expression, Param, Signal, When
 
 MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
-"""The constant exponents that mean a product, and of how many factors."""
+"""The constant exponents that mean a product, with the number of its factors."""
 
 
 def evaluate(expression: Expression, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
-    """The value of an expression; ``signals`` and ``params`` hold finite numbers in SI units.
+    """Return the value of an expression; ``signals`` and ``params`` are finite numbers in SI units.
 
-    The value may be infinite or NaN where a product or sum is too large.
+    The value is infinite or NaN if a product or sum is too large.
 
     Raises:
         ZeroDivisionError: a divisor is 0.
         OverflowError: ``exp`` or a power is too large.
-        ValueError: a root or a power that no real number has.
+        ValueError: a root or a power is not a real number.
         KeyError: a signal or param is missing.
     """
     if isinstance(expression, Const):

@@ -1,4 +1,4 @@
-"""Expressions to and from the JSON of an artefact, node by node."""
+"""Convert expressions to and from the JSON of an artefact, node by node."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signa
 
 
 def to_json(expression: Expression | Condition) -> dict[str, Any]:
-    """The JSON object of an expression: ``{"op": "+", "args": […]}``, ``{"signal": "health"}``, …"""
+    """Return the JSON object of an expression: ``{"op": "+", "args": […]}``, ``{"signal": "health"}``, …"""
     if isinstance(expression, Const):
         return {"const": expression.value}
     if isinstance(expression, Signal):
@@ -22,7 +22,7 @@ def to_json(expression: Expression | Condition) -> dict[str, Any]:
 
 
 def from_json(node: dict[str, Any]) -> Expression:
-    """The expression of a JSON object that fits the artefact's schema."""
+    """Return the expression of a JSON object that matches the artefact's schema."""
     if "const" in node:
         return Const(float(node["const"]))
     if "signal" in node:

@@ -1,8 +1,8 @@
-"""Expressions as Python source, for monitors that compute them many times a second.
+"""Compile expressions to Python source, for monitors that compute them many times a second.
 
-The source computes to the last bit what :func:`tltlc.expression.evaluate.evaluate` computes, and raises
-the same errors.  It uses the names ``pow``, ``sqrt``, ``exp``, ``tanh`` of the module ``math``.  No name
-of a signal or param enters it: the caller says which Python name stands for each.
+The source computes the same values as :func:`tltlc.expression.evaluate.evaluate`, to the last bit,
+and raises the same errors. It uses the names ``pow``, ``sqrt``, ``exp``, ``tanh`` of the module
+``math``. It contains no name of a signal or param: the caller supplies a Python name for each.
 """
 
 from __future__ import annotations
@@ -17,53 +17,54 @@ from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signa
 INDENT: Final = "    "
 
 _MAX_DEPTH: Final = 40
-"""Python's own parser bounds how deep brackets nest, so deeper parts are functions of their own."""
+"""Python's parser limits the nesting of brackets, so deeper parts become functions of their own."""
 
-# How tightly a piece of Python text binds, loosest first.
+# How tightly a piece of Python source binds, loosest first.
 _CASES, _OR, _AND, _NOT, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(9)
 
 
 def compile_expressions(
     expressions: Sequence[Expression], signals: Sequence[str], params: Mapping[str, float]
 ) -> tuple[Callable[[Sequence[float]], float], ...]:
-    """One function per expression; each takes a sample, the values of ``signals`` (floats) in order.
+    """Return one function per expression; it takes a sample, the values of ``signals`` (floats) in order.
 
-    ``params`` are fixed here.  Values and errors as for :func:`tltlc.expression.evaluate.evaluate`.  The source names
-    in
-    each function only the signals that it reads, so that it grows with the expressions and not with their product.
+    The values of ``params`` are fixed here. Values and errors are as for
+    :func:`tltlc.expression.evaluate.evaluate`. Each function reads only the signals of its
+    expression, so that the source grows with the size of the expressions, not with the number of
+    expressions times the number of signals.
     """
     places = {name: index for index, name in enumerate(signals)}
     constants = {name: f"p{index}" for index, name in enumerate(params)}
-    space: dict[str, object] = {name: getattr(math, name) for name in ("pow", "sqrt", "exp", "tanh")}
-    space.update(zip(constants.values(), map(float, params.values()), strict=True))
+    namespace: dict[str, object] = {name: getattr(math, name) for name in ("pow", "sqrt", "exp", "tanh")}
+    namespace.update(zip(constants.values(), map(float, params.values()), strict=True))
     lines: list[str] = []
     for index, expression in enumerate(expressions):
         lines += _function(index, expression, places, constants)
-    exec(compile("\n".join([*lines, ""]), "<expressions>", "exec"), space)
-    functions = [space[f"atom{index}"] for index in range(len(expressions))]
+    exec(compile("\n".join([*lines, ""]), "<expressions>", "exec"), namespace)
+    functions = [namespace[f"atom{index}"] for index in range(len(expressions))]
     return tuple(cast("Callable[[Sequence[float]], float]", function) for function in functions)
 
 
 def _function(
     index: int, expression: Expression, places: Mapping[str, int], constants: Mapping[str, str]
 ) -> Iterator[str]:
-    """The lines of the function ``atomINDEX`` and of those that it calls."""
-    read = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, Signal)}
-    fixed = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, Param)}
-    writer = Writer(read, fixed, f"_{index}_")
+    """Yield the lines of the function ``atomINDEX`` and of the functions that it calls."""
+    signals = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, Signal)}
+    params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, Param)}
+    writer = Writer(signals, params, f"_{index}_")
     body = writer.assignment("value", expression, INDENT)
     yield from writer.parts
     yield f"def atom{index}(sample):"
-    yield from (f"{INDENT}{variable} = sample[{places[name]}]" for name, variable in read.items())
+    yield from (f"{INDENT}{variable} = sample[{places[name]}]" for name, variable in signals.items())
     yield from body
     yield f"{INDENT}return value"
 
 
 class Writer:
-    """Writes expressions; ``signals`` and ``params`` map their names to those of Python variables in scope.
+    """Writes expressions as Python; ``signals`` and ``params`` map names to Python variables in scope.
 
-    ``parts`` collects the source of the functions, named ``PREFIXpart0``, …, that deep expressions need beside them.
-    Variables that it needs are named ``PREFIXbase``, ``PREFIXbase2``, ….
+    ``parts`` collects the source of helper functions ``PREFIXpart0``, …, for deep expressions. Local
+    variables are named ``PREFIXbase``, ``PREFIXbase2``, ….
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str, typed: bool = False) -> None:
@@ -72,7 +73,7 @@ class Writer:
         self.parts: list[str] = []
 
     def assignment(self, name: str, expression: Expression, indent: str) -> list[str]:
-        """Lines that compute the expression and assign it to a variable; a ``when`` becomes an ``if``."""
+        """Return lines that assign the expression's value to a variable; a ``when`` becomes an ``if``."""
         return self._assignment(name, expression, indent, 0)
 
     def _assignment(self, name: str, expression: Expression, indent: str, depth: int) -> list[str]:
@@ -86,7 +87,7 @@ class Writer:
         return lines + self._assignment(name, expression.otherwise, indent + INDENT, depth + 1)
 
     def _text(self, node: Expression, room: int, depth: int) -> str:
-        """The text of an expression, in brackets where it binds more loosely than ``room``."""
+        """Return the text of an expression, in brackets if it binds more loosely than ``room``."""
         if isinstance(node, Const):
             return _bracketed(repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, room)
         if isinstance(node, Signal):
@@ -123,7 +124,7 @@ class Writer:
             return f"pow({self._text(base, _CASES, depth)}, {self._text(exponent, _CASES, depth)})", _UNIT
         if isinstance(base, (Signal, Param)):
             return " * ".join([self._text(base, _UNIT, depth)] * factors), _PRODUCT
-        # Each nesting has a variable of its own: the base of a power may hold another power.
+        # Nested powers need different variables, since the base of a power may contain another power.
         self._powers += 1
         name = f"{self._prefix}base{self._powers if self._powers > 1 else ''}"
         first = f"({name} := {self._text(base, _CASES, depth + 1)})"
@@ -131,7 +132,7 @@ class Writer:
         return " * ".join([first, *[name] * (factors - 1)]), _PRODUCT
 
     def _cases(self, node: When, depth: int) -> str:
-        """A ``when`` inside an expression: conditional expressions, the last one innermost."""
+        """Return a ``when`` inside an expression as nested conditional expressions."""
         cases = [
             f"{self._text(value, _OR, depth)} if {self._condition(condition, _OR, depth)} else "
             for condition, value in node.cases
@@ -153,16 +154,16 @@ class Writer:
         return _bracketed(text, _COMPARISON, room)
 
     def _part(self, node: Expression | Condition) -> str:
-        """A call of a new function that computes the node."""
+        """Return a call of a new function that computes the node."""
         name = f"{self._prefix}part{self._count}"
         self._count += 1
         is_condition = isinstance(node, Condition)
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)
-        values = [*self._signals.values(), *self._params.values()]
-        heading = ", ".join(f"{value}: float" if self._typed else value for value in values)
+        variables = [*self._signals.values(), *self._params.values()]
+        parameters = ", ".join(f"{variable}: float" if self._typed else variable for variable in variables)
         result = f" -> {'bool' if is_condition else 'float'}" if self._typed else ""
-        self.parts.append(f"def {name}({heading}){result}:\n{INDENT}return {body}")
-        return f"{name}({', '.join(values)})"
+        self.parts.append(f"def {name}({parameters}){result}:\n{INDENT}return {body}")
+        return f"{name}({', '.join(variables)})"
 
 
 def _bracketed(text: str, binding: int, room: int) -> str:

@@ -1,7 +1,7 @@
-"""Arithmetic over signals and params: what an atom's robustness is computed from.
+"""Arithmetic over signals and params, from which an atom's robustness is computed.
 
-The nodes mirror the artefact's JSON one to one (design: ``expression`` of an atom).  They are
-frozen, know nothing of the surface language and hold no units: every number is in SI units.
+The nodes match the artefact's JSON one to one (``expression`` of an atom). They are frozen,
+independent of the surface syntax, and have no units: every number is in SI units.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "cla
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 LEAST: Final = 1e-30
-"""The least robustness of a comparison that is true by more: small, and yet a number in formats of 32 bits."""
+"""A comparison whose margin is above this has at least this robustness: tiny, but not 0 as a 32-bit float."""
 
 
 @record
@@ -27,21 +27,21 @@ class Const:
 
 @record
 class Signal:
-    """The present value of a signal, by its full name, e.g. ``distance(s1)``; a bool counts as 0 or 1."""
+    """The current value of a signal, by its full name, e.g. ``distance(s1)``; a bool counts as 0 or 1."""
 
     name: str
 
 
 @record
 class Param:
-    """The value of a param, by name."""
+    """The value of a param."""
 
     name: str
 
 
 @record
 class Op:
-    """An operator or function over expressions; ``clamp`` takes (x, low, high), ``min`` and ``max`` two or more."""
+    """An operator or function; ``clamp`` takes (x, low, high), ``min`` and ``max`` take two or more arguments."""
 
     hashed_once = True
     op: ArithmeticOp
@@ -59,7 +59,7 @@ class Condition:
 
 @record
 class When:
-    """The first case whose condition holds, else ``otherwise``."""
+    """The value of the first case whose condition is true, else ``otherwise``."""
 
     hashed_once = True
     cases: tuple[tuple[Condition, Expression], ...]
@@ -70,7 +70,7 @@ Expression = Union[Const, Signal, Param, Op, When]
 
 
 def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
-    """Every node, in order of appearance, each before its parts; takes no recursion."""
+    """Yield all nodes in order of appearance, each before its parts; does not recurse."""
     stack: list[Expression | Condition] = [expression]
     while stack:
         node = stack.pop()
@@ -84,21 +84,21 @@ def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition
 
 
 def depth(expression: Expression | Condition) -> int:
-    """How many operators stand in each other: 0 for a number or a signal.  Shared parts are looked at once a level."""
-    found, level = -1, {id(expression): expression}
+    """Return how deep operators nest: 0 for a number or a signal. Shared parts are visited once per level."""
+    height, level = -1, {id(expression): expression}
     while level:
-        found += 1
+        height += 1
         level = {id(part): part for node in level.values() for part in parts(node)}
-    return found
+    return height
 
 
 def most_parts(expression: Expression | Condition) -> int:
-    """The most cases that a ``when`` has in an expression, or the most arguments that an operator has."""
+    """Return the most cases of one ``when`` in an expression, or the most arguments of one operator."""
     return max(len(node.cases) if isinstance(node, When) else len(parts(node)) for node in nodes(expression))
 
 
 def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
-    """What a node is made of."""
+    """Return the direct parts of a node."""
     if isinstance(node, When):
         return (*(part for case in node.cases for part in case), node.otherwise)
     return node.args if isinstance(node, (Op, Condition)) else ()

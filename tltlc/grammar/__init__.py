@@ -1,1 +1,1 @@
-"""From .tltl text to syntax tree."""
+"""Parse .tltl text into a syntax tree."""

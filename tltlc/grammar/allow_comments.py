@@ -1,7 +1,8 @@
-"""Comments that silence remarks: ``// tltlc: allow TLT0421``, with a reason behind the codes where there is one.
+"""Comments that silence warnings and notes: ``// tltlc: allow TLT0421``, optionally with a reason after the codes.
 
-One at the end of a line, or on lines of its own above it, speaks of each clause and each declaration that has a part
-on that line; of a block, its head and its last line.  Before the first declaration it speaks of the whole file.
+A comment at the end of a line, or on its own lines above it, applies to each clause and declaration
+that has a part on that line; only the head and the last line of a block count. Before the first
+declaration, a comment applies to the whole file.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _BRACE: Final = re.compile(r"(?:\s|//[^\n]*\n)*\{")
 
 @record
 class Allowed:
-    """A code that a comment allows, and where it says so; ``places`` are as of :func:`spoken_of`."""
+    """A code that a comment allows, and its span; ``places`` is as in :func:`spoken_of`."""
 
     code: str
     source: SourceFile
@@ -32,7 +33,7 @@ class Allowed:
 
 
 def allowed(module: Module) -> Iterator[Allowed]:
-    """Every code that a comment of the module allows, in order."""
+    """Yield all codes that comments of the module allow, in order."""
     for comment, places in spoken_of(module):
         for match in _codes(comment):
             start = comment.span.start
@@ -41,7 +42,7 @@ def allowed(module: Module) -> Iterator[Allowed]:
 
 
 def codes(comment: Comment) -> list[str]:
-    """The codes right behind ``allow``; what follows them is the reason."""
+    """Return the codes directly after ``allow``; the text after them is the reason."""
     return [match[1] for match in _codes(comment)]
 
 
@@ -51,50 +52,50 @@ def is_allowing(comment: Comment) -> bool:
 
 
 def spoken_of(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
-    """The comments that allow something, and the clauses and declarations of which each speaks; None is the file.
+    """Return the allowing comments, each with the clauses and declarations that it applies to; None means the file.
 
-    Comments that speak of the same line share one tuple.
+    Comments that apply to the same line share one tuple.
     """
     comments = [comment for comment in module.comments if is_allowing(comment)]
     if not comments:
         return []
-    first = module.declarations[0].span.start if module.declarations else len(module.source.text)
-    by_line = _by_line(module)
-    lines = sorted(by_line)
-    of_line: dict[int, tuple[Span, ...]] = {}
-    found: list[tuple[Comment, tuple[Span, ...] | None]] = []
+    first_declaration = module.declarations[0].span.start if module.declarations else len(module.source.text)
+    statements_by_line = _by_line(module)
+    lines = sorted(statements_by_line)
+    spans_of_line: dict[int, tuple[Span, ...]] = {}
+    comments_with_places: list[tuple[Comment, tuple[Span, ...] | None]] = []
     for comment in comments:
         line, _ = module.source.position(comment.span.start)
-        if line not in by_line:
-            # It stands between two of them, above the next one.
+        if line not in statements_by_line:
+            # The comment stands between two lines with statements: it applies to the next one.
             below = bisect_right(lines, line)
             line = lines[below] if below < len(lines) else line
-        if line not in of_line:
-            of_line[line] = tuple(by_line.get(line, ()))
-        found.append((comment, None if comment.span.start < first else of_line[line]))
-    return found
+        if line not in spans_of_line:
+            spans_of_line[line] = tuple(statements_by_line.get(line, ()))
+        comments_with_places.append((comment, None if comment.span.start < first_declaration else spans_of_line[line]))
+    return comments_with_places
 
 
 def statements(module: Module) -> list[Span]:
-    """The clauses and declarations of which comments can speak, in order."""
+    """Return the clauses and declarations that comments can apply to, in order."""
     return list(dict.fromkeys(whole for whole, _ in _parts(module)))
 
 
 def _by_line(module: Module) -> dict[int, dict[Span, None]]:
-    """The clauses and declarations that have a part on each line, in order."""
-    found: dict[int, dict[Span, None]] = {}
+    """Return the clauses and declarations that have a part on each line, in order."""
+    statements_by_line: dict[int, dict[Span, None]] = {}
     for whole, part in _parts(module):
         first, _ = module.source.position(part.start)
         last, _ = module.source.position(part.end)
         for line in range(first, last + 1):
-            found.setdefault(line, {})[whole] = None
-    return found
+            statements_by_line.setdefault(line, {})[whole] = None
+    return statements_by_line
 
 
 def _parts(module: Module) -> Iterator[tuple[Span, Span]]:
-    """Each clause and declaration, and the part of it that counts: of a block its head, and its closing brace.
+    """Yield each clause and declaration with the part that counts: for a block, its head and its closing brace.
 
-    Of a list of entities the first stands for the whole declaration, and each other one for itself.
+    In a list of entities, the first stands for the whole declaration, and each other one for itself.
     """
     for declaration in module.declarations:
         span = declaration.span

@@ -1,6 +1,6 @@
-"""From reductions of the grammar to nodes of the syntax tree: one method per rule, named after it."""
+"""Build the nodes of the syntax tree: one method per rule of the grammar, with the rule's name."""
 
-# ruff: noqa: D102 (a method's name is that of its rule in tltl.lark, which says all)
+# ruff: noqa: D102 (a method's name is the name of its rule in tltl.lark, which documents it)
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ OPERATORS = {
     "DIVIDE": "/",
     "POWER": "^",
 }
-"""The canonical spelling of each operator's terminal."""
+"""The canonical spelling of each operator, by terminal."""
 
 MOST_REPETITIONS = 100_000
-"""How often a step of a test may be repeated."""
+"""The most repetitions of a step in a test."""
 
 
 class Builder:
-    """Makes the nodes of one file; what it cannot make sense of goes to ``diagnostics``.
+    """Builds the nodes of one file; errors go to ``diagnostics``.
 
-    Each method takes the span of its rule, then the values that the rule keeps, absent parts as None.
+    Each method takes the span of its rule, then the values that the rule keeps; an absent part is None.
     """
 
     def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:
@@ -240,7 +240,7 @@ class Builder:
         value = float(number.text)
         if isinf(value):
             self._error("TLT0109", "this number is too large", number.span, "write `inf` where a range has no end")
-        # One step, two steps: the same unit.
+        # `step` and `steps` are the same unit.
         return tree.Number(value, unit and ("steps" if unit.text == "step" else unit.text), span)
 
     make_quantity = make_number
@@ -255,7 +255,7 @@ class Builder:
 
 
 def _infinite(limit: Expr) -> Expr:
-    """The end of a range, with the name ``inf`` read as a number."""
+    """Return the end of a range, with the name ``inf`` converted to a number."""
     if isinstance(limit, tree.Name) and limit.name == "inf":
         return tree.Number(inf, None, limit.span)
     if isinstance(limit, tree.Unary) and limit.op == "-":

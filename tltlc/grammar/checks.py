@@ -1,4 +1,4 @@
-"""What the grammar lets through and the language does not: checked on the tree, one error per clause."""
+"""Check on the tree what the grammar accepts but the language forbids; at most one error per clause."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BOUND_HELP: Final = {
 
 
 def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
-    """Errors in declarations that were read without one."""
+    """Yield the errors in declarations that the parser accepted."""
     for declaration in declarations:
         if isinstance(declaration, tree.SpecDecl):
             yield from _check_spec(source, declaration)
@@ -32,7 +32,7 @@ def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[D
 
 
 def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
-    """Errors inside the expressions and clauses of declarations."""
+    """Yield the errors inside the expressions and clauses of declarations."""
     for declaration in declarations:
         match declaration:
             case tree.SpecDecl():
@@ -45,7 +45,7 @@ def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> It
 
 
 def check_formula(source: SourceFile, formula: Expr, *, in_reach: bool = False) -> Iterator[Diagnostic]:
-    """The first error inside one expression; ``in_reach`` where it is the sequence of a ``reach`` clause."""
+    """Yield the first error inside an expression; ``in_reach`` if it is the sequence of a ``reach`` clause."""
     yield from _first(_expression_errors(source, formula, in_reach))
 
 
@@ -57,13 +57,13 @@ def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Ite
 
 
 def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> Iterator[Diagnostic]:
-    # A comment may stand right behind the word.
+    # The span may contain a comment after the word.
     word = next(word for word in _BOUND_OPERATORS if source.slice(bound.span).startswith(word))
     if formula.op in _BOUND_OPERATORS[word]:
         return
     operator = source.slice(formula.op_span)
-    how = f"with `{word}`" if bound.words else "in brackets"
-    title = f"`{operator}` takes no bound {how}"
+    form = f"with `{word}`" if bound.words else "in brackets"
+    title = f"`{operator}` takes no bound {form}"
     yield _error(source, "TLT0111", title, bound.span, _BOUND_HELP[formula.op])
 
 
@@ -79,7 +79,7 @@ def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]
 
 
 def check_clause(source: SourceFile, clause: tree.Clause) -> Iterator[Diagnostic]:
-    """The errors in a clause of a spec."""
+    """Yield the errors in a clause of a spec."""
     if isinstance(clause.value, tuple):
         return
     if clause.kind in _FORMULA_CLAUSES:
@@ -108,10 +108,10 @@ _COMPARED: Final = {
 def _check_word(source: SourceFile, word: str, span: Span, words: tuple[str, ...], form: str) -> Iterator[Diagnostic]:
     if word not in words:
         near = closest(word, words)
-        listed = ", ".join(f"`{form} {other}`" for other in words[:-1]) + f" or `{form} {words[-1]}`"
+        listed = ", ".join(f"`{form} {allowed}`" for allowed in words[:-1]) + f" or `{form} {words[-1]}`"
         help_ = _COMPARED.get(word) or (f"did you mean `{near}`?" if near else listed)
-        meant = None if word in _COMPARED else near
-        yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_, write=meant)
+        replacement = None if word in _COMPARED else near
+        yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_, write=replacement)
 
 
 def _first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

@@ -1,4 +1,4 @@
-"""The keywords that begin declarations, clauses and lines of tests, each with the form of what it begins."""
+"""The keywords that begin declarations, clauses and lines of tests, each with the form of its statement."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ TEST_ITEMS: Final = {
 }
 
 CASES: Final = "cases are written `when x > 3: 1 otherwise: -1`"
-"""The help where cases are written in another way."""
+"""The help for cases in another form."""
 
 OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}
-"""What the clauses that ask for something are inside a formula."""
+"""The operators that mean the same inside a formula as clauses with these keywords."""
 
 CONDITIONS: Final = ("if", "when", "whenever", "while")
-"""English words that a condition follows."""
+"""English words that begin a condition."""
 
 SYNONYMS: Final[dict[str, dict[str, str]]] = {
     "declaration": {
@@ -83,7 +83,7 @@ SYNONYMS: Final[dict[str, dict[str, str]]] = {
     },
     "test_item": {"assert": "expect"},
 }
-"""What keywords are called elsewhere, by kind of piece."""
+"""Words that other languages or people use for our keywords, by kind of piece."""
 
 UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
@@ -97,7 +97,7 @@ UNITS_ELSEWHERE: Final = {
     **dict.fromkeys(("kmh", "kph"), "km/h"),
     "mps": "m/s",
 }
-"""What units are called elsewhere."""
+"""Other names of units."""
 
 JUDGE: Final = ("goal", "limit")
 SEMANTICS: Final = ("finite", "infinite")
@@ -111,11 +111,11 @@ _OTHER_WORDS: Final = frozenset(
     pudding relate retire reverse roach steep stems stop stops strong_next strong_until ten tent text the thin tree
     """.split()
 )
-"""Words that mean something else than the words of the language that look like them."""
+"""Words that look like words of the language but mean something else."""
 
 
 @lru_cache(maxsize=1000)
 def closest(word: str, known: tuple[str, ...]) -> str | None:
-    """The word of the language that ``word`` is a slip of, if any; none that says something else."""
+    """Return the known word that ``word`` is a typo of, if there is one and ``word`` means nothing else."""
     word = word.lower()
     return None if word in _OTHER_WORDS else meant(word, known)

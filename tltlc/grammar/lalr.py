@@ -1,4 +1,4 @@
-"""The LALR(1) machine: tokens in, tree out, by the tables that lark built."""
+"""The LALR(1) parser: turns tokens into a tree with the tables that lark built."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tltlc.grammar.tables import Tables
 
 
 class UnexpectedTokenError(Exception):
-    """The token at ``index`` fits nowhere; ``states`` is the stack of the machine in front of it."""
+    """The token at ``index`` fits nowhere; ``states`` is the parser's stack before it."""
 
     def __init__(self, index: int, states: list[int]) -> None:
         super().__init__(index)
@@ -20,7 +20,7 @@ class UnexpectedTokenError(Exception):
 
 
 def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) -> Any:
-    """What the builder makes of the tokens, read as a ``start``; raises UnexpectedTokenError.
+    """Return what the builder makes of the tokens, parsed as a ``start``; raises UnexpectedTokenError.
 
     A reduction by a rule with the action ``name`` calls ``builder.make_name(span, *kept values)``.
     """
@@ -63,9 +63,9 @@ def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) ->
 
 
 def reached(tables: Tables, start: str, tokens: Sequence[Token]) -> list[int]:
-    """The stack of the machine right behind tokens that can be read as the beginning of a ``start``.
+    """Return the parser's stack after tokens that can be parsed as the beginning of a ``start``.
 
-    In front of the next token it may be another one: reductions wait for what follows.
+    The next token may still change the stack: some reductions wait for it.
     """
     try:
         run(tables, start, [*tokens, Token(BAD, "", 0, 0)], None)
@@ -75,7 +75,7 @@ def reached(tables: Tables, start: str, tokens: Sequence[Token]) -> list[int]:
 
 
 def accepted(tables: Tables, states: Sequence[int]) -> set[str]:
-    """The terminals that may stand where the machine with this stack of states is."""
+    """Return the terminals that may follow where the parser has this stack of states."""
     return {terminal for terminal in tables.actions[states[-1]] if _accepts(tables, list(states), terminal)}
 
 
@@ -95,9 +95,9 @@ def _accepts(tables: Tables, states: list[int], terminal: str) -> bool:
 
 
 def _kind(tables: Tables, state: int, tokens: Sequence[Token], index: int) -> str:
-    """The type of a token in this state: words that are not reserved are names where a name can stand.
+    """Return the type of a token in this state: an unreserved word is a name where a name can stand.
 
-    Where both can, the word counts if a number follows (``F within 20 steps p``).
+    If both can stand, it is the word if a number follows (``F within 20 steps p``).
     """
     token = tokens[index]
     soft = tables.soft.get(token.text)
@@ -109,8 +109,8 @@ def _kind(tables: Tables, state: int, tokens: Sequence[Token], index: int) -> st
 
 
 def _kept(values: list[Any], keep: tuple[int, ...]) -> list[Any]:
-    """The values that a rule keeps, with absent parts as None and lists spliced in."""
-    # A growing list is extended in place, or long lists would take quadratic time.
+    """Return the values that a rule keeps, with absent parts as None and lists spliced in."""
+    # Extend a growing list in place: copying it each time would take quadratic time.
     kept: list[Any] = []
     for place, position in enumerate(keep):
         if position >= 0:

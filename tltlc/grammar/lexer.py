@@ -1,4 +1,4 @@
-"""Tokens of a .tltl text, by the terminals of the grammar."""
+"""Split a .tltl text into tokens, the terminals of the grammar."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from tltlc.grammar.tables import Tables, load
 from tltlc.grammar.tree import Comment
 
 MAX_TOKENS: Final = 1 << 17
-"""How many tokens are read: a file with more is refused, so that no file keeps a reader waiting."""
+"""The most tokens of a file. A file with more is refused, which bounds the time to read one."""
 
 END: Final = "$END"
 BAD: Final = "BAD"
-"""The type of a token that the language does not know: a strange sign, an unfinished text."""
+"""The type of a token that the language does not know: an unknown character, an unterminated string."""
 
 
 class Token(NamedTuple):
-    """A terminal and the half-open range of offsets that it covers."""
+    """A terminal with the half-open range of offsets that it covers."""
 
     type: str
     text: str
@@ -33,9 +33,9 @@ class Token(NamedTuple):
 
 
 class Tokens(NamedTuple):
-    """A text in tokens, the last of type ``$END``; comments apart.
+    """The tokens of a text, the last of type ``$END``, and its comments.
 
-    ``docs`` maps the offset of a token to the documentation comment right before it.
+    ``docs`` maps the offset of a token to the documentation comment directly before it.
     """
 
     tokens: list[Token]
@@ -44,7 +44,7 @@ class Tokens(NamedTuple):
 
 
 def tokenize(text: str) -> Tokens:
-    """The tokens of a text, at most one more than :data:`MAX_TOKENS`; what it cannot read is a ``BAD`` token."""
+    """Return the tokens of a text, at most one more than :data:`MAX_TOKENS`; unreadable parts become ``BAD`` tokens."""
     tables = load()
     words, signs = tables.words, tables.signs
     tokens: list[Token] = []
@@ -83,12 +83,12 @@ def tokenize(text: str) -> Tokens:
 
 @lru_cache(maxsize=1)
 def _pattern() -> re.Pattern[str]:
-    """One pattern for all tokens; the name of the group that matched last is the token's type."""
+    """Return one pattern for all tokens; the name of the group that matched last is the token's type."""
     tables: Tables = load()
     patterns = tables.patterns
-    signs = "|".join(re.escape(sign) for sign in sorted(tables.signs, key=len, reverse=True))
-    # Signs that count as letters (𝒰) end a name; other letters beyond ASCII make the whole word bad.
-    letters = "".join(sign for sign in tables.signs if sign.isalnum())
+    signs = "|".join(re.escape(operator) for operator in sorted(tables.signs, key=len, reverse=True))
+    # Signs that Unicode counts as letters (𝒰) end a name. Any other letter beyond ASCII makes the whole word bad.
+    letters = "".join(operator for operator in tables.signs if operator.isalnum())
     units = "|".join(re.escape(unit) + ("" if unit == "%" else r"(?![\w]|\.[A-Za-z_])") for unit in tables.units)
     return re.compile(
         rf"(?P<SPACE>{patterns['SPACE']}|\A\ufeff)"

@@ -1,4 +1,4 @@
-"""Limits on how deep a text may nest, so that every later stage can walk the tree by recursion."""
+"""Limit how deep a text may nest, so that all later stages can walk the tree recursively."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tltlc.grammar.tree import Declaration, Expr
 from tltlc.grammar.walk import children, expressions
 
 MAX_BRACKETS: Final = 200
-"""How many brackets may be open at once."""
+"""The most brackets that may be open at once."""
 
 MAX_DEPTH: Final = 1000
-"""How many nodes may stand on a way through an expression's tree: chains of operators count, brackets or not."""
+"""The greatest depth of an expression's tree, in nodes; chains of operators count, with or without brackets."""
 
 _OPENING = {"LPAR", "LSQB", "LBRACE"}
 _CLOSING = {"RPAR", "RSQB", "RBRACE"}
 
 
 def deep_brackets(source: SourceFile, tokens: Sequence[Token]) -> Diagnostic | None:
-    """An error for the first bracket that nests too deep."""
+    """Return an error for the first bracket that nests too deep."""
     depth = 0
     for token in tokens:
         if token.type in _OPENING:
@@ -38,7 +38,7 @@ def deep_brackets(source: SourceFile, tokens: Sequence[Token]) -> Diagnostic | N
 
 
 def deep_expression(source: SourceFile, expression: Expr) -> Diagnostic | None:
-    """An error where operators chain too deep; takes no recursion."""
+    """Return an error if an expression nests too deep; does not recurse."""
     level: list[Expr] = [expression]
     for _ in range(MAX_DEPTH):
         level = [child for parent in level for child in children(parent)]
@@ -52,39 +52,39 @@ def deep_expression(source: SourceFile, expression: Expr) -> Diagnostic | None:
 def drop_deep(
     source: SourceFile, declarations: Iterable[Declaration]
 ) -> tuple[tuple[Declaration, ...], list[Diagnostic]]:
-    """The declarations without those, or those of their clauses, that nest too deep, and an error for each."""
+    """Return the declarations without those, or their clauses, that nest too deep, and an error for each."""
     kept: list[Declaration] = []
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for declaration in declarations:
-        # Each level takes a character: short declarations, so nearly all, need no look.
+        # Each level takes at least one character, so short declarations, nearly all, need no check.
         if declaration.span.end - declaration.span.start <= MAX_DEPTH:
             kept.append(declaration)
         elif isinstance(declaration, tree.SpecDecl):
             clauses, errors = drop_deep_clauses(source, declaration.clauses)
-            found += errors
+            diagnostics += errors
             if clauses:
                 kept.append(replace(declaration, clauses=clauses))
         else:
             errors = [error for part in expressions(declaration) if (error := deep_expression(source, part))]
-            found += errors[:1]
+            diagnostics += errors[:1]
             if not errors:
                 kept.append(declaration)
-    return tuple(kept), found
+    return tuple(kept), diagnostics
 
 
 def drop_deep_clauses(
     source: SourceFile, clauses: Iterable[tree.Clause]
 ) -> tuple[tuple[tree.Clause, ...], list[Diagnostic]]:
-    """The clauses without those that nest too deep, and an error for each of these."""
+    """Return the clauses without those that nest too deep, and an error for each."""
     kept: list[tree.Clause] = []
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for clause in clauses:
         error = None if isinstance(clause.value, tuple) else deep_expression(source, clause.value)
         if error:
-            found.append(error)
+            diagnostics.append(error)
         else:
             kept.append(clause)
-    return tuple(kept), found
+    return tuple(kept), diagnostics
 
 
 def _error(source: SourceFile, title: str, span: Span) -> Diagnostic:

@@ -1,7 +1,8 @@
 """Parse a .tltl text into its syntax tree.
 
-A text without errors goes through the tables in one run.  Otherwise it is read again, declaration by
-declaration and clause by clause (:mod:`tltlc.grammar.mistakes.recovery`), so that each broken one is reported once.
+The parser reads a text without errors in one run. It reads a text with errors again, declaration by
+declaration and clause by clause (:mod:`tltlc.grammar.mistakes.recovery`), so that each broken part is
+reported once.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from tltlc.grammar.tree import Declaration, Expr, Module
 from tltlc.io.limits import SOURCE
 
 MAX_CHARACTERS: Final = 1 << 20
-"""Greatest length of a text."""
+"""The greatest length of a text, in characters."""
 
 
 def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
-    """The declarations of a file that could be read, and everything wrong with its syntax; never raises."""
+    """Return the declarations that can be read, and all syntax errors; never raises."""
     lexed = _tokens(source)
     if lexed is None:
         return Module(source, (), ()), (_too_large(source),)
@@ -32,7 +33,7 @@ def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
 
 
 def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ...]]:
-    """One formula, or None where it cannot be read, and everything wrong with its syntax; never raises."""
+    """Return the formula, or None if it cannot be read, and all syntax errors; never raises."""
     lexed = _tokens(source)
     if lexed is None:
         return None, (_too_large(source),)
@@ -53,15 +54,15 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
 
 
 def is_too_large(source: SourceFile) -> bool:
-    """Whether a text is larger than what a file may hold, or has too many words and signs to be read."""
+    """Whether a text is larger than a file may be, or has too many tokens."""
     if len(source.text.encode(errors="replace")) > SOURCE.size:
         return True
-    # Each token has a character, so that most texts need not be looked at.
+    # Each token has at least one character, so most texts need not be tokenized.
     return len(source.text) > MAX_TOKENS and _tokens(source) is None
 
 
 def _tokens(source: SourceFile) -> Tokens | None:
-    """The tokens of a text, None where it is too large."""
+    """Return the tokens of a text, or None if it is too large."""
     if len(source.text) > MAX_CHARACTERS:
         return None
     lexed = tokenize(source.text)
@@ -76,8 +77,8 @@ def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration,
         except lalr.UnexpectedTokenError:
             pass
         else:
-            shallow, found = nesting.drop_deep(source, declarations)
-            return shallow, (*builder.diagnostics, *found, *checks.check(source, shallow))
+            shallow, errors = nesting.drop_deep(source, declarations)
+            return shallow, (*builder.diagnostics, *errors, *checks.check(source, shallow))
     from tltlc.grammar.mistakes.recovery import recover
 
     return recover(source, lexed)

@@ -1,6 +1,7 @@
-"""The language for Pygments, which colours it in documentation: ``pygmentize -l tltl FILE``.
+"""A Pygments lexer for the language, for documentation: ``pygmentize -l tltl FILE``.
 
-The tokens are those of :mod:`tltlc.grammar.lexer`; each terminal of the grammar has its class here.
+It uses the tokens of :mod:`tltlc.grammar.lexer`, and maps each terminal of the grammar to a token
+type of Pygments.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from tltlc.grammar.tables import load
 __all__ = ["TltlLexer"]
 
 Class: TypeAlias = Any
-"""A class of Pygments, which has no types."""
+"""A token type of Pygments, which has no type annotations."""
 
 _DECLARATIONS: Final = "IMPORT SIGNAL ENTITY PARAM CLOCK PREDICATE LET EXCLUSIVE SPEC TEST".split()
 _CLAUSES: Final = "REACH KEEP AVOID REQUIRE LEVEL LIMIT JUDGE SEMANTICS TAG".split()
@@ -42,14 +43,14 @@ CLASSES: Final[dict[str, Class]] = {
     "COMMENT": pygments.Comment.Single,
     "BAD": pygments.Error,
 }
-"""The class of each terminal; words among the operators, and names, are told apart further."""
+"""The Pygments type of each terminal; word operators and names are distinguished further."""
 
 _HEADS: Final = frozenset({"SIGNAL", "PARAM", "PREDICATE", "LET"})
-"""In the head of these, a colon stands before a type."""
+"""Declarations whose head may have a colon before a type."""
 _CHOOSING: Final = frozenset({"EXPECT", "SEMANTICS", "AT"})
-"""A name behind these is one of a few: a verdict, `infinite`, `goal`."""
+"""After these, a name is one of a fixed set: a verdict, `infinite`, `goal`."""
 
-# A word that is not reserved is a keyword where one of these stands before it, or behind it.
+# An unreserved word is a keyword after, or before, one of these terminals.
 _KEYWORD_AFTER: Final = {"AT": {"JUDGE"}, "FOR": {"STRING"}, "TIMES": {"NUMBER"}, "AS": {"NAME", "STRING"}}
 _KEYWORD_BEFORE: Final = {"FOR": {"NUMBER"}, "WITHIN": {"NUMBER"}, "AFTER": {"NUMBER"}, "IN": {"LPAR", "LSQB"}}
 
@@ -63,7 +64,7 @@ class TltlLexer(Lexer):  # type: ignore[misc]
     mimetypes: ClassVar = ["text/x-tltl"]
 
     def get_tokens_unprocessed(self, text: str) -> Iterator[tuple[int, Class, str]]:
-        """Offset, class and text of each piece, without a gap."""
+        """Yield the offset, type and text of each piece, without gaps."""
         lexed = tokenize(text)
         pieces = [*_classified(lexed.tokens)]
         for comment in lexed.comments:
@@ -75,20 +76,20 @@ class TltlLexer(Lexer):  # type: ignore[misc]
                 yield end, pygments.Whitespace, text[end:start]
             yield start, kind, piece
             end = start + len(piece)
-        # Beyond the most tokens that are read, a text has no colours.
+        # The lexer stops at its limit of tokens; the rest of the text has no colours.
         if end < len(text):
             yield end, pygments.Text, text[end:]
 
 
 def _classified(tokens: Sequence[Token]) -> Iterator[tuple[int, Class, str]]:
-    """The tokens with their classes, which depend on what stands around them."""
+    """Yield the tokens with their Pygments types, which depend on the tokens around them."""
     soft = load().soft
     declaration, depth, in_head = "", 0, False
     before = ""
     for token, following in pairwise(tokens):
         kind = token.type
-        if kind == "NAME" and _is_keyword(wanted := soft.get(token.text, ""), before, following.type, declaration):
-            kind = wanted
+        if kind == "NAME" and _is_keyword(keyword := soft.get(token.text, ""), before, following.type, declaration):
+            kind = keyword
         if kind in _DECLARATIONS and before != "COLON":
             declaration, depth, in_head = kind, 0, kind in _HEADS
         depth += (kind in ("LPAR", "LSQB")) - (kind in ("RPAR", "RSQB"))
@@ -105,13 +106,13 @@ def _is_keyword(soft: str, before: str, after: str, declaration: str) -> bool:
 
 
 def _class(text: str, kind: str, before: str, following: Token) -> Class:
-    found = CLASSES[kind]
-    if found is pygments.Operator and text.isascii() and text[0].isalpha():
+    type_ = CLASSES[kind]
+    if type_ is pygments.Operator and text.isascii() and text[0].isalpha():
         return pygments.Operator.Word
     if kind != "NAME":
-        return found
+        return type_
     if before in _CHOOSING:
         return pygments.Name.Constant
     if before == "SPEC":
         return pygments.Name.Class
-    return pygments.Name.Function if before in _HEADS or following.type == "LPAR" else found
+    return pygments.Name.Function if before in _HEADS or following.type == "LPAR" else type_

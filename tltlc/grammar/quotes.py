@@ -1,14 +1,15 @@
-"""Texts in quotes, which the language has without any escapes."""
+"""Strings in quotes; the language has no escapes."""
 
 from __future__ import annotations
 
 
 def quoted(text: str) -> str | None:
-    """A text as a source writes it, in quotes; None for one that no source can hold.
+    """Return a text as a string of the language, in quotes, or None if it cannot be written as one.
 
-    That is one with a quote or a line break, and one that is not Unicode, as names of files can be.
+    A text cannot be written if it contains a quote, a line break or NUL, or if it is not Unicode, as
+    file names can be.
     """
-    if any(sign in text for sign in '"\n\r\0'):
+    if any(character in text for character in '"\n\r\0'):
         return None
     try:
         text.encode()

@@ -1,7 +1,8 @@
-"""Slips of the hand: the known word that a misspelt word stands for.
+"""Typos: find the word that was meant where another one is written.
 
-Similar words may mean different things: `doorB` is not `doorA`, and `unlocked` is not `locked`.  A slip is therefore
-one letter too many, one letter too few, two neighbours exchanged, or one wrong letter inside a word.
+A word that resembles another one may have its own meaning: `doorB` is not `doorA`, `unlocked` not
+`locked`. So a typo is one letter too many, one too few, two exchanged neighbours, or one wrong letter
+inside a word that is long enough. A word of seven letters or more may have two typos.
 """
 
 from __future__ import annotations
@@ -11,9 +12,9 @@ from collections.abc import Iterable
 from typing import Final
 
 _SHORT: Final = 3
-"""In words of at most this length, only an exchange and a doubled letter count: they are often one letter apart."""
+"""The greatest length of a short word. Most are one letter away from other words, so only two kinds of typos count."""
 _LONG: Final = 7
-"""Words of at least this length may have two slips, all others one."""
+"""The fewest letters of a word that may have two typos."""
 _MOST_COMPARED: Final = 2_000
 _PARTS: Final = re.compile(r"[0-9]+|[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[^\W\d_]+")
 """The parts of a name: numbers, words in camel case, capitals, and letters of other alphabets."""
@@ -22,16 +23,16 @@ _NEGATING: Final = ("no", "nt")
 
 
 def meant(name: str, known: Iterable[str]) -> str | None:
-    """The known name that a misspelt name stands for; None if there is none, or if two are equally likely.
+    """Return the known name that a name is a typo of, if no other known name is as likely.
 
-    A name that differs only in capital letters and underscores comes first, then one that ends with a dot and the name.
-    Slips are searched for among at most 2,000 names.
+    A name that differs only in capital letters and underscores comes first, then a name that has the
+    given name after a dot. Among more than 2,000 names, no other typos are looked for.
     """
     names = tuple(dict.fromkeys(known))
-    same = [candidate for candidate in names if _plain(candidate) == _plain(name)]
-    same = same or [candidate for candidate in names if candidate.endswith(f".{name}")]
-    if same or len(names) > _MOST_COMPARED:
-        return same[0] if same else None
+    matches = [candidate for candidate in names if _plain(candidate) == _plain(name)]
+    matches = matches or [candidate for candidate in names if candidate.endswith(f".{name}")]
+    if matches or len(names) > _MOST_COMPARED:
+        return matches[0] if matches else None
     by_count: dict[int, list[str]] = {}
     for candidate in names:
         count = _slips_in_parts(name, candidate)
@@ -42,7 +43,7 @@ def meant(name: str, known: Iterable[str]) -> str | None:
 
 
 def slips(word: str, known: str) -> int | None:
-    """How many slips make the word of the known one; None where it is another word."""
+    """Return how many typos turn the known word into the word; None if it is another word."""
     most = 0 if len(known) < 2 else 2 if len(known) >= _LONG else 1
     if abs(len(word) - len(known)) > most or not _begin_alike(word, known):
         return None
@@ -59,17 +60,17 @@ def _plain(name: str) -> str:
 
 
 def _slips_in_parts(name: str, known: str) -> int | None:
-    """The slips in all parts of a name, which has as many parts and dots, and the same numbers."""
+    """Return the number of typos in all parts of a name; None unless both have as many parts, and the same numbers."""
     if name.count(".") != known.count("."):
         return None
-    parts, others = _PARTS.findall(name), _PARTS.findall(known)
-    if len(parts) != len(others):
+    parts, known_parts = _PARTS.findall(name), _PARTS.findall(known)
+    if len(parts) != len(known_parts):
         return None
     total = 0
-    for part, other in zip(parts, others, strict=True):
-        if part.lower() == other.lower():
+    for part, known_part in zip(parts, known_parts, strict=True):
+        if part.lower() == known_part.lower():
             continue
-        count = None if part.isdigit() or other.isdigit() else slips(part.lower(), other.lower())
+        count = None if part.isdigit() or known_part.isdigit() else slips(part.lower(), known_part.lower())
         if count is None:
             return None
         total += count
@@ -77,7 +78,7 @@ def _slips_in_parts(name: str, known: str) -> int | None:
 
 
 def _begin_alike(word: str, known: str) -> bool:
-    """Whether both have the same first letter, or the first two are exchanged."""
+    """Whether both words have the same first letter, or their first two letters are exchanged."""
     return word[:1] == known[:1] or (word[:2] == known[1::-1] and word[2:3] == known[2:3])
 
 
@@ -99,13 +100,16 @@ def _is_doubled(word: str, known: str) -> bool:
 
 
 def _is_negated(word: str, known: str) -> bool:
-    """Whether one word is the other with a negating ending; other beginnings are no slips anyway."""
+    """Whether one word is the other with a negating prefix or suffix."""
     longer, shorter = (word, known) if len(word) > len(known) else (known, word)
     return longer.startswith(shorter) and longer[len(shorter) :] in _NEGATING
 
 
 def _distance(word: str, known: str) -> int:
-    """How many letters are wrong, missing, too many, or exchanged with a neighbour (optimal string alignment)."""
+    """Return the number of letters that are wrong, missing, added or exchanged with a neighbour.
+
+    This is the optimal string alignment distance.
+    """
     before: list[int] = []
     row: list[int] = [*range(len(known) + 1)]
     for i, letter in enumerate(word, 1):

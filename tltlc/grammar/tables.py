@@ -1,8 +1,9 @@
-"""The LALR(1) tables of the grammar: built by lark, shipped with the package, read without lark.
+"""The LALR(1) tables of the grammar: built with lark, shipped with the package, loaded without lark.
 
-Importing lark costs as much as four bare Python starts, so the tables travel as ``tables.json`` in a
-format of our own and a parse needs none of it.  A grammar that was edited since is noticed by its
-checksum and built in memory; ``python -m tltlc.grammar.tables`` writes the file anew.
+Importing lark takes as long as four bare Python starts. So the package ships the tables as
+``tables.json``, in its own format, and parsing does not need lark. A checksum detects that the grammar
+has changed since; then the tables are built in memory. ``python -m tltlc.grammar.tables`` rewrites
+the file.
 """
 
 from __future__ import annotations
@@ -24,11 +25,11 @@ STARTS = ("module", "declaration", "clause", "test_item", "expression")
 
 @record
 class Rule:
-    """What a reduction does: pop ``size`` values, hand those of ``keep`` to the builder's method ``action``.
+    """What a reduction does: pop ``size`` values and pass those of ``keep`` to the builder's method ``action``.
 
-    ``keep`` holds positions among the popped values, -1 for an absent optional part, ``-2 - i`` for a list at
-    position i whose items are spliced in.  ``action`` is empty where the one kept value passes through, and
-    ``*`` where the kept values form a list.
+    ``keep`` contains positions among the popped values: ``-1`` for an absent optional part, and
+    ``-2 - i`` for a list at position i, whose items are spliced in. ``action`` is empty if the one
+    kept value passes through, and ``*`` if the kept values form a list.
     """
 
     origin: str
@@ -39,11 +40,11 @@ class Rule:
 
 @record
 class Tables:
-    """Parser and lexer tables.
+    """The tables of the parser and the lexer.
 
-    ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce), ``gotos[state]`` a
-    nonterminal to the next state.  ``words`` and ``signs`` map each spelling to its terminal, ``soft`` those
-    words that are names where a name can stand.
+    ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce).
+    ``gotos[state]`` maps a nonterminal to the next state. ``words`` and ``signs`` map each spelling to
+    its terminal. ``soft`` does so for the words that are names where a name can stand.
     """
 
     rules: tuple[Rule, ...]
@@ -60,7 +61,7 @@ class Tables:
 
 @lru_cache(maxsize=1)
 def load() -> Tables:
-    """The tables of the grammar as it is now: from the shipped file where that fits, else built with lark."""
+    """Return the tables of the current grammar: from the shipped file if its checksum matches, else built with lark."""
     grammar = _read(GRAMMAR)
     try:
         data = json.loads(_read(TABLES))
@@ -71,12 +72,12 @@ def load() -> Tables:
 
 
 def build(grammar: bytes) -> dict[str, Any]:
-    """The tables as plain data for JSON; raises lark's GrammarError where the grammar has a conflict."""
+    """Return the tables as plain data for JSON; raises lark's GrammarError if the grammar has a conflict."""
     from lark import Lark
     from lark.lexer import Lexer
 
     class NoLexer(Lexer):
-        """Stands in for lark's own lexer, which the tables do not need."""
+        """Replaces lark's own lexer, which the tables do not need."""
 
         def __init__(self, _conf: object) -> None: ...
 
@@ -111,7 +112,7 @@ def build(grammar: bytes) -> dict[str, Any]:
 
 
 def _breadth_first(table: Any) -> dict[int, int]:
-    """New numbers for lark's states, breadth-first by symbol: the same grammar always gives the same file."""
+    """Return new numbers for lark's states, breadth-first by symbol, so that a grammar always gives the same file."""
     order = {table.start_states[start]: number for number, start in enumerate(STARTS)}
     queue = list(order)
     for state in queue:
@@ -123,7 +124,7 @@ def _breadth_first(table: Any) -> dict[int, int]:
 
 
 def _action(rule: Any) -> tuple[str, list[int]]:
-    """The builder's method for a lark rule and what to keep of its values (see :class:`Rule`)."""
+    """Return the builder's method for a lark rule, and which values it keeps (see :class:`Rule`)."""
     absent = [len(run) for run in "".join(str(int(b)) for b in rule.options.empty_indices).split("0")]
     if not rule.options.empty_indices:
         absent = [0] * (len(rule.expansion) + 1)
@@ -142,16 +143,16 @@ def _action(rule: Any) -> tuple[str, list[int]]:
 
 
 def _distinct(rows: list[dict[str, int]]) -> list[dict[str, int]]:
-    """The rows without repetition, in order."""
-    found: list[dict[str, int]] = []
+    """Return the rows without repetition, in order."""
+    distinct: list[dict[str, int]] = []
     for row in rows:
-        if row not in found:
-            found.append(row)
-    return found
+        if row not in distinct:
+            distinct.append(row)
+    return distinct
 
 
 def _spellings(terminals: Any) -> dict[str, Any]:
-    """The spellings of all terminals that are lists of fixed texts, and the patterns of the others."""
+    """Return the spellings of all terminals that are lists of fixed texts, and the patterns of the others."""
     words: dict[str, str] = {}
     signs: dict[str, str] = {}
     soft: dict[str, str] = {}
@@ -172,7 +173,7 @@ def _spellings(terminals: Any) -> dict[str, Any]:
 
 
 def _texts(pattern: Any) -> list[str] | None:
-    """The fixed texts that a terminal's pattern lists, or None where it is a regular expression proper."""
+    """Return the fixed texts that a terminal's pattern lists, or None if it is a real regular expression."""
     if pattern.type == "str":
         return [pattern.value]
     listed = re.fullmatch(r"\(\?:(.*)\)", pattern.value, re.DOTALL)
@@ -204,13 +205,13 @@ def _from_json(data: dict[str, Any]) -> Tables:
 
 
 def main() -> None:
-    """Write the tables of the present grammar beside it."""
+    """Write the tables of the current grammar to the shipped file."""
     with open(TABLES, "w", encoding="utf-8") as file:  # noqa: PTH123
         file.write(as_text(build(_read(GRAMMAR))))
 
 
 def as_text(data: dict[str, Any]) -> str:
-    """The tables as the text of the shipped file."""
+    """Return the tables as the text of the shipped file."""
     return json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 

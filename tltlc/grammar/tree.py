@@ -1,8 +1,8 @@
-"""The syntax tree: frozen nodes with spans, as close to the text as the later stages need.
+"""The syntax tree: frozen nodes with spans, as close to the text as later stages need.
 
-Formulas and arithmetic share one expression grammar, typed only by :mod:`tltlc.resolve`, since
-LALR(1) cannot tell the two apart before the end of a bracket.  Operators are stored under one
-canonical spelling each: ``not and or implies iff F G X N U W R M then`` and ``+ - * / ^ < <= > >=``.
+Formulas and arithmetic share one expression grammar, since LALR(1) cannot distinguish them before
+the end of a bracket; :mod:`tltlc.resolve` assigns the types. Each operator is stored under one
+canonical spelling: ``not and or implies iff F G X N U W R M then`` and ``+ - * / ^ < <= > >=``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tltlc.core.source import SourceFile, Span
 
 @record
 class Number:
-    """A literal, with the unit written behind it (``m``, ``%``, ``steps``, …) or none; ``inf`` is one."""
+    """A number with its unit (``m``, ``%``, ``steps``, …) or None; ``inf`` is a number, too."""
 
     value: float
     unit: str | None
@@ -34,7 +34,7 @@ class Constant:
 
 @record
 class Name:
-    """A name without brackets behind it; may be dotted."""
+    """A name without brackets after it; may contain dots."""
 
     name: str
     span: Span
@@ -42,7 +42,7 @@ class Name:
 
 @record
 class Argument:
-    """One argument of a call; ``name`` where it is given by keyword."""
+    """An argument of a call; ``name`` is None unless it is a keyword argument."""
 
     name: str | None
     value: Expr
@@ -72,7 +72,7 @@ class Bound:
 
 @record
 class Unary:
-    """``-`` or ``not`` or a temporal operator ``F G X N`` before an operand, with a bound or none."""
+    """``-``, ``not`` or a temporal operator ``F G X N`` before an operand, perhaps with a bound."""
 
     op: str
     operand: Expr
@@ -94,7 +94,7 @@ class Binary:
 
 @record
 class Group:
-    """An expression in round brackets: kept, because ``then`` asks for them."""
+    """An expression in round brackets; it is kept because ``then`` requires them."""
 
     inner: Expr
     span: Span
@@ -244,10 +244,11 @@ class ExclusiveDecl:
 
 @record
 class Clause:
-    """A line of a spec.
+    """A clause of a spec.
 
-    ``kind`` is one of ``reach keep avoid require`` (``value`` an expression), ``level judge semantics``
-    (``value`` a Name), ``limit`` (``value`` a Number), ``tag`` (``value`` a tuple of Names).
+    ``kind`` is one of ``reach keep avoid require`` (``value`` is an expression), ``level judge
+    semantics`` (``value`` is a Name), ``limit`` (``value`` is a Number), ``tag`` (``value`` is a
+    tuple of Names).
     """
 
     kind: str
@@ -259,7 +260,7 @@ class Clause:
 
 @record
 class SpecDecl:
-    """``spec NAME { clauses }``; ``spec NAME = FORMULA`` holds one ``require`` and ``block`` False."""
+    """``spec NAME { clauses }``; ``spec NAME = FORMULA`` has one ``require``, and ``block`` is False."""
 
     name: str
     clauses: tuple[Clause, ...]
@@ -282,8 +283,8 @@ class TestStep:
 class TestExpect:
     """``expect pending``, ``expect progress >= 0.5``, ``expect state "G p"``.
 
-    ``kind`` is ``verdict``, ``progress`` or ``state``; ``value`` the verdict, the number or the label;
-    ``comparison`` one of ``< <= > >=`` for progress, else None.
+    ``kind`` is ``verdict``, ``progress`` or ``state``. ``value`` is the verdict, the number or the
+    label. ``comparison`` is one of ``< <= > >=`` for progress, else None.
     """
 
     kind: str
@@ -310,7 +311,7 @@ Declaration = Union[
 
 @record
 class Comment:
-    """A ``//`` or ``///`` comment with its slashes, for tools that print the text back."""
+    """A ``//`` or ``///`` comment with its slashes, for tools that print the source text."""
 
     text: str
     span: Span
@@ -318,7 +319,7 @@ class Comment:
 
 @record
 class Module:
-    """One source file, parsed: its declarations in order and its comments in order."""
+    """A parsed source file: its declarations and its comments, both in order."""
 
     source: SourceFile
     declarations: tuple[Declaration, ...]

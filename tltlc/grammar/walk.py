@@ -1,4 +1,4 @@
-"""Walks through the syntax tree: the expressions of a declaration, and the parts of an expression."""
+"""Walk the syntax tree: the expressions of a declaration, and the parts of an expression."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tltlc.grammar.tree import Declaration, Expr
 
 
 def expressions(declaration: Declaration) -> Iterator[Expr]:
-    """The expressions that stand in a declaration, in order; those of a spec clause by clause."""
+    """Yield the expressions of a declaration, in order; for a spec, clause by clause."""
     match declaration:
         case tree.SignalDecl():
             yield from _interval(declaration.interval)
@@ -34,40 +34,41 @@ def expressions(declaration: Declaration) -> Iterator[Expr]:
 
 
 def parts(expression: Expr) -> Iterator[Expr]:
-    """The expression and everything in it, outer before inner and left before right; takes no recursion."""
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
+    """Yield the expression and all its parts, outer before inner and left before right; does not recurse."""
+    pending = [expression]
+    while pending:
+        part = pending.pop()
         yield part
-        waiting += reversed([*children(part)])
+        pending += reversed([*children(part)])
 
 
 def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> list[Expr]:
-    """The operands of a chain such as ``a & b & c`` or ``a then b then c``, in order.
+    """Return the operands of a chain such as ``a & b & c`` or ``a then b then c``, in order.
 
-    The expression alone where it is no ``op``.  With ``through_brackets``, those of ``a & (b & c)`` are three.
+    If the expression is no ``op``, return it alone. With ``through_brackets``, ``a & (b & c)`` has
+    three operands.
     """
-    found: list[Expr] = []
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
+    chain: list[Expr] = []
+    pending = [expression]
+    while pending:
+        part = pending.pop()
         inner = part
         while through_brackets and isinstance(inner, tree.Group):
             inner = inner.inner
         if isinstance(inner, tree.Binary) and inner.op == op:
-            waiting += (inner.right, inner.left)
+            pending += (inner.right, inner.left)
         else:
-            found.append(part)
-    return found
+            chain.append(part)
+    return chain
 
 
 def conjuncts(expression: Expr) -> list[Expr]:
-    """The operands of the outermost ``and``, brackets or not, in order; the expression alone where it is none."""
+    """Return the operands of the outermost ``and``, through brackets, in order; else the expression alone."""
     return operands(expression, "and", through_brackets=True)
 
 
 def children(expression: Expr) -> Iterator[Expr]:
-    """The operands of an expression, in order."""
+    """Yield the direct operands of an expression, in order."""
     match expression:
         case tree.Unary():
             yield expression.operand

@@ -1,4 +1,4 @@
-"""Diagnostics as workflow commands of GitHub Actions, which shows them beside the changed lines."""
+"""Diagnostics as workflow commands of GitHub Actions, which displays them at the changed lines."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """One command per line and diagnostic."""
+    """Return one command per diagnostic, each on a line."""
     return "".join(_command(diagnostic) + "\n" for diagnostic in diagnostics)
 
 
 def workflow_command(name: str, text: str, properties: Mapping[str, str | int]) -> str:
-    """The command ``::NAME PROPERTIES::TEXT``, without a line's end; both are escaped as the service asks."""
+    """Return the command ``::NAME PROPERTIES::TEXT`` without a line end, escaped as GitHub requires."""
     listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     return f"::{name} {listed}::{_data(text)}"
 
@@ -30,7 +30,7 @@ def _command(diagnostic: Diagnostic) -> str:
         end_line, end_column = label.source.position(label.span.end)
         properties = {"file": label.source.name, "line": line, "endLine": end_line}
         if line == end_line:
-            # The service takes columns only within one line; its end column belongs to the range.
+            # GitHub accepts columns only within one line; its end column is inclusive.
             properties |= {"col": column, "endColumn": max(column, end_column - 1)}
     properties["title"] = diagnostic.code
     text = "\n".join(part for part in (diagnostic.title, remark, diagnostic.help) if part)

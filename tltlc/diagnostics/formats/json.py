@@ -10,8 +10,8 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """``{"diagnostics": […]}``; lines and columns count from 1, offsets from 0, all in characters."""
-    found = [
+    """Return ``{"diagnostics": […]}``; lines and columns start at 1, offsets at 0, all count characters."""
+    entries = [
         {
             "code": diagnostic.code,
             "severity": diagnostic.severity,
@@ -22,7 +22,7 @@ def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
         }
         for diagnostic in diagnostics
     ]
-    return json.dumps({"diagnostics": found}, ensure_ascii=False, indent=2) + "\n"
+    return json.dumps({"diagnostics": entries}, ensure_ascii=False, indent=2) + "\n"
 
 
 def _label(label: Label) -> dict[str, object]:
@@ -30,7 +30,7 @@ def _label(label: Label) -> dict[str, object]:
 
 
 def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
-    """Edits are of the file of the first label."""
+    """Return the JSON of a fix; its edits refer to the file of the first label."""
     edits = [{**_range(source, edit.span), "text": edit.text} for edit in fix.edits]
     return {"title": fix.title, "applicability": fix.applicability, "edits": edits}
 

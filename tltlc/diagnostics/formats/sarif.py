@@ -17,7 +17,7 @@ _SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sari
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """One SARIF log with one run; paths are relative to the current folder where they lie below it."""
+    """Return one SARIF log with one run; paths in the current folder are relative to it."""
     rules = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {
         "tool": {"driver": {"name": "tltlc", "version": __version__, "rules": [_rule(code) for code in rules]}},
@@ -75,7 +75,7 @@ def _region(source: SourceFile, span: Span) -> dict[str, object]:
 
 
 def _uri(name: str) -> str:
-    """The URI of a file: relative to the current folder where the file lies below it."""
+    """Return the URI of a file, relative to the current folder if the file is inside."""
     path = os.path.relpath(name) if name and not name.startswith("<") else name
     if path.startswith(os.pardir):
         return "file://" + quote(os.path.abspath(name).replace(os.sep, "/"))  # noqa: PTH100

@@ -1,4 +1,4 @@
-"""Diagnostics for people: title, place, the line with a caret under it, one way out."""
+"""Diagnostics for people: title, place, the source line with a caret under it, and a suggestion."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _DIM: Final = "2"
 _COLOURS: Final = {"error": "1;31", "warning": "1;33", "note": "1;36"}
 _TAB: Final = 4
 _WIDTH: Final = 160
-"""Columns of source text that are shown; of a longer line, a part around the place."""
+"""The most columns of a source line that are shown; of a longer line, the part around the span."""
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """The diagnostics one below the other, an empty line between them."""
+    """Return the diagnostics one below the other, with an empty line between them."""
     return "\n".join(_one(diagnostic, color) for diagnostic in diagnostics)
 
 
@@ -26,8 +26,8 @@ def _one(diagnostic: Diagnostic, color: bool) -> str:
     lines = [f"{head}: {_paint(visible(diagnostic.title), _BOLD, color)}"]
     numbers = [label.source.position(label.span.start)[0] for label in diagnostic.labels]
     gutter = max((len(str(number)) for number in numbers), default=0)
-    for place, label in enumerate(diagnostic.labels):
-        lines += _place(label, gutter, colour if place == 0 else _COLOURS["note"], color)
+    for index, label in enumerate(diagnostic.labels):
+        lines += _place(label, gutter, colour if index == 0 else _COLOURS["note"], color)
     if diagnostic.help:
         first, *rest = diagnostic.help.splitlines()
         lines.append(f"  {_paint('help:', _BOLD, color)} {visible(first)}")
@@ -36,7 +36,7 @@ def _one(diagnostic: Diagnostic, color: bool) -> str:
 
 
 def _place(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
-    """Where a label points: file, line and column; the line; the caret with the label's remark."""
+    """Return the lines for a label: file, line and column; the source line; the caret with the label's message."""
     source, span = label.source, label.span
     number, column = source.position(span.start)
     last, _ = source.position(max(span.start, span.end - 1))
@@ -57,8 +57,8 @@ def _place(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
 
 
 def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
-    """A line as it is shown, and the columns where the caret starts and how many it takes."""
-    # No more of a part is shown than this, and a line may be a megabyte long.
+    """Return the part of a line to show, the column of the caret in it, and the width of the caret."""
+    # A line may be a megabyte long, so first cut each part to the most that can be shown.
     end = start + length
     parts = (
         line[max(0, start - _WIDTH) : start],
@@ -66,7 +66,7 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
         line[end : end + _WIDTH + 1],
     )
     before, marked, after = map(_expand, parts)
-    # A tab is as wide as its place asks, so the part before it must be measured first.
+    # The width of a tab depends on its column, so measure the part before it first.
     before = _expand_tabs(before, 0)
     marked = _expand_tabs(marked, columns(before))
     after = _expand_tabs(after, columns(before) + columns(marked))
@@ -79,12 +79,12 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
 
 
 def _expand(text: str) -> str:
-    """A part of a line, with signs that cannot be shown replaced; tabs stay."""
+    """Return a part of a line with unprintable characters replaced; tabs stay."""
     return "\t".join(visible(piece) for piece in text.split("\t"))
 
 
 def _expand_tabs(text: str, column: int) -> str:
-    """A part of a line that begins at a column, with spaces in place of tabs."""
+    """Return a part of a line that begins at a column, with spaces instead of tabs."""
     first, *rest = text.split("\t")
     shown = first
     for piece in rest:
@@ -93,17 +93,21 @@ def _expand_tabs(text: str, column: int) -> str:
 
 
 def visible(text: str) -> str:
-    """A text with a replacement for each sign that could not be seen, or would steer the terminal."""
-    return text if text.isprintable() else "".join(sign if sign.isprintable() else "\ufffd" for sign in text)
+    """Return a text with unprintable characters, which could control the terminal, replaced."""
+    return (
+        text
+        if text.isprintable()
+        else "".join(character if character.isprintable() else "\ufffd" for character in text)
+    )
 
 
 def columns(text: str) -> int:
-    """How many columns a terminal takes to show a text: two for wide signs, none for combining ones."""
+    """Return how many columns a terminal needs for a text: two per wide character, none per combining one."""
     if text.isascii():
         return len(text)
     from unicodedata import combining, east_asian_width
 
-    return sum(0 if combining(sign) else 2 if east_asian_width(sign) in "WF" else 1 for sign in text)
+    return sum(0 if combining(character) else 2 if east_asian_width(character) in "WF" else 1 for character in text)
 
 
 def _paint(text: str, colour: str, color: bool) -> str:
