@@ -86,9 +86,9 @@ def _pattern() -> re.Pattern[str]:
     """Return one pattern for all tokens; the name of the group that matched last is the token's type."""
     tables: Tables = load()
     patterns = tables.patterns
-    signs = "|".join(re.escape(operator) for operator in sorted(tables.signs, key=len, reverse=True))
+    signs = "|".join(re.escape(sign) for sign in sorted(tables.signs, key=len, reverse=True))
     # Signs that Unicode counts as letters (𝒰) end a name. Any other letter beyond ASCII makes the whole word bad.
-    letters = "".join(operator for operator in tables.signs if operator.isalnum())
+    letters = "".join(sign for sign in tables.signs if sign.isalnum())
     units = "|".join(re.escape(unit) + ("" if unit == "%" else r"(?![\w]|\.[A-Za-z_])") for unit in tables.units)
     return re.compile(
         rf"(?P<SPACE>{patterns['SPACE']}|\A\ufeff)"

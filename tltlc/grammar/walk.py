@@ -45,7 +45,7 @@ def parts(expression: Expr) -> Iterator[Expr]:
 def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> list[Expr]:
     """Return the operands of a chain such as ``a & b & c`` or ``a then b then c``, in order.
 
-    If the expression is no ``op``, return it alone. With ``through_brackets``, ``a & (b & c)`` has
+    If the expression is not an ``op``, return it alone. With ``through_brackets``, ``a & (b & c)`` has
     three operands.
     """
     chain: list[Expr] = []

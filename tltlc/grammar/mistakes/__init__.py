@@ -1,1 +1,1 @@
-"""Guesses at what a text with syntax errors was meant to say."""
+"""Explain syntax errors: guess what the text was meant to say, and suggest fixes."""

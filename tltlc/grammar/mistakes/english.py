@@ -1,4 +1,4 @@
-"""Plain English where the language has another form: `if`, `while`, `before`, a bound behind its formula."""
+"""Report plain English where the language has another form: `if`, `while`, `before`, a bound after its formula."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
-"""Fillers that say something behind another word, as `next to` and `not either`, with the operators beside them."""
+"""Fillers that mean something after another word, as in `next to` and `not either`, with the operators they go with."""
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
     ("at", "most"): "<=",
@@ -35,13 +35,13 @@ _COMPARISONS: Final = {
 }
 
 Forms = Mapping[str, str]
-"""What stands for some English, by the clause it stands in, or anywhere else; with a keyword, for the whole clause."""
+"""The equivalents of an English form, by clause, "" for all others; a form with a keyword replaces the whole clause."""
 
 _CONDITION: Final = {"reach": "{a} and {b}", "avoid": "{a} and {b}", "": "{b} implies {a}"}
 _SEQUENCE: Final = {"": "{a} then {b}"}
 _FORMS: Final[dict[str, Forms]] = {
     **dict.fromkeys((*CONDITIONS, "during"), _CONDITION),
-    # The weak operators: what is kept or avoided must not become a goal.
+    # Use the weak operators: a `keep` or `avoid` must not turn into a goal.
     "before": {
         "keep": "require {a} weak_until {b}",
         "avoid": "require (not {a}) weak_until {b}",
@@ -61,7 +61,7 @@ _FORMS: Final[dict[str, Forms]] = {
     "nor": {"": "not ({a} or {b})"},
     "nand": {"": "not ({a} and {b})"},
 }
-"""What `a WORD b` is."""
+"""The equivalents of `a WORD b`."""
 
 _IN_TIME: Final = {
     "reach": "require eventually within {b} {a}",
@@ -70,7 +70,7 @@ _IN_TIME: Final = {
     "": "eventually within {b} {a}",
 }
 _FOR_TIME: Final = {
-    # Past the end of a trace `always for` asks nothing: one step would meet it.
+    # After the end of a trace, `always for` requires nothing: one step would satisfy it.
     "reach": "(always for {b} {a}) and next after {less} {a}",
     "keep": "require always for {b} {a}",
     "avoid": "require always for {b} not {a}",
@@ -89,22 +89,22 @@ _TIMES: Final[dict[str, Forms]] = {
     "for": _FOR_TIME,
     "after": _AFTER_TIME,
 }
-"""What `a WORD TIME` and `WORD TIME a` are; under `then`, what `c then a WORD TIME` is, as a time is that of its goal.
+"""The equivalents of `a WORD TIME` and `WORD TIME a`; under `then`, of `c then a WORD TIME`.
 
-With `and`, it begins where `c` is reached.  ``{end}`` is the time as the end of a bound in brackets, ``{less}`` one
-step less.
+A time applies to its own goal: with `and`, it starts at the step that reaches ``c``. ``{end}`` is the
+time as the end of a bound in brackets, ``{less}`` is one step less.
 """
 _TIMED: Final = {form for forms in _TIMES.values() for form in forms.values()}
 
 _PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} implies {a}"}
 _PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
-"""What `WORD b, a` and `WORD b then a` are."""
+"""The equivalents of `WORD b, a` and `WORD b then a`."""
 
 _FROM_THEN_ON: Final = {
     "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
     "avoid": "`avoid a and b` forbids `a` wherever `b` holds, `keep b implies always not a` from then on, too",
 }
-"""What `if b, keep a` and `if b, avoid a` may be."""
+"""The two possible meanings of `if b, keep a` and of `if b, avoid a`."""
 _REASONS: Final = {
     ("if", "reach"): " for both at one step, `{b} then {a}` for one after the other",
     ("when", "reach"): " for both at one step, `{b} then {a}` for one after the other",
@@ -116,33 +116,33 @@ _ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
 
 
 def plain_english(place: Place) -> Diagnostic | None:
-    """``reach if b then a``, ``keep a while b``, ``reach a within 20 steps``."""
+    """Report ``reach if b then a``, ``keep a while b``, ``reach a within 20 steps``."""
     if not place.wants_operator or place.before is None:
         return None
-    for at, elsewhere in ((place.stop.index - 1, _PREFIXES), (place.stop.index, _FORMS)):
-        word, timed = place.tokens[at], at + 1 < len(place.tokens) and place.tokens[at + 1].type == "NUMBER"
-        forms = _TIMES.get(word.text) if timed else elsewhere.get(word.text)
+    for at, untimed_forms in ((place.stop.index - 1, _PREFIXES), (place.stop.index, _FORMS)):
+        word, is_timed = place.tokens[at], at + 1 < len(place.tokens) and place.tokens[at + 1].type == "NUMBER"
+        forms = _TIMES.get(word.text) if is_timed else untimed_forms.get(word.text)
         if forms is None or word.type not in ("NAME", "WHEN"):
             continue
         if place.tokens[0].type == "PREDICATE":
             return place.error("TLT0101", f"{shown(word)} is no operator", CASES, span=word.span)
         if word.text == "without" and _kind(place) in ("reach", "keep"):
             return _without(place)
-        find = _timed if timed else _untimed
-        return _prefixed(place, at, forms, timed=timed) if at < place.stop.index else find(place, forms)
+        report = _timed if is_timed else _untimed
+        return _prefixed(place, at, forms, timed=is_timed) if at < place.stop.index else report(place, forms)
     return None
 
 
 def compared(place: Place) -> Diagnostic | None:
-    """``coins is more than 3``, ``health above 50%``."""
+    """Report ``coins is more than 3``, ``health above 50%``."""
     at = place.stop.index
     if not place.wants_operator or place.found.type != "NAME":
         return None
     words = [token.text for token in place.tokens[at : at + 3]]
-    start = words[0] in ("is", "are")
+    has_verb = words[0] in ("is", "are")
     for phrase, sign in _COMPARISONS.items():
-        length = start + len(phrase)
-        if tuple(words[start:length]) != phrase:
+        length = has_verb + len(phrase)
+        if tuple(words[has_verb:length]) != phrase:
             continue
         value = place.tokens[at + length].type
         if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
@@ -152,17 +152,17 @@ def compared(place: Place) -> Diagnostic | None:
 
 
 def filler(place: Place) -> Diagnostic | None:
-    """``reach the exit``, ``avoid being seen``."""
+    """Report ``reach the exit``, ``avoid being seen``."""
     at = place.stop.index
     for index in (at - 1, at):
         word = place.tokens[index]
         if place.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
-            title, next_ = f"{shown(word)} says nothing here", place.tokens[index + 1]
-            if next_.type == "NAME" and _is_clear_filler(place, index):
-                return reworded(place, index, index + 2, next_.text, title, " alone") or place.error(
+            title, following = f"{shown(word)} says nothing here", place.tokens[index + 1]
+            if following.type == "NAME" and _is_clear_filler(place, index):
+                return reworded(place, index, index + 2, following.text, title, " alone") or place.error(
                     "TLT0101", title, "leave it out", span=word.span
                 )
-            if next_.type == "NAME":
+            if following.type == "NAME":
                 help_ = "say it with a predicate, as in `near(a)`"
                 if word.text in ("either", "both"):
                     help_ = "say what it joins by brackets: `not (a or b)`, `c and (a or b)`"
@@ -171,58 +171,58 @@ def filler(place: Place) -> Diagnostic | None:
 
 
 def _is_clear_filler(place: Place, at: int) -> bool:
-    """Whether a word can be left out: it stands alone, or first, before operators that join what it speaks of."""
+    """Whether a word can be left out: it has no other meaning, or it begins the formula and fits all its operators."""
     word, kind = place.tokens[at].text, _kind(place)
     if word not in _JOINED:
         return True
-    # `reach both a and b` may be met one after the other, and `avoid both` may forbid each of the two.
+    # `reach both a and b` allows one after the other, and `avoid both` may forbid each of them.
     if at != formula_start(place) or (word == "both" and kind not in ("keep", "require")):
         return False
     return not has(place, at, formula_stop(place), INFIX - {*_JOINED[word]})
 
 
 def conditional(place: Place) -> Diagnostic | None:
-    """A line of a spec that begins with ``if`` or ``when``."""
+    """Report a line of a spec that begins with ``if`` or ``when``."""
     forms = {"": "keep {b} implies {a}"}
     return _prefixed(place, 0, forms, timed=False) if place.tokens[0].text in _PREFIXES else None
 
 
 def _without(place: Place) -> Diagnostic:
-    """``reach a without b``: `avoid` asks for what follows, which must be one operand."""
+    """Report ``reach a without b``: `avoid` applies to what follows, which must be one operand."""
     help_ = "`avoid`, which begins a clause of its own and speaks of every step"
     at = place.stop.index
     goals = _goals(place, at)
     sides = ((goals[-1], at), (at + 1, formula_stop(place)))
-    alone = len(goals) == 1 and is_clear_word(place, "without", *sides, _kind(place))
-    write = "avoid" if alone else None
-    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}", write=write)
+    is_clear = len(goals) == 1 and is_clear_word(place, "without", *sides, _kind(place))
+    write = "avoid" if is_clear else None
+    return place.error("TLT0101", "`without` is no operator", f"{'write' if is_clear else 'use'} {help_}", write=write)
 
 
 def _untimed(place: Place, forms: Forms) -> Diagnostic:
-    """``a WORD b``."""
+    """Report ``a WORD b``."""
     at, kind = place.stop.index, _kind(place)
     begin, stop = _goals(place, at)[-1], formula_stop(place)
-    behind = at + 1 + (place.tokens[at + 1].text == "by")
-    end = next((index for index in outside(place.tokens, behind, stop) if place.tokens[index].type == "THEN"), stop)
+    second = at + 1 + (place.tokens[at + 1].text == "by")
+    end = next((index for index in outside(place.tokens, second, stop) if place.tokens[index].type == "THEN"), stop)
     form = forms.get(kind, forms[""])
-    said = _Said(operand(place, begin, at), operand(place, behind, end))
+    parts = _Parts(operand(place, begin, at), operand(place, second, end))
     word = place.found.text
     is_clear = (
         (end == stop or (kind == "reach" and word not in _OF_THE_REST))
         and (begin == formula_start(place) or word != "unless")
         and not (" then " in form and kind == "keep")
-        and is_clear_word(place, word, (begin, at), (behind, end), kind)
+        and is_clear_word(place, word, (begin, at), (second, end), kind)
         and is_clear_here(place, word)
     )
-    return _told(place, at, (begin, end), form, said if is_clear else None)
+    return _rewrite_error(place, at, (begin, end), form, parts if is_clear else None)
 
 
 def _timed(place: Place, forms: Forms) -> Diagnostic:
-    """``a WORD TIME``."""
+    """Report ``a WORD TIME``."""
     at, kind = place.stop.index, _kind(place)
     goals, stop = _goals(place, at), formula_stop(place)
     begin = goals[-1]
-    time, behind, is_clear_unit = _time(place, at + 1)
+    time, end, is_clear_unit = _time(place, at + 1)
     if len(goals) > 1:
         before = operand(place, goals[-2], begin - 1)
         is_clear = not has(place, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
@@ -230,7 +230,7 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
     elif kind in forms and kind:
         before, form, start, is_clear = "", forms[kind], begin, True
     else:
-        # The time is that of the last operand alone.
+        # The time applies to the last operand only.
         last = last_of(place, INFIX, begin)
         start = begin = begin if last is None else last + 1
         before, form, is_clear = "", forms[""], _is_clear_time(place, begin, forms)
@@ -238,52 +238,56 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
         is_clear = is_clear and not has(place, formula_start(place), at, TEMPORAL | QUANTIFIERS)
     if kind != "keep":
         is_clear = is_clear and place.tokens[begin].type not in _UNARY
-    is_clear = is_clear and is_clear_unit and behind == stop and _is_clear_operand(place, begin, at)
-    said = _Said(operand(place, begin, at), time, before)
-    return _told(place, at, (start, stop), form, said if is_clear else None)
+    is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(place, begin, at)
+    parts = _Parts(operand(place, begin, at), time, before)
+    return _rewrite_error(place, at, (start, stop), form, parts if is_clear else None)
 
 
 def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
-    """``WORD b, a`` and ``WORD TIME a``."""
+    """Report ``WORD b, a`` and ``WORD TIME a``."""
     if timed:
         return _prefixed_time(place, at, forms)
     stop, form = formula_stop(place), forms.get(_kind(place), forms[""])
     split = _split(place, at + 1, stop)
-    behind = split + (place.tokens[split].text in _SEPARATORS)
+    second = split + (place.tokens[split].text in _SEPARATORS)
     if _kind(place) == "reach":
-        # What follows is the next goal.
-        stop = next((i for i in outside(place.tokens, behind, stop) if place.tokens[i].type == "THEN"), stop)
-    said = _Said(operand(place, behind, stop), operand(place, at + 1, split))
+        # Stop before the next goal.
+        stop = next(
+            (index for index in outside(place.tokens, second, stop) if place.tokens[index].type == "THEN"), stop
+        )
+    parts = _Parts(operand(place, second, stop), operand(place, at + 1, split))
     previous = place.tokens[at - 1].type if at > formula_start(place) else None
     is_clear = previous in _BEFORE_CONDITIONS.get(_kind(place), (None, "AND", "OR", "IMPLIES"))
     is_clear = is_clear and is_clear_here(place, place.tokens[at].text)
     is_clear = is_clear and not has(place, formula_start(place), split, TEMPORAL)
-    is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, behind, stop, TEMPORAL))
-    # `if a then b until c` may be a rule until `c`; a keyword would take the `until` and the `or` behind it, too.
-    is_clear = is_clear and not has(place, behind, stop, UNCLEAR)
-    asked = place.tokens[behind].text
-    if asked in _FROM_THEN_ON:
+    is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, second, stop, TEMPORAL))
+    # `if a then b until c` may be a rule until `c`; and a keyword would apply to the `until` and the `or` after it.
+    is_clear = is_clear and not has(place, second, stop, UNCLEAR)
+    keyword = place.tokens[second].text
+    if keyword in _FROM_THEN_ON:
         title = (
             f"{shown(place.tokens[at])} is no operator" if at else f"no clause begins with {shown(place.tokens[at])}"
         )
         code = "TLT0101" if at else "TLT0107"
-        return place.error(code, title, _FROM_THEN_ON[asked], span=place.tokens[at].span)
-    if asked in OPERATORS:
-        is_clear = is_clear and asked == "reach" and place.tokens[at].text != "while"
-        is_clear = is_clear and not has(place, behind, stop, INFIX)
+        return place.error(code, title, _FROM_THEN_ON[keyword], span=place.tokens[at].span)
+    if keyword in OPERATORS:
+        is_clear = is_clear and keyword == "reach" and place.tokens[at].text != "while"
+        is_clear = is_clear and not has(place, second, stop, INFIX)
     wrapped = form if previous in (None, "THEN") else f"({form})"
-    return _told(place, at, (at, stop), wrapped, said if is_clear else None)
+    return _rewrite_error(place, at, (at, stop), wrapped, parts if is_clear else None)
 
 
 def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
     stop, kind, first = formula_stop(place), _kind(place), formula_start(place)
-    time, behind, is_clear_unit = _time(place, at + 1)
+    time, second, is_clear_unit = _time(place, at + 1)
     before, start = "", at
-    is_clear = is_clear_unit and _is_clear_operand(place, behind, stop)
+    is_clear = is_clear_unit and _is_clear_operand(place, second, stop)
     if at == first:
         form = forms.get(kind, forms[""])
-        is_own = form != forms[""]
-        is_clear = is_clear and (is_own or (_is_clear_time(place, at, forms) and not has(place, behind, stop, INFIX)))
+        has_own_form = form != forms[""]
+        is_clear = is_clear and (
+            has_own_form or (_is_clear_time(place, at, forms) and not has(place, second, stop, INFIX))
+        )
     elif kind == "reach" and place.tokens[at - 1].type == "THEN":
         start = _goals(place, at)[-2]
         form, before = forms["then"], operand(place, start, at - 1)
@@ -292,60 +296,60 @@ def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
         form = forms[""]
         is_clear = is_clear and _is_clear_time(place, at, forms)
         is_clear = is_clear and not has(place, first, stop, {*TEMPORAL, "AND", "OR"})
-    said = _Said(operand(place, behind, stop), time, before)
-    return _told(place, at, (start, stop), form, said if is_clear else None)
+    parts = _Parts(operand(place, second, stop), time, before)
+    return _rewrite_error(place, at, (start, stop), form, parts if is_clear else None)
 
 
 @record
-class _Said:
-    """What was written: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``."""
+class _Parts:
+    """The parts of the text: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``."""
 
     a: str
     b: str
     c: str = ""
 
     def put_in(self, form: str) -> str:
-        """The form with these in their places, empty where it needs another time than there is."""
+        """Return the form with the parts filled in; empty if the form needs a time in steps and there is none."""
         number, _, unit = self.b.partition(" ")
-        steps = unit in ("step", "steps") and number.isdecimal()
-        less = f"{int(number) - 1} steps" if steps else ""
+        is_steps = unit in ("step", "steps") and number.isdecimal()
+        less = f"{int(number) - 1} steps" if is_steps else ""
         if "{less}" in form and not less:
             return ""
-        return form.format(a=self.a, b=self.b, c=self.c, end=number if steps else self.b, less=less)
+        return form.format(a=self.a, b=self.b, c=self.c, end=number if is_steps else self.b, less=less)
 
 
-def _told(place: Place, at: int, part: tuple[int, int], form: str, said: _Said | None) -> Diagnostic:
-    """The error at the word ``at``, with what to write in place of a part of the tokens.
+def _rewrite_error(place: Place, at: int, part: tuple[int, int], form: str, parts: _Parts | None) -> Diagnostic:
+    """Return the error at the word ``at``, with a text for the tokens of ``part``, a start and a stop.
 
-    ``said`` is None where that cannot be read in one way alone; then the help says how the form is written.
+    ``parts`` is None if the text has more than one reading; then the help describes the form in general.
     """
     word, kind = place.tokens[at], _kind(place)
     title = f"{shown(word)} is no operator" if at else f"no clause begins with {shown(word)}"
     code = "TLT0101" if at else "TLT0107"
     start, stop = part
-    timed = form in _TIMED
+    is_timed = form in _TIMED
     if _is_clause(form):
         start = 0
-    text = said.put_in(form) if said and said.a and said.b and not (timed and _is_zero(said.b)) else ""
+    text = parts.put_in(form) if parts and parts.a and parts.b and not (is_timed and _is_zero(parts.b)) else ""
     if word.text == "before" and form == _SEQUENCE[""]:
-        # `b` may be a goal that comes later, or what must not happen first.
+        # `b` may be a later goal, or something that must not happen before `a`.
         text = ""
-    if said and text:
-        reason = ((word.text == "for" or not timed) and _REASONS.get((word.text, kind))) or (
+    if parts and text:
+        reason = ((word.text == "for" or not is_timed) and _REASONS.get((word.text, kind))) or (
             (_WHERE if _is_of_every_step(place, at) else _ONCE) if form == _CONDITION[""] else ""
         )
-        found = reworded(place, start, stop, text, title, reason.format(a=said.a, b=said.b), code)
-        if found:
-            return found
-    return place.error(code, title, _in_general(place, at, form), span=word.span)
+        diagnostic = reworded(place, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
+        if diagnostic:
+            return diagnostic
+    return place.error(code, title, _general_help(place, at, form), span=word.span)
 
 
-def _in_general(place: Place, at: int, form: str) -> str:
-    """How a form is written, with letters for what stands in it."""
-    word, timed, prefixed = place.tokens[at].text, form in _TIMED, at == 0 or at < place.stop.index
-    said = _Said("a", "20 steps" if timed else "b", "c")
+def _general_help(place: Place, at: int, form: str) -> str:
+    """Return a help that describes a form, with letters for its parts."""
+    word, is_timed, is_prefix = place.tokens[at].text, form in _TIMED, at == 0 or at < place.stop.index
+    parts = _Parts("a", "20 steps" if is_timed else "b", "c")
     infix = "followed by" if word == "followed" else word
-    english = f"{word} {said.b}, a" if prefixed else f"a {infix} {said.b}"
+    english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"
     if form == _CONDITION[""] and not _is_of_every_step(place, at):
         return (
             f"`{english}` is `b implies a` where it is about one step, a clause `keep b implies a` where it is about "
@@ -358,16 +362,16 @@ def _in_general(place: Place, at: int, form: str) -> str:
         )
     if "{c}" in form:
         english = f"c then {english}"
-    kind, written = _kind(place), said.put_in(form)
-    asks = clause_asked(place, at)
-    if asks != kind and asks in _FORMS.get(word, {}) and not timed:
-        # What is written for this clause alone would say something else there.
-        form = _FORMS[word][asks]
-        written = said.put_in(form if _is_clause(form) else f"{asks} {form}")
-        return f"`{asks} {english}` is written `{written}`"
+    kind, text = _kind(place), parts.put_in(form)
+    clause = clause_asked(place, at)
+    if clause != kind and clause in _FORMS.get(word, {}) and not is_timed:
+        # The general form would mean something else where this clause applies.
+        form = _FORMS[word][clause]
+        text = parts.put_in(form if _is_clause(form) else f"{clause} {form}")
+        return f"`{clause} {english}` is written `{text}`"
     if at and _is_clause(form):
         english = f"{kind} {english}"
-    return f"`{english}` is written `{written}`"
+    return f"`{english}` is written `{text}`"
 
 
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
@@ -375,33 +379,33 @@ _BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
     "reach": (None, "AND", "OR", "THEN"),
     "avoid": (None, "AND", "OR"),
 }
-"""What may stand before `if` in these clauses, None for nothing."""
+"""The tokens that may stand before `if` in these clauses; None means nothing."""
 _OF_THE_REST: Final = ("after", "unless", "but")
-"""Words that can be about all goals that follow, or about the next one."""
+"""Words that may apply to all goals that follow, or only to the next one."""
 
 
 def _is_clear_time(place: Place, begin: int, forms: Forms) -> bool:
-    """Whether a time can be that of the operand which begins here, and of no more."""
+    """Whether a time can apply only to the operand that begins here."""
     clause = place.tokens[0].text if place.start == "clause" else ""
     previous = place.tokens[begin - 1].type if begin > formula_start(place) else None
     if clause in ("reach", "avoid"):
         return False
     is_kept = clause == "keep" or has_always_before(place)
-    # A step that must be there makes a goal of what is kept.
+    # These forms require a step to exist, which would turn what is kept into a goal.
     if is_kept and (forms is _AFTER_TIME or (previous is None and (clause == "keep" or forms is _FOR_TIME))):
         return False
-    within = forms is _IN_TIME
-    return previous in (None, "IMPLIES") and is_clear_time_here(place, may_be_negated=within, may_be_kept=True)
+    may_be_negated = forms is _IN_TIME
+    return previous in (None, "IMPLIES") and is_clear_time_here(place, may_be_negated=may_be_negated, may_be_kept=True)
 
 
 def _is_clear_operand(place: Place, start: int, stop: int) -> bool:
-    """Whether a time can be that of all of these tokens."""
+    """Whether a time can apply to all of these tokens."""
     is_one = is_of_one_step(place, start, stop) and not has(place, start, stop, UNCLEAR)
     return is_one and place.tokens[start].text not in OPERATORS
 
 
 def _goals(place: Place, at: int) -> list[int]:
-    """Where the goals of `reach` begin that stand before ``at``; elsewhere where the formula begins."""
+    """Return where the goals of a `reach` before ``at`` begin; in other clauses, where the formula begins."""
     start = formula_start(place)
     if _kind(place) != "reach":
         return [start]
@@ -410,7 +414,7 @@ def _goals(place: Place, at: int) -> list[int]:
 
 
 def _is_of_every_step(place: Place, at: int) -> bool:
-    """Whether a condition stands where it is asked for at each step."""
+    """Whether a condition applies to every step at this place."""
     is_kept = place.tokens[0].text == "keep" and place.start == "clause"
     return at == 0 or ((is_kept or has_always_before(place)) and is_clear_here(place, place.tokens[at].text))
 
@@ -424,12 +428,12 @@ def _is_zero(time: str) -> bool:
 
 
 def _kind(place: Place) -> str:
-    """The keyword of the clause whose formula cannot be read; none inside brackets."""
+    """Return the keyword of the clause whose formula is broken; empty inside brackets."""
     return place.tokens[0].text if place.start == "clause" and not place.open_brackets else ""
 
 
 def _time(place: Place, at: int) -> tuple[str, int, bool]:
-    """A number with its unit, as it is written here, where it ends, and whether no other unit can be meant."""
+    """Return a number with its unit in the language's form, the index after it, and whether the unit is certain."""
     unit = place.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
     is_clear = bool(known) or not declares_clock(place.source)
@@ -440,12 +444,12 @@ _SEPARATORS: Final = ("then", ",", ":")
 
 
 def _split(place: Place, start: int, stop: int) -> int:
-    """Where a condition ends: at `then`, a comma or a colon; else behind a name with its arguments."""
+    """Return where a condition ends: at `then`, a comma or a colon, else after a name with its arguments."""
     for index in outside(place.tokens, start, stop):
         if place.tokens[index].text in _SEPARATORS:
             return index
     name = start + (place.tokens[start].type == "NOT")
-    behind: Token | None = place.tokens[name + 1] if name + 1 < stop else None
-    if behind is None or behind.type != "LPAR":
+    following: Token | None = place.tokens[name + 1] if name + 1 < stop else None
+    if following is None or following.type != "LPAR":
         return min(name + 1, stop)
     return next((index + 1 for index in outside(place.tokens, name + 1, stop) if index > name + 1), stop)

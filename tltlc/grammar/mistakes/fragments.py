@@ -1,7 +1,8 @@
-"""Cut the tokens of a text with errors into pieces: declarations, and the lines of a block.
+"""Split the tokens of a text with errors into pieces: declarations, and the lines of a block.
 
-A piece begins at a keyword.  A keyword at the start of a line always begins one; within a line only
-behind something that can end a piece, so that ``reach level`` is one clause with a reserved word.
+A piece begins at a keyword. A keyword at the start of a line always begins a piece. Within a line, it
+does so only after a token that can end a piece, so that ``reach level`` is one clause with a reserved
+word.
 """
 
 from __future__ import annotations
@@ -30,12 +31,12 @@ _STARTS: Final = {
     "ANY",
 }
 _PREFIXES: Final = (_STARTS - {"NAME", "STRING"}) | {"WHEN"}
-"""What can begin a formula, but not go on with one."""
+"""Tokens that can begin a formula but not continue one."""
 _OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
 
 
 def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[Token]]:
-    """The tokens cut into declarations: at their keywords, and behind the brace that closes a block."""
+    """Split the tokens into declarations: at their keywords, and after the brace that closes a block."""
     piece: list[Token] = []
     depth = 0
     for index, token in enumerate(tokens):
@@ -55,7 +56,7 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
 
 
 def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str]) -> Iterator[list[Token]]:
-    """The body of a block cut into its lines."""
+    """Split the body of a block into its lines."""
     piece: list[Token] = []
     for index, token in enumerate(tokens):
         if piece and _begins(source, tokens, index, keywords, True):
@@ -67,7 +68,7 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
 
 
 def block(piece: Sequence[Token]) -> str | None:
-    """``spec`` or ``test`` where a piece is one in braces, misspelt or not: ``spec NAME = …`` is none."""
+    """Return ``spec`` or ``test`` if the piece is one with braces, even if misspelt; ``spec NAME = …`` is not."""
     head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
     return closest(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
 
@@ -80,7 +81,7 @@ def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) ->
 def _begins(
     source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str], within_lines: bool
 ) -> bool:
-    """Whether a piece begins at this token, which is not the first."""
+    """Whether a piece begins at this token, which is not the first token."""
     token, before = tokens[index], tokens[index - 1]
     first = is_first_on_line(source, tokens, index)
     if token.text in keywords and (token.type != "NAME" or keywords is TEST_ITEMS):
@@ -95,7 +96,7 @@ def _begins(
         return True
     if first and _is_list_mark(source, tokens, index, keywords):
         return True
-    # A word that is no keyword, at the start of a line and with another word behind it: a misspelt keyword.
+    # A word at the start of a line that is no keyword and comes before another word is a misspelt keyword.
     if not first or not within_lines or token.type not in ("NAME", BAD) or not token.text[0].isalpha():
         return False
     if index + 1 == len(tokens):
@@ -112,23 +113,23 @@ def _begins(
 
 def _is_like(word: str, keywords: dict[str, str]) -> bool:
     """Whether a word is most likely meant as a keyword."""
-    elsewhere = {word for words in SYNONYMS.values() for word, meant in words.items() if meant in keywords}
+    elsewhere = {synonym for words in SYNONYMS.values() for synonym, keyword in words.items() if keyword in keywords}
     return word.lower() in elsewhere or closest(word, tuple(keywords)) is not None
 
 
 def _is_behind_number(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
-    """Whether `limit` stands behind its number, as in ``400 steps limit``."""
+    """Whether `limit` comes after its number, as in ``400 steps limit``."""
     number = index - 1 - (tokens[index - 1].type == "UNIT")
-    has_own = index + 1 < len(tokens) and tokens[index + 1].type == "NUMBER"
-    return tokens[number].type == "NUMBER" and is_first_on_line(source, tokens, number) and not has_own
+    has_number_after = index + 1 < len(tokens) and tokens[index + 1].type == "NUMBER"
+    return tokens[number].type == "NUMBER" and is_first_on_line(source, tokens, number) and not has_number_after
 
 
 def _is_list_mark(source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str]) -> bool:
-    """Whether a line begins as those of lists do, as in ``- reach a`` and ``1. reach a``."""
+    """Whether a line begins like a line of a list, as in ``- reach a`` and ``1. reach a``."""
     for place in (index, index + 1):
-        behind = place + 1
-        if tokens[place].text[0].isalpha() or behind == len(tokens) or is_first_on_line(source, tokens, behind):
+        following = place + 1
+        if tokens[place].text[0].isalpha() or following == len(tokens) or is_first_on_line(source, tokens, following):
             return False
-        if tokens[behind].text in keywords:
+        if tokens[following].text in keywords:
             return True
     return False

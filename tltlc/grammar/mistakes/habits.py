@@ -1,4 +1,4 @@
-"""What people write out of habit, from other languages or a word processor, and how it is written here."""
+"""Forms that people know from other languages or a word processor, and their form in this language."""
 
 from __future__ import annotations
 
@@ -27,52 +27,58 @@ from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, rewor
 from tltlc.grammar.tables import load
 
 _VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
-_SAME, _OTHER = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
-_EQUAL: Final = {"==": _SAME, "=": _SAME, "!=": _OTHER, "<>": _OTHER}
+_EQUAL_FORM, _UNEQUAL_FORM = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
+_EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>": _UNEQUAL_FORM}
 
 
 def equality(place: Place) -> Diagnostic | None:
-    """``a == b``, ``a != true``, ``a <> 3``, and ``a = b`` where a comparison was meant."""
+    """Report ``a == b``, ``a != true``, ``a <> 3``, and ``a = b`` where a comparison was meant."""
     sign, at = place.found.text, place.stop.index
-    expectation = place.tokens[0].text == "expect"
-    if sign not in _EQUAL or not (place.found.type != "EQUAL" or place.wants_operator or expectation):
+    is_expectation = place.tokens[0].text == "expect"
+    if sign not in _EQUAL or not (place.found.type != "EQUAL" or place.wants_operator or is_expectation):
         return None
     title = f"`{sign}` does not compare here" if place.found.type != "EQUAL" else "`=` does not compare"
-    if expectation:
+    if is_expectation:
         return place.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
     start, stop = side(place.tokens, at, -1), side(place.tokens, at, 1)
     a, b = written(place, start, at), written(place, at + 1, stop)
-    unequal, alike = _EQUAL[sign] == _OTHER, ""
+    is_unequal, boolean_text = _EQUAL[sign] == _UNEQUAL_FORM, ""
     if b.lower() in ("true", "false"):
-        text, reason = a if (b.lower() == "true") != unequal else f"not {a}", ": a `bool` signal is an atom by itself"
+        text, reason = (
+            a if (b.lower() == "true") != is_unequal else f"not {a}",
+            ": a `bool` signal is an atom by itself",
+        )
     else:
         text, reason = _EQUAL[sign].format(a=a, b=b), ""
         is_part = (start, stop) != (formula_start(place), formula_stop(place))
         text = f"({text})" if is_part else text
         if b in ("0", "1"):
-            alike = a if (b == "1") != unequal else f"not {a}"
-            reason = f", or `{alike}` where it is true or false"
+            boolean_text = a if (b == "1") != is_unequal else f"not {a}"
+            reason = f", or `{boolean_text}` where it is true or false"
         elif _is_atom(place, start, at) and _is_atom(place, at + 1, stop):
-            alike = f"({a} iff {b})" if is_part or unequal else f"{a} iff {b}"
-            alike = f"{'not ' * unequal}{alike}"
-            reason = f", or `{alike}` where both are true or false"
+            boolean_text = f"({a} iff {b})" if is_part or is_unequal else f"{a} iff {b}"
+            boolean_text = f"{'not ' * is_unequal}{boolean_text}"
+            reason = f", or `{boolean_text}` where both are true or false"
     general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
-    found = reworded(place, start, stop, text, title, reason, "TLT0110") if a and b else None
-    if found and found.fixes and alike:
-        # A predicate can be compared as a number and as what holds or does not.
-        found = replace(found, fixes=(*found.fixes, instead(place.source, span_of(place.tokens[start:stop]), alike)))
-    return found or place.error("TLT0110", title, general)
+    diagnostic = reworded(place, start, stop, text, title, reason, "TLT0110") if a and b else None
+    if diagnostic and diagnostic.fixes and boolean_text:
+        # A predicate can be compared as a number or as a truth value.
+        diagnostic = replace(
+            diagnostic,
+            fixes=(*diagnostic.fixes, instead(place.source, span_of(place.tokens[start:stop]), boolean_text)),
+        )
+    return diagnostic or place.error("TLT0110", title, general)
 
 
 def _is_atom(place: Place, start: int, stop: int) -> bool:
     """Whether some tokens are a name, with or without arguments."""
     kinds = [token.type for token in place.tokens[start:stop]]
-    behind = outside(place.tokens, start + 1, stop)
-    return kinds[:1] == ["NAME"] and all(place.tokens[index].type in ("LPAR", "RPAR") for index in behind)
+    rest = outside(place.tokens, start + 1, stop)
+    return kinds[:1] == ["NAME"] and all(place.tokens[index].type in ("LPAR", "RPAR") for index in rest)
 
 
 def chained(place: Place) -> Diagnostic | None:
-    """``a < b < c``, with as many comparisons as there are."""
+    """Report ``a < b < c``, with any number of comparisons."""
     at = place.stop.index
     if place.found.type not in COMPARISONS or not place.wants_operator:
         return None
@@ -85,12 +91,12 @@ def chained(place: Place) -> Diagnostic | None:
     text = " and ".join(comparisons)
     if (start, stop) != (formula_start(place), formula_stop(place)):
         text = f"({text})"
-    found = reworded(place, start, stop, text, title, code="TLT0110")
-    return found or place.error("TLT0110", title, "write `a < b and b < c`")
+    diagnostic = reworded(place, start, stop, text, title, code="TLT0110")
+    return diagnostic or place.error("TLT0110", title, "write `a < b and b < c`")
 
 
 def arrow(place: Place) -> Diagnostic | None:
-    """``a => b`` and ``a =< b``."""
+    """Report ``a => b`` and ``a =< b``."""
     at = place.stop.index
     after = place.tokens[at + 1 :][:2]
     if place.found.type != "EQUAL" or not place.wants_operator or not after or not touch(place.found, after[0]):
@@ -98,24 +104,24 @@ def arrow(place: Place) -> Diagnostic | None:
     sign = "=" + after[0].text
     if sign not in ("=>", "=<"):
         return None
-    number = len(after) > 1 and after[1].type == "NUMBER"
-    meant = "<=" if sign == "=<" else ">=" if number else "implies"
-    help_ = f"write `{meant}`" + (" or `->`" if meant == "implies" else "")
+    is_before_number = len(after) > 1 and after[1].type == "NUMBER"
+    operator = "<=" if sign == "=<" else ">=" if is_before_number else "implies"
+    help_ = f"write `{operator}`" + (" or `->`" if operator == "implies" else "")
     span = span_of(place.tokens[at : at + 2])
-    # Between goals, an arrow may be one of their order.
-    write = None if meant == "implies" and place.tokens[0].type == "REACH" else meant
+    # Between goals, an arrow may mean their order.
+    write = None if operator == "implies" and place.tokens[0].type == "REACH" else operator
     help_ = help_ if write else "write `then` for an order, `implies` for a condition"
     return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=write)
 
 
 def comment(place: Place) -> Diagnostic | None:
-    """``-- a comment``, whose words may be read as far as they make a formula."""
+    """Report ``-- a comment``; the parser may have read its first words as part of a formula."""
     tokens, at = place.tokens, place.stop.index
     for index in range(min(at, len(tokens) - 2), -1, -1):
-        first, second, behind = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
+        first, second, after = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
         if first.text == second.text == "-" and touch(first, second):
-            # `--3` is a number.
-            if index < at and behind and touch(second, behind[0]):
+            # `--3` is a number with two signs.
+            if index < at and after and touch(second, after[0]):
                 return None
             span = span_of([first, second])
             return place.error(
@@ -127,64 +133,64 @@ def comment(place: Place) -> Diagnostic | None:
 
 
 def unit(place: Place) -> Diagnostic | None:
-    """``20 seconds`` and ``3 feet``."""
-    number, found = place.before, place.found
-    if number is None or number.type != "NUMBER" or found.type != "NAME" or "UNIT" not in place.allowed:
+    """Report ``20 seconds`` and ``3 feet``."""
+    number, token = place.before, place.found
+    if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in place.allowed:
         return None
-    title = f"there is no unit {shown(found)}"
-    known = UNITS_ELSEWHERE.get(found.text.lower())
+    title = f"there is no unit {shown(token)}"
+    known = UNITS_ELSEWHERE.get(token.text.lower())
     if known == "%":
-        # Of something from 0 to 100 it is the number alone.
+        # For a value from 0 to 100, it is the number alone.
         help_ = (
             f"of a ratio, write `{number.text} %`, which is a hundredth of {number.text}; else `{number.text}` alone"
         )
         return place.error("TLT0111", title, help_)
     if known:
         text = f"{number.text} {known}"
-        return place.error("TLT0111", title, None, f"write `{text}`", span_of([number, found]), write=text)
+        return place.error("TLT0111", title, None, f"write `{text}`", span_of([number, token]), write=text)
     is_call = place.tokens[place.stop.index + 1].type == "LPAR"
     if is_call or place.allowed == {"UNIT"} or is_first_on_line(place.source, place.tokens, place.stop.index):
         return None
-    listed = ", ".join(f"`{each}`" for each in sorted(load().units))
-    help_ = f"the units are {listed}; a signal is compared, as in `{found.text} >= {number.text}`"
+    listed = ", ".join(f"`{name}`" for name in sorted(load().units))
+    help_ = f"the units are {listed}; a signal is compared, as in `{token.text} >= {number.text}`"
     return place.error("TLT0111", title, help_)
 
 
 def doubled(place: Place) -> Diagnostic | None:
-    """``a and then b``, ``a then then b``."""
-    before, found = place.before, place.found
-    if before is None or before.type not in INFIX or found.type not in INFIX or not place.wants_operand:
+    """Report ``a and then b``, ``a then then b``."""
+    before, token = place.before, place.found
+    if before is None or before.type not in INFIX or token.type not in INFIX or not place.wants_operand:
         return None
-    title = f"{shown(before)} and {shown(found)} stand side by side"
-    word = found.text if (before.type, found.type) == ("AND", "THEN") else before.text
-    # `keep a then b` asks for `b` after the last step, and `a or then b` may be about an order or a choice.
-    is_order = found.type == "THEN" and before.type in ("AND", "IMPLIES")
+    title = f"{shown(before)} and {shown(token)} stand side by side"
+    word = token.text if (before.type, token.type) == ("AND", "THEN") else before.text
+    # `keep a then b` requires `b` after the last step, and `a or then b` may mean an order or a choice.
+    is_order = token.type == "THEN" and before.type in ("AND", "IMPLIES")
     is_order = is_order and clause_asked(place, place.stop.index) != "keep"
-    write = word if found.type == before.type or is_order else None
+    write = word if token.type == before.type or is_order else None
     help_ = f"write `{write}` alone" if write else "leave one of the two out"
-    return place.error("TLT0101", title, help_, span=span_of([before, found]), write=write)
+    return place.error("TLT0101", title, help_, span=span_of([before, token]), write=write)
 
 
 def prefix_between(place: Place) -> Diagnostic | None:
-    """``reach a next b`` and ``keep a not b``."""
-    found, keyword, behind = place.found, place.tokens[0].text, place.stop.index + 1
-    last = behind + 1 >= len(place.tokens) or is_first_on_line(place.source, place.tokens, behind)
-    if last and (keyword, found.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):
+    """Report ``reach a next b`` and ``keep a not b``."""
+    token, keyword, following = place.found, place.tokens[0].text, place.stop.index + 1
+    is_last = following + 1 >= len(place.tokens) or is_first_on_line(place.source, place.tokens, following)
+    if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):
         help_ = f"leave it out: `{keyword}` says so already"
-        return place.error("TLT0101", f"{shown(found)} stands before a formula", help_)
-    if last or found.type not in {*BEFORE_ONE, "ALL", "ANY"} or not place.wants_operator:
+        return place.error("TLT0101", f"{shown(token)} stands before a formula", help_)
+    if is_last or token.type not in {*BEFORE_ONE, "ALL", "ANY"} or not place.wants_operator:
         return None
-    goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
-    meant = "then" if goal else f"and {found.text}"
-    title = f"{shown(found)} stands before one formula, not between two"
-    # Beside another operator, `and` may take too little; `next` and `always` may follow `and`, `implies` or `then`.
-    stops = outside(place.tokens, formula_start(place), formula_stop(place))
-    is_clear = found.type == "NOT" and all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
-    return place.error("TLT0101", title, f"write `{meant}`", write=meant if is_clear else None)
+    is_goal = keyword == "reach" and token.type in ("NEXT", "EVENTUALLY")
+    replacement = "then" if is_goal else f"and {token.text}"
+    title = f"{shown(token)} stands before one formula, not between two"
+    # Beside another operator, `and` may bind too tightly; `next` and `always` may follow `and`, `implies` or `then`.
+    indices = outside(place.tokens, formula_start(place), formula_stop(place))
+    is_clear = token.type == "NOT" and all(place.tokens[index].type not in INFIX - {"AND"} for index in indices)
+    return place.error("TLT0101", title, f"write `{replacement}`", write=replacement if is_clear else None)
 
 
 def side(tokens: Sequence[Token], at: int, step: int) -> int:
-    """Where the value before (``step`` -1) or behind (1) the sign at ``at`` begins or ends."""
+    """Return where the value before (``step`` -1) or after (``step`` 1) the operator at ``at`` begins or ends."""
     index, depth = at + step, 0
     while 0 <= index < len(tokens):
         kind = tokens[index].type

@@ -1,4 +1,4 @@
-"""Where a new declaration goes: on a line of its own, behind the imports or before everything else."""
+"""Find the place for a new declaration: on its own line, after the imports or before everything else."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from tltlc.grammar.tree import Comment, Import, Module
 
 
 def at_top(module: Module, line: str) -> Edit:
-    """The edit that adds a line behind the imports, or before the first declaration and its documentation."""
+    """Return the edit that adds a line after the imports, or before the first declaration and its documentation."""
     source = module.source
     newline = "\r\n" if "\r\n" in source.text else "\n"
-    imports = [each for each in module.declarations if isinstance(each, Import)]
+    imports = [declaration for declaration in module.declarations if isinstance(declaration, Import)]
     if imports:
         start = imports[-1].span.end
         end = _line_end(source, start)
         if source.text[start:end].lstrip().startswith("//") or not source.text[start:end].strip():
             return Edit(Span(end, end), f"{newline}{line}")
-        # The line goes on, perhaps with a spec of several lines.
+        # Another statement follows on the line; it may be a spec of several lines.
         return Edit(Span(start, start), f"{newline}{line}{newline}")
-    first = min((each.span.start for each in module.declarations), default=len(source.text))
+    first = min((declaration.span.start for declaration in module.declarations), default=len(source.text))
     _, column = source.position(documented(source, first, module.comments))
     start = documented(source, first, module.comments) - column + 1
     return Edit(Span(start, start), f"{line}{newline}")
 
 
 def documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
-    """Where the documentation of a place begins, with other comments in it; the place itself where there is none."""
+    """Return where the documentation before a place begins, other comments in between included; else the place."""
     first = start
-    for index in reversed(range(bisect_right(comments, start, key=lambda each: each.span.end))):
+    for index in reversed(range(bisect_right(comments, start, key=lambda comment: comment.span.end))):
         comment = comments[index]
         if source.text[comment.span.end : start].strip():
             break
@@ -42,6 +42,6 @@ def documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> i
 
 
 def _line_end(source: SourceFile, offset: int) -> int:
-    """Return the offset at which the line of ``offset`` ends."""
+    """Return the offset of the end of the line that contains ``offset``."""
     number, column = source.position(offset)
     return offset - column + 1 + len(source.line(number))

@@ -1,4 +1,4 @@
-"""What to say where a text cannot be read on: what was expected, in plain words, and how to mend it."""
+"""The message for a token that fits nowhere: what was expected, in plain words, and how to fix it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _BOUNDED: Final = BEFORE_ONE - {"NOT"}
 
 
 def unexpected(source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str) -> Diagnostic:
-    """The error for a token that fits nowhere; ``tokens`` are those of one piece, read as a ``start``."""
+    """Return the error for a token that fits nowhere; ``tokens`` are one piece, parsed as a ``start``."""
     place = Place(source, tokens, error, start)
     for rule in _RULES:
         diagnostic = rule(place)
@@ -37,14 +37,14 @@ def unexpected(source: SourceFile, tokens: Sequence[Token], error: lalr.Unexpect
 
 
 def never_closed(source: SourceFile, opening: Token) -> Diagnostic:
-    """The error for a bracket without its partner."""
+    """Return the error for a bracket that is never closed."""
     closing = {"(": ")", "[": "]", "{": "}"}[opening.text]
     title = f"this `{opening.text}` is never closed"
     return Diagnostic("TLT0105", title, (Label(source, opening.span),), f"write the missing `{closing}`")
 
 
 def _brackets(place: Place) -> Diagnostic | None:
-    """A bracket without its partner."""
+    """Report a bracket without its partner."""
     token = place.found
     if token.type in OPENING.values():
         opening = place.open_brackets[-1] if place.open_brackets else None
@@ -59,7 +59,7 @@ def _brackets(place: Place) -> Diagnostic | None:
 
 
 def _bounds(place: Place) -> Diagnostic | None:
-    """A bound without a unit, with a name for a number, or behind an operator that takes none."""
+    """Report a bound without a unit, with a name for a number, or after an operator that takes none."""
     before = place.before
     if place.found.type == "NAME" and before and _is_bound(place):
         example = "F[0, 20]" if before.text in ("[", ",") else f"{before.text} 20 steps"
@@ -81,7 +81,7 @@ def _bounds(place: Place) -> Diagnostic | None:
 
 
 def _no_number(place: Place) -> Diagnostic:
-    """``F[-1,2] p`` and ``X[!] p``."""
+    """Report ``F[-1,2] p`` and ``X[!] p``."""
     operator = place.tokens[_opening(place) - 1]
     if operator.type in _NEXTS:
         return place.error(
@@ -93,7 +93,7 @@ def _no_number(place: Place) -> Diagnostic:
 
 
 def _one_end(place: Place, number: str) -> Diagnostic:
-    """``F[20] p`` and ``next[20] p``."""
+    """Report ``F[20] p`` and ``next[20] p``."""
     operator = place.tokens[_opening(place) - 1]
     if operator.type in _NEXTS:
         return place.error("TLT0111", f"`{operator.text}` takes no bound in brackets", f"`next after {number} steps p`")
@@ -103,13 +103,13 @@ def _one_end(place: Place, number: str) -> Diagnostic:
 
 
 def _opening(place: Place) -> int:
-    """Where the innermost open bracket stands among the tokens."""
+    """Return the index of the innermost open bracket among the tokens."""
     opening = place.open_brackets[-1]
     return next(index for index, token in enumerate(place.tokens) if token is opening)
 
 
 def _is_bound(place: Place) -> bool:
-    """Whether a number of a bound should stand here, as in ``F[0,`` or ``eventually within``."""
+    """Whether a number of a bound is expected here, as in ``F[0,`` or ``eventually within``."""
     index = place.stop.index - 1
     if place.open_brackets and place.open_brackets[-1].text == "[":
         index = _opening(place)
@@ -119,12 +119,12 @@ def _is_bound(place: Place) -> bool:
 
 
 def _reserved(place: Place) -> Diagnostic | None:
-    """A reserved word where a name should stand."""
+    """Report a reserved word where a name is expected."""
     token = place.found
     if "NAME" not in place.allowed or token.text not in load().words:
         return None
-    keyword = token.text in DECLARATIONS or token.text in CLAUSES
-    if (place.wants_operand and not keyword) or (place.before and place.before.text == "expect"):
+    is_keyword = token.text in DECLARATIONS or token.text in CLAUSES
+    if (place.wants_operand and not is_keyword) or (place.before and place.before.text == "expect"):
         return None
     help_ = f"choose another name, for example `{token.text.lower()}_`"
     if place.before and place.before.type == "IMPORT":
@@ -133,7 +133,7 @@ def _reserved(place: Place) -> Diagnostic | None:
 
 
 def _missing_type(place: Place) -> Diagnostic | None:
-    """``signal a: in [0, 1]``, where `in` was taken for the type."""
+    """Report ``signal a: in [0, 1]``, where `in` was read as the type."""
     before = place.before
     if place.found.type != "LSQB" or before is None or before.text != "in" or "LSQB" in place.allowed:
         return None
@@ -141,7 +141,7 @@ def _missing_type(place: Place) -> Diagnostic | None:
 
 
 def _quantified(place: Place) -> Diagnostic | None:
-    """``all x in a: p`` and ``all(p, q)``: the head of a quantifier."""
+    """Report ``all x in a: p`` and ``all(p, q)``: an error in the head of a quantifier."""
     heads = [token for token in place.tokens[: place.stop.index] if token.type in ("ALL", "ANY", "COLON")]
     if not heads or heads[-1].type == "COLON":
         return None
@@ -151,7 +151,7 @@ def _quantified(place: Place) -> Diagnostic | None:
 
 
 def _misspelt_operator(place: Place) -> Diagnostic | None:
-    """A name where an operator should stand."""
+    """Report a name where an operator is expected."""
     before, token = place.before, place.found
     if before is None or not place.wants_operator:
         return None
@@ -166,30 +166,30 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
     near = closest(token.text, words) if token.type == "NAME" else None
     if near and _is_before_operand(place):
         return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?", write=near)
-    meant = before.text.lower()
-    if meant not in load().words and meant != "no":
+    operator = before.text.lower()
+    if operator not in load().words and operator != "no":
         prefixes = (word for word, terminal in load().words.items() if terminal in {*BEFORE_ONE, "WHEN"})
         known = tuple(word for word in prefixes if len(word) > 3) if token.type == "NAME" else ()
-        meant = closest(before.text, known) or ""
-        # Names such as `exit` are as like to `next` as its misspellings, but begin with another letter.
-        meant = meant if before.text[:1].lower() == meant[:1] or before.text.lower() == meant[1:] else ""
-    if not meant or before.type != "NAME":
+        operator = closest(before.text, known) or ""
+        # `exit` resembles `next` as much as a typo of it does, but begins with another letter.
+        operator = operator if before.text[:1].lower() == operator[:1] or before.text.lower() == operator[1:] else ""
+    if not operator or before.type != "NAME":
         return None
     title = f"`{before.text}` is no operator"
-    if meant == "no" and has(place, place.stop.index, formula_stop(place), INFIX):
+    if operator == "no" and has(place, place.stop.index, formula_stop(place), INFIX):
         return place.error("TLT0101", title, "`(not a) or b` is about one, `not (a or b)` about both")
-    meant = "not" if meant == "no" else meant
-    return place.error("TLT0101", title, None, f"did you mean `{meant}`?", before.span, write=meant)
+    operator = "not" if operator == "no" else operator
+    return place.error("TLT0101", title, None, f"did you mean `{operator}`?", before.span, write=operator)
 
 
 def _is_before_operand(place: Place) -> bool:
-    """Whether something that an operator could stand before comes behind the token that was found."""
+    """Whether an operand, or an operator before one, comes after the token that fits nowhere."""
     after = place.tokens[place.stop.index + 1]
     return after.type in OPERAND | BEFORE_ONE
 
 
 def _is(place: Place) -> Diagnostic | None:
-    """``seen is true`` and ``coins is more than 3``."""
+    """Report ``seen is true`` and ``coins is more than 3``."""
     at, after = place.stop.index, [token.text for token in place.tokens[place.stop.index + 1 :]]
     if place.found.text not in ("is", "are") or not place.wants_operator or place.before is None or not after:
         return None
@@ -197,52 +197,52 @@ def _is(place: Place) -> Diagnostic | None:
     start = side(place.tokens, at, -1)
     value = written(place, start, at)
     words = {"true": "{}", "false": "not {}", "not": "not {}"}
-    found: Diagnostic | None = None
+    diagnostic: Diagnostic | None = None
     if after[0] in words:
         stop = at + 2 + (after[0] == "not" and after[1:2] in (["true"], ["false"]))
         text = words[after[0]].format(value)
-        # `a or b is false` and `always a is false` may be about all that stands before it.
+        # `a or b is false` and `always a is false` may mean all that stands before.
         is_clear = text == value or not has(place, formula_start(place), start, INFIX | BEFORE_ONE | QUANTIFIERS)
         if is_clear:
-            found = reworded(place, start, stop, text, title, ": a `bool` signal is an atom by itself")
+            diagnostic = reworded(place, start, stop, text, title, ": a `bool` signal is an atom by itself")
     help_ = f"`{value}` by itself says that it is true, `not {value}` that it is not; numbers compare by `<` and `>`"
-    return found or place.error("TLT0101", title, help_)
+    return diagnostic or place.error("TLT0101", title, help_)
 
 
 def _otherwise(place: Place) -> Diagnostic | None:
-    """``when a: 1 else: 0``."""
+    """Report ``when a: 1 else: 0``."""
     if place.found.text not in ("else", "default") or "OTHERWISE" not in place.allowed:
         return None
     return place.error("TLT0101", f"{shown(place.found)} begins no case", "write `otherwise`", write="otherwise")
 
 
 def _cases(place: Place) -> Diagnostic | None:
-    """``when a then 1`` and ``when a: 1`` without the rest."""
+    """Report ``when a then 1``, and ``when a: 1`` without the remaining cases."""
     if not any(token.type == "WHEN" for token in place.tokens[: place.stop.index]):
         return None
     return place.error("TLT0101", place.expectation(), CASES)
 
 
 def _side_by_side(place: Place) -> Diagnostic | None:
-    """``near s1``."""
-    before, found = place.before, place.found
-    if before is None or found.type != "NAME" or not place.wants_operator or before.type not in ("NAME", "RPAR"):
+    """Report ``near s1``."""
+    before, token = place.before, place.found
+    if before is None or token.type != "NAME" or not place.wants_operator or before.type not in ("NAME", "RPAR"):
         return None
     if is_first_on_line(place.source, place.tokens, place.stop.index):
         return None
     if before.type == "RPAR" or place.tokens[place.stop.index + 1].type == "LPAR":
-        title = f"no operator between {shown(before)} and {shown(found)}"
+        title = f"no operator between {shown(before)} and {shown(token)}"
         return place.error("TLT0101", title, "formulas are joined by `and`, `or` or `then`")
     if _is_before_operand(place):
-        return place.error("TLT0101", f"{shown(found)} is no operator", "formulas are joined by `and`, `or` or `then`")
-    text = f"{before.text}({found.text})"
+        return place.error("TLT0101", f"{shown(token)} is no operator", "formulas are joined by `and`, `or` or `then`")
+    text = f"{before.text}({token.text})"
     help_ = f"write `{text}` where the one is said of the other; else join them by `and` or `then`"
-    title = f"{shown(before)} and {shown(found)} are not joined"
-    return place.error("TLT0101", title, help_, span=span_of([before, found]), write=text)
+    title = f"{shown(before)} and {shown(token)} are not joined"
+    return place.error("TLT0101", title, help_, span=span_of([before, token]), write=text)
 
 
 def _operator_for_name(place: Place) -> Diagnostic | None:
-    """``keep next``."""
+    """Report ``keep next``."""
     if not place.wants_operand:
         return None
     for word, kinds, where in (

@@ -1,4 +1,4 @@
-"""Where plain English has one reading alone, so that an edit can be offered for it."""
+"""Decide whether plain English has only one reading here, so that a fix can be offered."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, UNTILS, Place, outsi
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop
 
 UNCLEAR: Final = INFIX - {"AND", "OR"}
-"""Operators beside which it is not clear what a word or a time belongs to."""
+"""Operators beside which it is unclear what a word or a time applies to."""
 TEMPORAL: Final = BEFORE_ONE - {"NOT"}
 QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
 _ORDER: Final = ("before", "after", "followed")
 _STATES: Final = ("but", "xor", "xnor", "nor", "nand", "without")
-"""Words that join two states of one step: their forms mean the same in each clause, in brackets too."""
+"""Words that join two states at one step; their forms mean the same in all clauses, also in brackets."""
 _NEGATED: Final = {
     "keep": ("before", "after", "unless", *CONDITIONS, "during"),
     "require": ("if",),
 }
-"""By clause, the words for which `not a WORD b` means the same whether the `not` covers `a` alone or all of it."""
+"""By clause, the words for which `not a WORD b` means the same whether `not` applies to `a` or to all of it."""
 _AS_WRITTEN: Final = ("but", "xor", "xnor")
-"""Such words in every clause."""
+"""More such words, for all clauses."""
 _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
 
 
 def has(place: Place, start: int, stop: int, kinds: Collection[str]) -> bool:
-    """Whether one of these kinds of tokens stands outside brackets in a part."""
+    """Whether a token of these kinds stands outside brackets in a part."""
     return any(place.tokens[index].type in kinds for index in outside(place.tokens, start, stop))
 
 
@@ -38,16 +38,16 @@ def is_of_one_step(place: Place, start: int, stop: int) -> bool:
 
 
 def is_clear_word(place: Place, word: str, left: tuple[int, int], right: tuple[int, int], kind: str) -> bool:
-    """Whether `a WORD b` has one reading in a clause of this kind, by what its two sides are."""
+    """Whether `a WORD b` has only one reading in a clause of this kind, judged by its two sides."""
     sides = (left, right)
     if any(has(place, *side, UNCLEAR | TEMPORAL) for side in sides):
         return False
     if has(place, *left, {"NOT"}) and word not in (*_NEGATED.get(kind, ()), *_AS_WRITTEN):
         return False
     if word in (*CONDITIONS, "during"):
-        # `a and b if c` has both readings where `and` and the form of `if` are different operators.
-        others = ({"OR"}, {"OR"}) if kind in ("reach", "avoid") else ({"AND"}, {"AND", "OR"})
-        if has(place, *left, others[0]) or has(place, *right, others[1]):
+        # `a and b if c` has two readings if `and` differs from the operator in the form of `if`.
+        left_kinds, right_kinds = ({"OR"}, {"OR"}) if kind in ("reach", "avoid") else ({"AND"}, {"AND", "OR"})
+        if has(place, *left, left_kinds) or has(place, *right, right_kinds):
             return False
         return not _has_variable_of(place, left, right)
     if has(place, *left, QUANTIFIERS):
@@ -55,11 +55,11 @@ def is_clear_word(place: Place, word: str, left: tuple[int, int], right: tuple[i
     if word == "but":
         return not any(has(place, *side, {"OR"}) for side in sides)
     if word == "without":
-        # Of a goal, it can be about the whole plan.
-        joined = {"AND", "OR"} if kind == "reach" else {"OR"}
-        is_apart = has(place, *left, joined) or has(place, *right, INFIX)
-        return not is_apart and all(is_of_one_step(place, *side) for side in sides)
-    # `a or b unless c` is the same either way where `unless` is an `or` itself.
+        # After a goal, it may apply to all goals of the plan.
+        ambiguous = {"AND", "OR"} if kind == "reach" else {"OR"}
+        is_ambiguous = has(place, *left, ambiguous) or has(place, *right, INFIX)
+        return not is_ambiguous and all(is_of_one_step(place, *side) for side in sides)
+    # `a or b unless c` has one meaning if `unless` itself is an `or`.
     is_or = word == "unless" and kind in ("reach", "keep")
     if any(has(place, *side, INFIX - {"OR"} if is_or else INFIX) for side in sides):
         return False
@@ -67,12 +67,12 @@ def is_clear_word(place: Place, word: str, left: tuple[int, int], right: tuple[i
 
 
 def is_clear_here(place: Place, word: str) -> bool:
-    """Whether the form for any clause is right at this place, by the clause and by what stands around brackets."""
+    """Whether the form is right at this place, judged by the clause and by what stands around open brackets."""
     clause = place.tokens[0].text if place.start == "clause" else ""
     if word in _STATES:
         return not _in_call(place)
     if place.tokens[0].type == "LET" or _in_call(place):
-        # It may be used as a goal and as a rule.
+        # The definition may be used both as a goal and as a rule.
         return False
     if word in (*CONDITIONS, "during"):
         is_rule = clause == "keep" or has_always_before(place) or (place.start == "clause" and not place.stop.index)
@@ -83,7 +83,7 @@ def is_clear_here(place: Place, word: str) -> bool:
 
 
 def is_clear_time_here(place: Place, *, may_be_negated: bool, may_be_kept: bool) -> bool:
-    """Whether a time may belong to the formula in the open brackets, judged by what stands around them."""
+    """Whether a time may apply to the formula in the open brackets, judged by what stands around them."""
     if place.tokens[0].type == "LET" or _in_call(place):
         return False
     kinds = {*_IN_RULES, *(("NOT",) if may_be_negated else ()), *(("ALWAYS",) if may_be_kept else ())}
@@ -91,48 +91,48 @@ def is_clear_time_here(place: Place, *, may_be_negated: bool, may_be_kept: bool)
 
 
 def has_always_before(place: Place) -> bool:
-    """Whether an open bracket follows `always`."""
+    """Whether an open bracket directly follows `always`."""
     return any(before is not None and before.type == "ALWAYS" for before in _before_brackets(place))
 
 
 def clause_asked(place: Place, at: int) -> str:
-    """The clause that asks for what stands before ``at``: an operator before it counts like its keyword."""
+    """Return the clause that the tokens before ``at`` amount to; `always` and `eventually` count as its keyword."""
     clause = place.tokens[0].text if place.start == "clause" else ""
     kinds = [token.type for token in place.tokens[:at]]
     return "keep" if "ALWAYS" in kinds else "reach" if "EVENTUALLY" in kinds else clause
 
 
 def _has_variable_of(place: Place, left: tuple[int, int], right: tuple[int, int]) -> bool:
-    """Whether a variable that is quantified on the left stands on the right, which the quantifier would not reach."""
+    """Whether a variable that is quantified on the left is used on the right, outside the quantifier's scope."""
     heads = (index + 1 for index in outside(place.tokens, *left) if place.tokens[index].type in QUANTIFIERS)
     variables = {place.tokens[index].text for index in heads}
     return any(token.text in variables for token in place.tokens[slice(*right)])
 
 
 def _is_in(place: Place, kinds: Collection[str]) -> bool:
-    """Whether only operators of these kinds stand before the open brackets, and `and` and `or` behind them."""
+    """Whether only operators of these kinds stand before the open brackets, and only `and` and `or` after them."""
     operators = INFIX | BEFORE_ONE | QUANTIFIERS
     start, stop = _first(place), formula_stop(place)
     opening = {id(token) for token in place.open_brackets}
     before: list[Token] = []
     for index, token in enumerate(place.tokens[: formula_start(place)]):
         if id(token) in opening:
-            before += (place.tokens[each] for each in outside(place.tokens, start, index))
+            before += (place.tokens[i] for i in outside(place.tokens, start, index))
             start = index + 1
-    behind = (place.tokens[each] for each in outside(place.tokens, stop, len(place.tokens)))
+    after = (place.tokens[i] for i in outside(place.tokens, stop, len(place.tokens)))
     return all(token.type in kinds for token in before if token.type in operators) and all(
-        token.type in ("AND", "OR") for token in behind if token.type in operators
+        token.type in ("AND", "OR") for token in after if token.type in operators
     )
 
 
 def _in_call(place: Place) -> bool:
-    """Whether an open bracket is that of a call, or of anything else but a formula."""
+    """Whether an open bracket belongs to a call, or to anything else but a formula."""
     brackets = any(token.type != "LPAR" for token in place.open_brackets)
     return brackets or any(before is not None and before.type == "NAME" for before in _before_brackets(place))
 
 
 def _before_brackets(place: Place) -> list[Token | None]:
-    """The token before each open bracket."""
+    """Return the token before each open bracket, or None if there is none."""
     opening = {id(token) for token in place.open_brackets}
     return [
         place.tokens[index - 1] if index else None for index, token in enumerate(place.tokens) if id(token) in opening
@@ -140,7 +140,7 @@ def _before_brackets(place: Place) -> list[Token | None]:
 
 
 def _first(place: Place) -> int:
-    """Where the formula of the whole piece begins."""
+    """Return the index where the formula of the whole piece begins."""
     if place.start == "declaration":
         return next((index + 1 for index, token in enumerate(place.tokens) if token.type == "EQUAL"), 0)
     return 1 if place.start == "clause" else 0

@@ -1,4 +1,4 @@
-"""The place where a text cannot be read on, and what could stand there, in plain words."""
+"""The place where parsing failed, and what could stand there, in plain words."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.grammar.tables import load
 
 KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
 NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
-"""The keywords that begin each kind of piece, and what messages call it; any other start is a formula."""
+"""The keywords of each kind of piece, and its name in messages; a piece of any other kind is a formula."""
 
 OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
 CLOSING: Final = frozenset(OPENING.values())
@@ -29,13 +29,13 @@ BEFORE_ONE: Final = {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "NOT"}
 OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
 _KINDS: Final = {"NAME": "a name", "NUMBER": "a number", "STRING": "a text in quotes", "UNIT": "a unit"}
 _FEW: Final = 4
-"""How many things that could stand at a place a title names."""
+"""The most alternatives that a title lists."""
 
 
 class Place:
-    """Where reading ended: the token that fits nowhere, the tokens around it, and what could stand there.
+    """The place where parsing failed: the token that fits nowhere, the tokens around it, and what could stand there.
 
-    ``tokens`` are those of one piece, read as a ``start`` until ``stop``.
+    ``tokens`` are the tokens of one piece, parsed as a ``start`` up to ``stop``.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Place:
 
     @property
     def before(self) -> Token | None:
-        """The token in front of it, if there is one."""
+        """The token before :attr:`found`, or None."""
         return self.tokens[self.stop.index - 1] if self.stop.index else None
 
     @property
@@ -74,7 +74,7 @@ class Place:
 
     @property
     def wants_operator(self) -> bool:
-        """Whether a formula could end or go on here."""
+        """Whether a formula could end or continue here."""
         return "AND" in self.allowed
 
     @cached_property
@@ -89,7 +89,7 @@ class Place:
         return stack
 
     def form(self) -> str | None:
-        """The form of the piece as a help, by its keyword."""
+        """Return a help with the form of the piece, by its keyword, or None."""
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 
@@ -103,9 +103,9 @@ class Place:
         *,
         write: str | None = None,
     ) -> Diagnostic:
-        """An error at the token that was found; at the end of a piece, at its last token.
+        """Return an error at the token :attr:`found`, or at the last token if the piece ends too early.
 
-        Its fix is to ``write`` something else there, where that is given and no comment stands there.
+        Its fix replaces the span by ``write``, if that is given and the span contains no comment.
         """
         if span is None:
             span = self.before.span if self.at_end and self.before else self.found.span
@@ -113,19 +113,19 @@ class Place:
         return Diagnostic(code, title, (Label(self.source, span, message),), help_, fixes=fixes)
 
     def _has_comment(self, span: Span) -> bool:
-        """Whether a comment stands between the tokens of a span."""
+        """Whether a comment lies between the tokens of a span."""
         text = self.source.text
         inside = [token for token in self.tokens if span.start <= token.start and token.end <= span.end]
-        return any("//" in text[one.end : other.start] for one, other in pairwise(inside))
+        return any("//" in text[left.end : right.start] for left, right in pairwise(inside))
 
     def expectation(self) -> str:
-        """``expected … after …, found …``."""
+        """Return ``expected … after …, found …``."""
         before = f" after {shown(self.before)}" if self.before else ""
         found = "" if self.at_end else f", found {shown(self.found)}"
         return f"expected {self.wanted()}{before}{found}"
 
     def wanted(self) -> str:
-        """What could stand here, in plain words."""
+        """Return what could stand here, in plain words."""
         if self.wants_operand:
             if self.before and self.before.type in ARITHMETIC:
                 return "a value"
@@ -139,9 +139,9 @@ class Place:
         signs = _spellings({**load().soft, **load().signs})
         items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]
         words = _spellings(load().words)
-        named = [f"`{words[kind]}`" for kind in sorted(allowed) if kind in words]
-        if len(named) <= _FEW:
-            items += named
+        keywords = [f"`{words[kind]}`" for kind in sorted(allowed) if kind in words]
+        if len(keywords) <= _FEW:
+            items += keywords
         if END in allowed and len(items) < 2:
             items.append(f"the end of the {NOUNS.get(self.start, 'formula')}")
         items = items[:_FEW] or [f"a {NOUNS.get(self.start, 'formula')}"]
@@ -149,7 +149,7 @@ class Place:
 
 
 def outside(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
-    """The indices from ``start`` up to ``stop`` of the tokens outside brackets, with the brackets themselves."""
+    """Yield the indices from ``start`` up to ``stop`` of the tokens outside brackets, and of the outermost brackets."""
     depth = 0
     for index in range(start, stop):
         depth -= tokens[index].type in CLOSING
@@ -159,21 +159,21 @@ def outside(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
 
 
 def touch(left: Token, right: Token) -> bool:
-    """Whether two tokens stand side by side, without a blank."""
+    """Whether two tokens are adjacent, without a space."""
     return left.end == right.start
 
 
 def shown(token: Token | None) -> str:
-    """A token as it stands in the text, short enough for a title."""
+    """Return a token as it stands in the text, shortened for a title."""
     text = token.text if token else ""
     return f"`{text}`" if len(text) <= 30 else f"`{text[:29]}…`"
 
 
 def _spellings(terminals: dict[str, str]) -> dict[str, str]:
-    """One spelling of each terminal, in ASCII where there is one."""
+    """Return one spelling of each terminal, in ASCII if there is one."""
     return {terminal: text for text, terminal in sorted(terminals.items(), key=lambda item: item[0].isascii())}
 
 
 def declares_clock(source: SourceFile) -> bool:
-    """Whether the file seems to declare a clock, so that a number of time may be one of steps or of seconds."""
+    """Whether the file seems to declare a clock, so that a time may be in steps or in seconds."""
     return re.search(r"^[ \t]*clock[ \t]+[0-9.]", source.text, re.MULTILINE) is not None

@@ -1,4 +1,4 @@
-"""Commas, brackets, quotes and names that are written in another way elsewhere."""
+"""Report commas, brackets, quotes and names in a form that other languages use."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _COMMA: Final = {
     "reach": ("then", " for the one after the other; `and` asks for both at one step"),
     "avoid": ("or", ""),
 }
-"""What joins the formulas of a clause, where it is not `and`."""
+"""By clause, the operator that joins formulas, with a reason for the message; in other clauses, it is `and`."""
 _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
 
 
 def comma(place: Place) -> Diagnostic | None:
-    """``reach a, b``, ``keep a,`` and ``3,5 m``."""
+    """Report ``reach a, b``, ``keep a,`` and ``3,5 m``."""
     before, at = place.before, place.stop.index
     if place.found.type != "COMMA" or before is None or not place.wants_operator or place.open_brackets:
         return None
@@ -42,15 +42,15 @@ def comma(place: Place) -> Diagnostic | None:
     if not _is_clear_list(place, start, stop, word):
         help_ = "write `and`, `or` or `then` in its place, with brackets around what belongs together"
         return place.error("TLT0104", title, help_)
-    found = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
-    return found or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+    diagnostic = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
+    return diagnostic or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
 
 
 def _comma_before_clause(place: Place) -> Diagnostic:
-    """``avoid a, reach b``: two clauses."""
+    """Report ``avoid a, reach b``, which are two clauses."""
     at, first = place.stop.index, place.tokens[0].text
     word, title, span = place.tokens[at + 1].text, "`,` joins no clauses", span_of(place.tokens[at : at + 2])
-    # What is kept or avoided behind a goal may begin there, and what follows `or` may be a choice.
+    # After a goal, `keep` or `avoid` may apply from there on; and what follows `or` may be an alternative.
     is_clear = first != "reach" and not has(place, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
     if not is_clear:
         return place.error("TLT0104", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
@@ -58,9 +58,9 @@ def _comma_before_clause(place: Place) -> Diagnostic:
 
 
 def _is_clear_list(place: Place, start: int, stop: int, word: str) -> bool:
-    """Whether commas can stand for this word alone, by the operators that stand beside them.
+    """Whether all commas can mean this word, judged by the operators beside them.
 
-    In English, the operator before the last part is that of the whole list: `a, b or c` is `a or b or c`.
+    In English, the operator before the last part applies to the whole list: `a, b or c` is `a or b or c`.
     """
     tokens, operator = place.tokens, word.upper()
     kinds = [(index, tokens[index].type) for index in outside(tokens, start, stop)]
@@ -68,18 +68,22 @@ def _is_clear_list(place: Place, start: int, stop: int, word: str) -> bool:
     if any(token.text in CLAUSES and token.type != "NAME" for token in tokens[start:stop]):
         return False
     if operator == "THEN":
-        last = [kind for index, kind in kinds if index > commas[-1] and kind in INFIX]
-        begun = [tokens[index + 1].type for index in commas if tokens[index + 1].type in INFIX]
-        # What is no goal may be what must not hold at one: `reach a, not b`.
+        after_last = [kind for index, kind in kinds if index > commas[-1] and kind in INFIX]
+        after_commas = [tokens[index + 1].type for index in commas if tokens[index + 1].type in INFIX]
+        # A negated part may be a condition on a goal instead of a goal: `reach a, not b`.
         if any(kind == "NOT" for _, kind in kinds):
             return False
-        return set(last) <= {"THEN"} and set(begun) <= {"THEN"} and not has(place, start, stop, UNCLEAR - {"THEN"})
-    # `not a, b` and `always a, b` may be about both.
+        return (
+            set(after_last) <= {"THEN"}
+            and set(after_commas) <= {"THEN"}
+            and not has(place, start, stop, UNCLEAR - {"THEN"})
+        )
+    # In `not a, b` and `always a, b`, the operator may apply to both.
     return not has(place, start, stop, INFIX - {operator}) and not has(place, start, commas[-1], BEFORE_ONE)
 
 
 def _comma_in_number(place: Place) -> Diagnostic:
-    """``2,5``, and ``1,000``, which is a thousand in one country and one in another."""
+    """Report ``2,5``, and ``1,000``, which some countries read as a thousand and others as one."""
     at = place.stop.index
     stop = at + 2
     while place.tokens[stop].type == "COMMA" and place.tokens[stop + 1].type == "NUMBER" and _touch(place, stop):
@@ -98,13 +102,13 @@ def _comma_in_number(place: Place) -> Diagnostic:
 
 
 def _touch(place: Place, at: int) -> bool:
-    """Whether a token touches both the one before it and the one behind it."""
-    before, found, behind = place.tokens[at - 1 : at + 2]
-    return touch(before, found) and touch(found, behind)
+    """Whether a token touches both the token before it and the token after it."""
+    before, token, after = place.tokens[at - 1 : at + 2]
+    return touch(before, token) and touch(token, after)
 
 
 def _joined(place: Place, start: int, stop: int, word: str) -> str:
-    """Tokens with a word in place of each comma outside brackets, or with none where an operator follows anyway."""
+    """Return tokens with a word in place of each comma outside brackets; a comma before an operator is dropped."""
     text = ""
     for end in [*(index for index in outside(place.tokens, start, stop) if place.tokens[index].type == "COMMA"), stop]:
         part = _goal(place, start, end) if word == "then" else operand(place, start, end)
@@ -119,7 +123,7 @@ def _joined(place: Place, start: int, stop: int, word: str) -> str:
 
 
 def _goal(place: Place, start: int, stop: int) -> str:
-    """Tokens before `then`: a quantifier in brackets, as it reaches as far as it can, over the `then` too."""
+    """Return tokens before `then`, with a quantifier in brackets, since it would extend over the `then`."""
     quantifiers = (index for index in outside(place.tokens, start, stop) if place.tokens[index].type in QUANTIFIERS)
     at = next(quantifiers, None)
     if at is None:
@@ -128,9 +132,9 @@ def _goal(place: Place, start: int, stop: int) -> str:
 
 
 def missing_comma(place: Place) -> Diagnostic | None:
-    """``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
-    before, found = place.before, place.found
-    if before is None or "COMMA" not in place.allowed or found.type not in ("NAME", "NUMBER"):
+    """Report ``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
+    before, token = place.before, place.found
+    if before is None or "COMMA" not in place.allowed or token.type not in ("NAME", "NUMBER"):
         return None
     if is_first_on_line(place.source, place.tokens, place.stop.index):
         return None
@@ -139,14 +143,14 @@ def missing_comma(place: Place) -> Diagnostic | None:
         return place.error("TLT0104", "`,` means nothing here", left_out(place), span=span)
     if before.type not in ("NAME", "NUMBER", "UNIT", "RPAR") or before.text in TEST_ITEMS:
         return None
-    number = before.type == "UNIT"
-    text = f"{written(place, place.stop.index - 1 - number, place.stop.index)}, {found.text}"
-    span = span_of(place.tokens[place.stop.index - 1 - number : place.stop.index + 1])
+    has_unit = before.type == "UNIT"
+    text = f"{written(place, place.stop.index - 1 - has_unit, place.stop.index)}, {token.text}"
+    span = span_of(place.tokens[place.stop.index - 1 - has_unit : place.stop.index + 1])
     return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span, write=text)
 
 
 def argument(place: Place) -> Diagnostic | None:
-    """``near(s1, close: 3 m)`` and ``near(s1, close 3 m)``."""
+    """Report ``near(s1, close: 3 m)`` and ``near(s1, close 3 m)``."""
     before = place.before
     if before is None or before.type != "NAME" or "EQUAL" not in place.allowed or not place.open_brackets:
         return None
@@ -161,7 +165,7 @@ def argument(place: Place) -> Diagnostic | None:
 
 
 def no_arguments(place: Place) -> Diagnostic | None:
-    """``alive()``."""
+    """Report ``alive()``."""
     at = place.stop.index
     kinds = [token.type for token in place.tokens[max(0, at - 2) : at + 1]]
     if kinds != ["NAME", "LPAR", "RPAR"]:
@@ -173,21 +177,21 @@ def no_arguments(place: Place) -> Diagnostic | None:
 
 
 def brackets(place: Place) -> Diagnostic | None:
-    """``near[s1]``, ``keep {seen}`` and ``in (0, 50)``: brackets of another kind."""
-    at, found = place.stop.index, place.found
-    called = place.wants_operator and place.before is not None and touch(place.before, found)
-    kind = "arguments" if called else "formulas" if place.wants_operand else "ranges"
+    """Report brackets of the wrong kind: ``near[s1]``, ``keep {seen}`` and ``in (0, 50)``."""
+    at, token = place.stop.index, place.found
+    is_call = place.wants_operator and place.before is not None and touch(place.before, token)
+    kind = "arguments" if is_call else "formulas" if place.wants_operand else "ranges"
     opening, closing = "[]" if kind == "ranges" else "()"
     end = next((index for index in outside(place.tokens, at, len(place.tokens)) if index > at), None)
-    if found.type not in OPENING or end is None or (kind == "ranges" and "LSQB" not in place.allowed):
+    if token.type not in OPENING or end is None or (kind == "ranges" and "LSQB" not in place.allowed):
         return None
-    text = f"{place.tokens[at - 1].text if called else ''}{opening}{written(place, at + 1, end)}{closing}"
-    title = f"{kind} stand in `{opening} {closing}`, not in `{found.text} {place.tokens[end].text}`"
-    return reworded(place, at - called, end + 1, text, title)
+    text = f"{place.tokens[at - 1].text if is_call else ''}{opening}{written(place, at + 1, end)}{closing}"
+    title = f"{kind} stand in `{opening} {closing}`, not in `{token.text} {place.tokens[end].text}`"
+    return reworded(place, at - is_call, end + 1, text, title)
 
 
 def quoted(place: Place) -> Diagnostic | None:
-    """``near("door")`` and ``reach "near(door)"``."""
+    """Report ``near("door")`` and ``reach "near(door)"``."""
     text, at = place.found.text.strip('"'), place.stop.index
     if place.found.type != "STRING" or not ("NAME" in place.allowed or place.wants_operand):
         return None
@@ -195,31 +199,33 @@ def quoted(place: Place) -> Diagnostic | None:
     if not name.strip("_"):
         help_ = "names are ASCII letters, digits and `_`, without quotes"
         return place.error("TLT0101", place.expectation(), help_)
-    for written_ in dict.fromkeys((unquoted(place, at, at + 1, text), name)):
-        found = reworded(place, at, at + 1, written_, place.expectation(), ": no quotes around names and formulas")
-        if found:
-            return found
+    for replacement in dict.fromkeys((unquoted(place, at, at + 1, text), name)):
+        diagnostic = reworded(
+            place, at, at + 1, replacement, place.expectation(), ": no quotes around names and formulas"
+        )
+        if diagnostic:
+            return diagnostic
     return place.error("TLT0101", place.expectation(), f"write `{name}`: no quotes around names and formulas")
 
 
 def unquoted(place: Place, start: int, stop: int, text: str) -> str:
-    """The text between quotes, in brackets where it is several operands and is not the whole formula."""
-    whole = (start, stop) == (formula_start(place), formula_stop(place))
-    several = any(token.type in LOOSE or token.type == "NOT" for token in tokenize(text).tokens)
-    return f"({text})" if several and not whole else text
+    """Return the text between quotes, in brackets if it is several operands and not the whole formula."""
+    is_whole = (start, stop) == (formula_start(place), formula_stop(place))
+    is_compound = any(token.type in LOOSE or token.type == "NOT" for token in tokenize(text).tokens)
+    return f"({text})" if is_compound and not is_whole else text
 
 
 def no_name(place: Place) -> Diagnostic | None:
-    """``my-door``, where no difference can stand, and ``2nd_door``."""
-    before, found, after = place.before, place.found, place.tokens[place.stop.index + 1 :][:1]
+    """Report ``my-door``, where no difference can stand, and ``2nd_door``."""
+    before, token, after = place.before, place.found, place.tokens[place.stop.index + 1 :][:1]
     if before is None or not after:
         return None
-    joined = touch(found, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
+    joined = touch(token, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
     rule = "names are ASCII letters, digits and `_`"
-    if found.type == "NUMBER" and "NUMBER" not in place.allowed and "NAME" in place.allowed:
-        text = f"_{found.text}{after[0].text}" if joined else f"{before.text}_{found.text}"
-        span, rule = span_of([found, after[0]] if joined else [found]), "a name begins with a letter or `_`"
-    elif found.text == "-" and before.type == "NAME" and touch(before, found) and joined:
+    if token.type == "NUMBER" and "NUMBER" not in place.allowed and "NAME" in place.allowed:
+        text = f"_{token.text}{after[0].text}" if joined else f"{before.text}_{token.text}"
+        span, rule = span_of([token, after[0]] if joined else [token]), "a name begins with a letter or `_`"
+    elif token.text == "-" and before.type == "NAME" and touch(before, token) and joined:
         span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
     else:
         return None
@@ -228,21 +234,21 @@ def no_name(place: Place) -> Diagnostic | None:
 
 
 def value_of_signal(place: Place) -> Diagnostic | None:
-    """``signal seen: bool = false``."""
+    """Report ``signal seen: bool = false``."""
     if place.tokens[0].type != "SIGNAL" or place.found.type != "EQUAL" or place.open_brackets or place.stop.index < 3:
         return None
     return place.error("TLT0101", "a signal has no value here", "leave it out: the game supplies it at each step")
 
 
 def type_alone(place: Place) -> Diagnostic | None:
-    """``signal at(entity): bool``."""
+    """Report ``signal at(entity): bool``."""
     if place.found.type != "ENTITY" or "NAME" not in place.allowed or not place.open_brackets:
         return None
     return place.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
 
 
 def several(place: Place) -> Diagnostic | None:
-    """``signal a, b: bool``."""
+    """Report ``signal a, b: bool``."""
     word = place.tokens[0].text
     if place.found.type != "COMMA" or place.start != "declaration" or place.stop.index != 2:
         return None
@@ -250,14 +256,14 @@ def several(place: Place) -> Diagnostic | None:
 
 
 def range_word(place: Place) -> Diagnostic | None:
-    """``signal coins [0, 50]``."""
+    """Report ``signal coins [0, 50]``."""
     if place.found.type != "LSQB" or "IN" not in place.allowed or place.before is None or place.before.text == "in":
         return None
     return place.error("TLT0101", place.expectation(), "write `in [`", write="in [")
 
 
 def left_out(place: Place) -> str:
-    """The help for a sign that ends lines elsewhere."""
+    """Return the help for a sign that ends statements in other languages."""
     between = {"clause": "clauses", "declaration": "declarations"}.get(place.start)
     return "leave it out" + (f": nothing is needed between {between}" if between else "")
 

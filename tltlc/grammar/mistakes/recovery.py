@@ -1,4 +1,4 @@
-"""Read a text with errors piece by piece: one error for each broken declaration, clause or line of a test."""
+"""Parse a text with errors piece by piece: one error per broken declaration, clause or line of a test."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tltlc.grammar.mistakes.fragments import block, declarations, is_first_on_li
 from tltlc.grammar.tables import load
 
 MAX_ERRORS: Final = 200
-"""How many errors are enough: a text with more is no specification."""
+"""The most errors that are reported; a text with more is hardly a specification."""
 
 
 def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
-    """What can be read of a text, and an error for each piece that cannot."""
+    """Return the declarations that can be read, and an error for each piece that cannot."""
     reader = _Reader(source, lexed)
     for piece in declarations(source, lexed.tokens[:-1]):
         reader.read_declaration(piece)
@@ -30,7 +30,7 @@ def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, 
 
 
 class _Reader:
-    """Reads pieces one after the other and keeps what comes out."""
+    """Reads pieces one after the other and collects their declarations and diagnostics."""
 
     def __init__(self, source: SourceFile, lexed: Tokens) -> None:
         self.declarations: list[tree.Declaration] = []
@@ -39,7 +39,7 @@ class _Reader:
         self._docs = lexed.docs
 
     def read_declaration(self, piece: list[Token]) -> None:
-        """Read the tokens of one declaration; a broken block still gives its good clauses."""
+        """Read the tokens of one declaration; a broken block still yields its good clauses."""
         before = len(self.diagnostics)
         kind = block(piece)
         if kind:
@@ -48,8 +48,8 @@ class _Reader:
             declaration = None if self._refuse_deep(piece) else self._read("declaration", piece)
         if declaration is None:
             return
-        kept, found = nesting.drop_deep(self._source, [declaration])
-        self.diagnostics += found
+        kept, errors = nesting.drop_deep(self._source, [declaration])
+        self.diagnostics += errors
         self.declarations += kept
         if len(self.diagnostics) == before:
             self.diagnostics += checks.check(self._source, kept)
@@ -57,7 +57,7 @@ class _Reader:
             self.diagnostics += checks.check_clauses(self._source, kept)
 
     def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
-        """A spec or a test in braces: its head, then each line of its body for itself."""
+        """Read a spec or a test in braces: its head, then each line of its body separately."""
         brace = next(index for index, token in enumerate(piece) if token.type == "LBRACE")
         closed = piece[-1].type == "RBRACE"
         closing = Token("RBRACE", "}", piece[-1].end, piece[-1].end)
@@ -78,24 +78,27 @@ class _Reader:
         return None
 
     def _read_line(self, line: list[Token], start: str) -> list[Any]:
-        """The clauses in one piece of a block: mostly one, two where an unknown word follows a whole clause."""
+        """Return the clauses in one piece of a block, and report its errors.
+
+        If an unknown word follows a complete clause, return the clause and report the word.
+        """
         if self._refuse_deep(line):
             return []
-        found = self._attempt(start, line)
-        if not isinstance(found, lalr.UnexpectedTokenError):
-            return [found]
-        at = found.index
-        is_whole = 0 < at < len(line) and END in lalr.accepted(load(), found.states)
+        result = self._attempt(start, line)
+        if not isinstance(result, lalr.UnexpectedTokenError):
+            return [result]
+        at = result.index
+        is_whole = 0 < at < len(line) and END in lalr.accepted(load(), result.states)
         if is_whole and line[at].type == "NAME" and is_first_on_line(self._source, line, at):
             whole = self._attempt(start, line[:at])
-            # Its first token is what nobody expected.
+            # Its first token is the unexpected one.
             self._refuse(line[at:], start, lalr.UnexpectedTokenError(0, [load().starts[start]]))
             return [whole]
-        self._refuse(line, start, found)
+        self._refuse(line, start, result)
         return []
 
     def _read(self, start: str, piece: list[Token]) -> Any:
-        """What the builder makes of a piece, or None after an error."""
+        """Return what the builder makes of a piece, or None after an error."""
         result = self._attempt(start, piece)
         if isinstance(result, lalr.UnexpectedTokenError):
             self._refuse(piece, start, result)
@@ -103,7 +106,7 @@ class _Reader:
         return result
 
     def _attempt(self, start: str, piece: list[Token]) -> Any:
-        """What the builder makes of a piece, or the UnexpectedTokenError that it ends with."""
+        """Return what the builder makes of a piece, or the UnexpectedTokenError that stopped it."""
         builder = Builder(self._source, self._docs)
         try:
             node = lalr.run(load(), start, _ended(piece), builder)
@@ -117,7 +120,7 @@ class _Reader:
         self.diagnostics.append(messages.unexpected(self._source, _ended(piece), error, start))
 
     def _refuse_deep(self, piece: list[Token]) -> bool:
-        """Report a piece whose brackets nest too deep; whether it is one."""
+        """Whether the brackets of a piece nest too deep; if so, report it."""
         deep = nesting.deep_brackets(self._source, piece)
         if deep:
             self.diagnostics.append(deep)

@@ -1,4 +1,4 @@
-"""Other words for what cannot be read: made of its own tokens, and offered only where they can be read."""
+"""Rewrite what cannot be parsed, from its own tokens; a rewrite is offered only if it can be parsed."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause
 
 LOOSE: Final = INFIX | {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "ALL", "ANY", "WHEN"}
-"""What makes several operands of a text, or takes what follows it."""
+"""Operators that join several operands, or apply to all that follows."""
 _LONGEST: Final = 90
-"""Longer texts are no help."""
+"""The most characters of a rewrite; longer texts do not help."""
 
 
 def reworded(
     place: Place, start: int, stop: int, text: str, title: str, reason: str = "", code: str = "TLT0101"
 ) -> Diagnostic | None:
-    """An error at the tokens from ``start`` up to ``stop`` that says to write ``text`` there.
+    """Return an error at the tokens from ``start`` up to ``stop`` that suggests ``text`` for them.
 
-    None where the piece could not be read then either.
+    Return None if the text is too long, or if the piece cannot be parsed with it.
     """
     if len(text) > _LONGEST or not _can_be_read(place, start, stop, text):
         return None
@@ -35,12 +35,12 @@ def reworded(
 
 
 def span_of(tokens: Sequence[Token]) -> Span:
-    """The span from the first to the last of some tokens."""
+    """Return the span from the first to the last of some tokens."""
     return tokens[0].span.to(tokens[-1].span)
 
 
 def written(place: Place, start: int, stop: int) -> str:
-    """Some tokens as they stand in the text, on one line."""
+    """Return some tokens as they stand in the text, on one line, without comments."""
     tokens = place.tokens[start:stop]
     # A comment would swallow the rest of the line.
     lines = place.source.slice(span_of(tokens)).splitlines() if tokens else []
@@ -48,18 +48,18 @@ def written(place: Place, start: int, stop: int) -> str:
 
 
 def operand(place: Place, start: int, stop: int) -> str:
-    """Some tokens as an operand: a clause as its operator, and in brackets where they are several operands."""
+    """Return some tokens as an operand: a clause as its operator, several operands in brackets."""
     operator = ""
     if start < stop and place.tokens[start].text in OPERATORS:
         operator = OPERATORS[place.tokens[start].text]
         start += 1
     text = written(place, start, stop)
-    several = any(place.tokens[index].type in LOOSE for index in outside(place.tokens, start, stop))
-    return f"{operator} {f'({text})' if several else text}".strip()
+    is_compound = any(place.tokens[index].type in LOOSE for index in outside(place.tokens, start, stop))
+    return f"{operator} {f'({text})' if is_compound else text}".strip()
 
 
 def formula_start(place: Place) -> int:
-    """Where the formula begins that cannot be read on: behind a bracket, a clause's keyword, or `=`."""
+    """Return the index where the broken formula begins: after a bracket, a clause's keyword, or `=`."""
     if place.open_brackets:
         return next(index for index, token in enumerate(place.tokens) if token is place.open_brackets[-1]) + 1
     if place.start == "declaration":
@@ -68,7 +68,7 @@ def formula_start(place: Place) -> int:
 
 
 def formula_stop(place: Place) -> int:
-    """Behind the last token of that formula."""
+    """Return the index after the last token of the broken formula."""
     depth = 0
     for index in range(place.stop.index, len(place.tokens)):
         depth += (place.tokens[index].type in OPENING) - (place.tokens[index].type in CLOSING)
@@ -78,16 +78,19 @@ def formula_stop(place: Place) -> int:
 
 
 def last_of(place: Place, kinds: Collection[str], start: int) -> int | None:
-    """The last token of these kinds outside brackets between ``start`` and the place, if there is one."""
-    found = [index for index in outside(place.tokens, start, place.stop.index) if place.tokens[index].type in kinds]
-    return found[-1] if found else None
+    """Return the last index of a token of these kinds, outside brackets, between ``start`` and the place, or None."""
+    indices = [index for index in outside(place.tokens, start, place.stop.index) if place.tokens[index].type in kinds]
+    return indices[-1] if indices else None
 
 
 def _can_be_read(place: Place, start: int, stop: int, text: str) -> bool:
-    """Whether the piece with this text in place of some tokens has no error."""
+    """Whether the piece has no error with this text in place of some tokens."""
     tokens = place.tokens
-    whole = place.source.text
-    before, after = whole[tokens[0].start : tokens[start].start], whole[tokens[stop - 1].end : tokens[-1].end]
+    source_text = place.source.text
+    before, after = (
+        source_text[tokens[0].start : tokens[start].start],
+        source_text[tokens[stop - 1].end : tokens[-1].end],
+    )
     source = SourceFile("", f"{before}{text}{after}")
     lexed = tokenize(source.text)
     builder = Builder(source, lexed.docs)

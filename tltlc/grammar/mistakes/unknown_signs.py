@@ -1,4 +1,4 @@
-"""Signs and words that the language does not know, many of them from a word processor."""
+"""Characters and words that the language does not know, many of them from a word processor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltlc.grammar.tables import load
 
 _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
 _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
-"""What stands for a sign from elsewhere, beside what Unicode knows of its form."""
+"""The equivalents of foreign characters, besides those that Unicode normalization finds."""
 _SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
@@ -26,7 +26,7 @@ _HELPS: Final = {
 
 
 def strange(place: Place) -> Diagnostic | None:
-    """A sign or word that the language does not know."""
+    """Report a character or word that the language does not know."""
     token = place.found
     if token.type != BAD:
         return None
@@ -47,27 +47,27 @@ def strange(place: Place) -> Diagnostic | None:
         return place.error("TLT0104", "`?` means nothing here", CASES)
     if text == ".":
         after = place.tokens[place.stop.index + 1]
-        number = after.type == "NUMBER" and after.start == token.end
-        write = f"0.{after.text}" if number else None
-        span = Span(token.start, after.end) if number else token.span
+        is_fraction = after.type == "NUMBER" and after.start == token.end
+        write = f"0.{after.text}" if is_fraction else None
+        span = Span(token.start, after.end) if is_fraction else token.span
         help_ = f"write `{write}`" if write else left_out(place)
         return place.error("TLT0104", "`.` means nothing here", help_, span=span, write=write)
     if text == ";":
         after = place.tokens[place.stop.index + 1]
-        listed = "COMMA" in place.allowed and after.type == "NAME"
-        help_ = "write `,`" if listed else left_out(place)
-        return place.error("TLT0104", "`;` means nothing here", help_, write="," if listed else None)
+        is_separator = "COMMA" in place.allowed and after.type == "NAME"
+        help_ = "write `,`" if is_separator else left_out(place)
+        return place.error("TLT0104", "`;` means nothing here", help_, write="," if is_separator else None)
     title = f"{_sign(text)} means nothing here"
     if text == "~":
         return place.error("TLT0104", title, "for `not` write `not` or `!`", write="not")
-    like = _like(text)
-    if text in _HELPS or like is None:
+    equivalent = _like(text)
+    if text in _HELPS or equivalent is None:
         return place.error("TLT0104", title, _HELPS.get(text) or _left_out(text))
-    return place.error("TLT0104", title, f"write `{like}`", write=like)
+    return place.error("TLT0104", title, f"write `{equivalent}`", write=equivalent)
 
 
 def _name(place: Place) -> Diagnostic:
-    """``café`` and ``coins²``."""
+    """Report ``café`` and ``coins²``."""
     from unicodedata import normalize
 
     text = place.found.text
@@ -76,14 +76,14 @@ def _name(place: Place) -> Diagnostic:
         power = f"{base}^{normalize('NFKC', text[len(base) :])}"
         title = f"{shown(place.found)} is no name" if base else f"`{text}` means nothing here"
         return place.error("TLT0104", title, f"for a power write `{power}`", write=power)
-    plain = "".join(sign for sign in normalize("NFKD", text) if sign.isascii())
+    plain = "".join(character for character in normalize("NFKD", text) if character.isascii())
     write = plain if plain.isidentifier() and len(plain) == len(text) else None
     help_ = "names are ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
     return place.error("TLT0104", f"{shown(place.found)} is no name", help_, write=write)
 
 
 def _quotes(place: Place) -> Diagnostic:
-    """``near('door')`` and typographic quotes."""
+    """Report ``near('door')`` and typographic quotes."""
     at, tokens = place.stop.index, place.tokens
     last = next((index for index in range(at + 1, len(tokens)) if tokens[index].text in _QUOTES), None)
     title = f"{_sign(place.found.text)} means nothing here"
@@ -93,32 +93,32 @@ def _quotes(place: Place) -> Diagnostic:
             (unquoted(place, at, last + 1, inner), ": no quotes around names and formulas"),
             (f'"{inner}"', ""),
         ):
-            found = reworded(place, at, last + 1, text, title, reason, "TLT0104") if inner else None
-            if found:
-                return found
+            diagnostic = reworded(place, at, last + 1, text, title, reason, "TLT0104") if inner else None
+            if diagnostic:
+                return diagnostic
     return place.error("TLT0104", title, 'texts stand in straight double quotes: "…"')
 
 
 def _sign(text: str) -> str:
-    """A sign, by its number and name where it cannot be seen."""
+    """Return a character in backticks; if it is invisible, its code point and name."""
     if text.isprintable() and not text.isspace():
         return f"`{text}`"
     from unicodedata import name
 
-    said = name(text, "").lower()
-    return f"`U+{ord(text):04X}`" + (f" ({said})" if said else "")
+    description = name(text, "").lower()
+    return f"`U+{ord(text):04X}`" + (f" ({description})" if description else "")
 
 
 def _like(text: str) -> str | None:
-    """What the language has instead of a sign that looks like one of its own."""
+    """Return the equivalent of a character in the language, or None."""
     from unicodedata import normalize
 
-    plain = _SIGNS.get(text) or normalize("NFKC", text)
-    return plain if plain in load().signs or plain in load().units else None
+    normalized = _SIGNS.get(text) or normalize("NFKC", text)
+    return normalized if normalized in load().signs or normalized in load().units else None
 
 
 def _left_out(text: str) -> str:
-    """What to do about a sign that the language has nothing like."""
+    """Return the help for a character without an equivalent in the language."""
     from unicodedata import category
 
     return "write `-` for a difference, `_` in a name" if category(text) == "Pd" else "leave it out"
