@@ -13,9 +13,9 @@ from tltlc.grammar.allow_comments import Allowed, allowed
 from tltlc.grammar.tree import Module
 
 
-def unsilenced(modules: Iterable[Module], found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+def unsilenced(modules: Iterable[Module], reported: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return the diagnostics without the warnings and notes that a comment in their file allows."""
-    diagnostics = tuple(found)
+    diagnostics = tuple(reported)
     if not diagnostics:
         return diagnostics
     comments = Silencing(modules)
@@ -49,9 +49,9 @@ class Silencing:
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)
 
-    def has_silenced(self, each: Allowed) -> bool:
+    def has_silenced(self, allowance: Allowed) -> bool:
         """Whether an allowed code has silenced a diagnostic."""
-        return id(each) in self._files[each.source].used
+        return id(allowance) in self._files[allowance.source].used
 
 
 class _File:

@@ -50,9 +50,9 @@ class Project:
     lint: Mapping[str, str] = EMPTY
     formatting: str = "words"
 
-    def levelled(self, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    def levelled(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         """Return the diagnostics with the severities that ``lint`` sets, without those that it allows."""
-        kept = [diagnostic for diagnostic in found if self.lint.get(diagnostic.code) != "allow"]
+        kept = [diagnostic for diagnostic in diagnostics if self.lint.get(diagnostic.code) != "allow"]
         return tuple(
             replace(diagnostic, severity=self.lint.get(diagnostic.code, diagnostic.severity)) for diagnostic in kept
         )
@@ -176,8 +176,8 @@ def _is_list_of_texts(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
 
-def _wrong(source: SourceFile, key: str, expected: str, found: object) -> Diagnostic:
-    shown = f'"{found}"' if isinstance(found, str) else _KINDS.get(type(found).__name__, "another kind of value")
+def _wrong(source: SourceFile, key: str, expected: str, value: object) -> Diagnostic:
+    shown = f'"{value}"' if isinstance(value, str) else _KINDS.get(type(value).__name__, "another kind of value")
     return Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")
 
 

@@ -22,10 +22,10 @@ def workflow_command(name: str, text: str, properties: Mapping[str, str | int]) 
 
 def _command(diagnostic: Diagnostic) -> str:
     properties: dict[str, str | int] = {}
-    remark = ""
+    label_message = ""
     if diagnostic.labels:
         label = diagnostic.labels[0]
-        remark = label.message
+        label_message = label.message
         line, column = label.source.position(label.span.start)
         end_line, end_column = label.source.position(label.span.end)
         properties = {"file": label.source.name, "line": line, "endLine": end_line}
@@ -33,7 +33,7 @@ def _command(diagnostic: Diagnostic) -> str:
             # GitHub accepts columns only within one line; its end column is inclusive.
             properties |= {"col": column, "endColumn": max(column, end_column - 1)}
     properties["title"] = diagnostic.code
-    text = "\n".join(part for part in (diagnostic.title, remark, diagnostic.help) if part)
+    text = "\n".join(part for part in (diagnostic.title, label_message, diagnostic.help) if part)
     return workflow_command(_COMMANDS[diagnostic.severity], text, properties)
 
 

@@ -35,8 +35,8 @@ def _rule(code: str) -> dict[str, object]:
 
 
 def _result(diagnostic: Diagnostic, rule: int) -> dict[str, object]:
-    remark = diagnostic.labels[0].message if diagnostic.labels else ""
-    text = "\n".join(part for part in (diagnostic.title, remark, diagnostic.help) if part)
+    label_message = diagnostic.labels[0].message if diagnostic.labels else ""
+    text = "\n".join(part for part in (diagnostic.title, label_message, diagnostic.help) if part)
     result: dict[str, object] = {
         "ruleId": diagnostic.code,
         "ruleIndex": rule,

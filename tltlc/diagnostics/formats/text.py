@@ -43,16 +43,16 @@ def _place(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
     line = source.line(number)
     length = max(1, len(line) - column + 1 if last > number else span.end - span.start)
     shown, start, width = _window(line, column - 1, length)
-    remark = [_paint("^" * width, colour, color)]
+    marker = [_paint("^" * width, colour, color)]
     if last > number:
-        remark.append(f"(to line {last})")
+        marker.append(f"(to line {last})")
     if label.message:
-        remark.append(_paint(visible(label.message), colour, color))
+        marker.append(_paint(visible(label.message), colour, color))
     bar = _paint("|", _DIM, color)
     return [
         _paint(f"  {visible(source.name)}:{number}:{column}", _DIM, color),
         f"{_paint(str(number).rjust(gutter), _DIM, color)} {bar} {shown}".rstrip(),
-        f"{' ' * gutter} {bar} {' ' * start}{' '.join(remark)}",
+        f"{' ' * gutter} {bar} {' ' * start}{' '.join(marker)}",
     ]
 
 

@@ -263,7 +263,7 @@ def range_word(place: Place) -> Diagnostic | None:
 
 
 def left_out(place: Place) -> str:
-    """Return the help for a sign that ends statements in other languages."""
+    """Return the help for a character that ends statements in other languages."""
     between = {"clause": "clauses", "declaration": "declarations"}.get(place.start)
     return "leave it out" + (f": nothing is needed between {between}" if between else "")
 
