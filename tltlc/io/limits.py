@@ -171,7 +171,7 @@ PLAYGROUND_CHILD: Final = Process(memory=2 << 30, work_s=60)
 """A process that answers one request to the playground."""
 
 COMMAND: Final = Process(memory=4 << 30, work_s=120)
-"""A command that reads files and ends by itself, unless `tltlc --max-cpu --max-memory` sets other values.
+"""The resources of a command that reads files and ends by itself; `tltlc --max-cpu --max-memory` sets others.
 
 This is the last bound: the limits of :data:`WORK` stop the work long before.
 """

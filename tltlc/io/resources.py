@@ -1,8 +1,8 @@
 """Bound the processor time and the memory of a command, for input that no limit of :mod:`tltlc.io.limits` stops.
 
 Limits that count bytes or steps give the same answer on every machine. These bounds depend on the
-machine, so they are far above what any file needs that is not made to do harm. They apply only to a
-process that runs one command. A program that imports tltlc keeps its own signal handlers and limits.
+machine, so they are far above what any harmless file needs. They apply only to a process that runs
+one command. A program that imports tltlc keeps its own signal handlers and limits.
 """
 
 from __future__ import annotations

@@ -76,8 +76,8 @@ def rewrite(path: Path, content: str) -> None:
     """Replace the content of a source file, as :func:`write_files` does.
 
     Raises:
-        TltlError: and the file does not change: TLT0005 if it is read-only; TLT0004 if the new
-            content would be too large to read.
+        TltlError: TLT0005 if the file is read-only; TLT0004 if the new content would be too large to
+            read. In both cases, the file does not change.
     """
     if len(content.encode(errors="replace")) > SOURCE.size:
         title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB"
