@@ -1,4 +1,4 @@
-"""Matches the arguments of a call to the parameters of what is called."""
+"""Match the arguments of a call to the declared parameters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tltlc.resolve.scope import Binding, Scope
 def match(
     use: Name | Call, binding: Binding, parameters: tuple[Parameter, ...], scope: Scope
 ) -> tuple[tuple[Parameter, Expr | None], ...]:
-    """Each parameter with the argument given for it, None where its default stands.
+    """Return each parameter with its argument, or None where the default applies.
 
     Raises ResolutionError (TLT0210) for missing, surplus, repeated and unknown arguments.
     """

@@ -1,4 +1,4 @@
-"""Bounded temporal operators, expanded into ``X`` and ``N``."""
+"""Expand bounded temporal operators into ``X`` and ``N``."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from tltlc.resolve.values import Env
 
 
 def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
-    """The operator of ``expr`` with its bound, over an operand; raises ResolutionError.
+    """Apply the bounded operator of ``expr`` to an operand; raise ResolutionError for a bad bound.
 
-    ``F[a,b] p`` is false past the trace's end (strong next), ``G[a,b] p`` asks nothing there (weak
-    next); ``within n`` is ``[0,n]``, ``for n`` is ``[0,n-1]``, ``next after n`` is n nexts.
+    ``F[a,b] p`` is false past the end of the trace (strong next). ``G[a,b] p`` requires nothing
+    there (weak next). ``within n`` is ``[0,n]``, ``for n`` is ``[0,n-1]``, and ``next after n`` is
+    n nexts.
     """
     bound = expr.bound
     assert bound is not None
@@ -34,9 +35,9 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     if low > high:
         advice = "write the smaller number first, e.g. `[0, 20]`"
         raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
-    what = f"the bound of `{source.slice(expr.op_span)}`"
+    subject = f"the bound of `{source.slice(expr.op_span)}`"
     if 2 * high + (high - low + 1) * env.context.tree_size(operand) > 2 * LARGEST_EXPANSION:
-        raise too_large(what, source, bound.span)
+        raise too_large(subject, source, bound.span)
     env.context.bounds.append(Bound(high, source, bound.span))
     result = operand
     join, step = (and_, weak_next) if expr.op == "G" else (or_, weak_next if expr.op == "N" else next_)
@@ -44,11 +45,11 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
         result = join(operand, step(result))
     for _ in range(low):
         result = step(result)
-    return env.context.checked_size(result, what, source, bound.span)
+    return env.context.checked_size(result, subject, source, bound.span)
 
 
 def _unbounded(op: str, steps: int, operand: Formula) -> Formula:
-    """``F`` or ``G`` without its bound; as many ``X`` or ``N`` as ``next after`` takes steps."""
+    """Return ``F`` or ``G`` without its bound. ``X`` and ``N`` keep their ``steps`` nexts."""
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)
     for _ in range(steps):

@@ -1,4 +1,4 @@
-"""What the symbolic check of predicates found, as diagnostics."""
+"""Run the symbolic check on predicates and turn its findings into diagnostics."""
 
 from __future__ import annotations
 
@@ -26,32 +26,33 @@ _NEVER_NEGATIVE = ("length", "time", "speed")
 
 
 def check_predicates(context: Context) -> None:
-    """Checks range and continuity of every predicate in use, each once; the findings go to the log.
+    """Check the range and continuity of every predicate in use, each once, and log the findings.
 
-    A range must hold for all values of the params; a jump counts only if there is one at their present values:
-    `near(exit, close = 3 m)` jumps in a level of 2 m, but nobody plays it there.
+    A range must hold for all values of the params. A jump counts only at the params' present
+    values: `near(exit, close = 3 m)` would jump in a level of 2 m, but the level has another size.
 
-    All checks together take a bounded number of steps. One warning names the predicates that were left (TLT0503).
+    All checks together have a limited number of steps. One warning (TLT0503) names the predicates
+    that were not checked.
     """
     from tltlc.resolve.range_proof.work import limited
 
-    left: list[Instance] = []
+    unchecked: list[Instance] = []
     with limited(WORK["checks of all predicates"]) as work:
         for instance in context.instances.values():
             if work.left < WORK["check of a predicate"]:
-                left.append(instance)
+                unchecked.append(instance)
                 continue
             with limited(WORK["check of a predicate"]):
                 _check(instance, context)
-    if left:
-        context.log.add(_not_checked(left))
+    if unchecked:
+        context.log.add(_not_checked(unchecked))
 
 
 def _check(instance: Instance, context: Context) -> None:
     from tltlc.resolve.range_proof import check_predicate
 
-    found = check_predicate(instance.expression, context.signals, context.params, instance.low, instance.high)
-    for finding in found:
+    findings = check_predicate(instance.expression, context.signals, context.params, instance.low, instance.high)
+    for finding in findings:
         if finding.kind == "range_wrong" and _holds_without_negatives(instance, context):
             context.log.add(_diagnostic(instance, finding, negative=True))
         elif finding.kind not in _CONTINUITY or _jumps_at_present(instance, context):
@@ -59,7 +60,10 @@ def _check(instance: Instance, context: Context) -> None:
 
 
 def _holds_without_negatives(instance: Instance, context: Context) -> bool:
-    """Whether the range is only wrong where a length, time or speed without a range would be negative."""
+    """Whether the range is wrong only because a signal may be negative.
+
+    This concerns lengths, times and speeds that have no declared range.
+    """
     from tltlc.resolve.range_proof import check_predicate
 
     signals: Mapping[str, Signal] = {
@@ -68,34 +72,34 @@ def _holds_without_negatives(instance: Instance, context: Context) -> bool:
     }
     if all(signals[node.name] is context.signals[node.name] for node in _read(instance, SignalNode)):
         return False
-    again = check_predicate(instance.expression, signals, context.params, instance.low, instance.high)
-    return all(finding.kind not in ("range_wrong", "range_unchecked") for finding in again)
+    findings = check_predicate(instance.expression, signals, context.params, instance.low, instance.high)
+    return all(finding.kind not in ("range_wrong", "range_unchecked") for finding in findings)
 
 
 def _jumps_at_present(instance: Instance, context: Context) -> bool:
-    """Whether there is a finding on continuity with every param at its value."""
+    """Whether the continuity check reports anything with every param fixed at its value."""
     from tltlc.resolve.range_proof import check_predicate
 
     if not _read(instance, ParamNode):
         return True
     params = {name: replace(param, low=param.value, high=param.value) for name, param in context.params.items()}
-    again = check_predicate(instance.expression, context.signals, params, instance.low, instance.high)
-    return any(finding.kind in (*_CONTINUITY, "range_unchecked") for finding in again)
+    findings = check_predicate(instance.expression, context.signals, params, instance.low, instance.high)
+    return any(finding.kind in (*_CONTINUITY, "range_unchecked") for finding in findings)
 
 
 def _read(instance: Instance, kind: type[N]) -> list[N]:
-    """The signals or params that a predicate reads."""
+    """Return the signals or params that a predicate reads."""
     return [node for node in nodes(instance.expression) if isinstance(node, kind)]
 
 
-def _not_checked(left: Sequence[Instance]) -> Diagnostic:
-    """Where a program's predicates take too long: those that are left."""
-    first, more = left[0], len(left) - 1
-    others = f" and {more} more {'predicate was' if more == 1 else 'predicates were'}" if more else " was"
+def _not_checked(unchecked: Sequence[Instance]) -> Diagnostic:
+    """Return the warning for predicates that were not checked because the step limit ran out."""
+    first, remaining = unchecked[0], len(unchecked) - 1
+    rest = f" and {remaining} more {'predicate was' if remaining == 1 else 'predicates were'}" if remaining else " was"
     why = f"too few are left of the {WORK['checks of all predicates']:,} steps for the checks of all predicates"
     advice = "let the game compute parts of the predicates before this one and offer them as signals"
     label = Label(first.source, first.span, why)
-    return Diagnostic("TLT0503", f"the predicate `{first.name}`{others} not checked", (label,), advice, "warning")
+    return Diagnostic("TLT0503", f"the predicate `{first.name}`{rest} not checked", (label,), advice, "warning")
 
 
 def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) -> Diagnostic:
@@ -106,7 +110,7 @@ def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) ->
         title, advice = _UNDEFINED
     labels: tuple[Label, ...] = (Label(instance.source, instance.span, finding.message),)
     if instance.use and instance.use.source is not instance.source:
-        # A library's predicate is right as it stands: the numbers given to it here are not.
+        # The predicate of a library is correct. The numbers passed to it here are the problem.
         labels = (replace(instance.use, message=finding.message), replace(labels[0], message="declared here"))
         advice = f"choose other numbers here, or {advice}"
     return Diagnostic(code, title.format(name=instance.name), labels, advice, severity)

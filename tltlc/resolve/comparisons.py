@@ -1,4 +1,4 @@
-"""Comparisons of numbers as atoms, with a robustness scaled to [-1, 1]."""
+"""Turn comparisons of numbers into atoms whose robustness is scaled to [-1, 1]."""
 
 from __future__ import annotations
 
@@ -22,14 +22,17 @@ _NEGATED = {"<=": ">", ">=": "<"}
 
 
 def comparison(expr: Binary, env: Env) -> Formula:
-    """The atom of a comparison, or its negation: ``x >= c`` is ``not (x < c)``, ``x <= c`` is ``not (x > c)``.
+    """Return the atom of a comparison, or its negation.
 
-    With x in [low, high], ``x > c`` has the robustness (x - c), scaled to 1 at high and to -1 at low, each
-    side on its own; ``x < c`` is mirrored.  Two sides that both vary are compared by their difference with 0.  The
-    robustness is above 0 exactly where the comparison of the two sides is true.
+    ``x >= c`` is ``not (x < c)``, and ``x <= c`` is ``not (x > c)``.
 
-    Raises ResolutionError where the comparison is constant over the range (TLT0310), a side that is needed for scaling
-    is unbounded (TLT0311), or the arithmetic of a side is too large for a number (TLT0319).
+    With x in [low, high], ``x > c`` has the robustness (x - c), scaled to 1 at high and to -1 at
+    low, each side separately. ``x < c`` is mirrored. If both sides vary, their difference is
+    compared with 0. The robustness is above 0 exactly where the comparison is true.
+
+    Raises ResolutionError if the comparison is constant over the range (TLT0310), if a side that is
+    needed for scaling is unbounded (TLT0311), or if the arithmetic of a side may overflow
+    (TLT0319).
     """
     left, right = quantity(expr.left, env), quantity(expr.right, env)
     same_dimension(left, right, expr.right, env)
@@ -47,12 +50,12 @@ def comparison(expr: Binary, env: Env) -> Formula:
     _check_size(right, expr, env)
     _check_truth(left, strict, right, negated, expr, env)
     greater, less = (left, right) if strict == ">" else (right, left)
-    found = env.context.atom(name, robustness(greater, less), "", env.scope.source, expr.span)
-    return not_(found) if negated else found
+    formula = env.context.atom(name, robustness(greater, less), "", env.scope.source, expr.span)
+    return not_(formula) if negated else formula
 
 
 def _check_size(side: Quantity, expr: Binary, env: Env) -> None:
-    """Raises ResolutionError (TLT0319) where values within the ranges give a side that is too large for a number."""
+    """Raise ResolutionError (TLT0319) if values within the ranges can make a side overflow."""
     if not side.overflows:
         return
     raise problem(
@@ -66,7 +69,7 @@ def _check_size(side: Quantity, expr: Binary, env: Env) -> None:
 
 
 def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: Binary, env: Env) -> None:
-    """Raises ResolutionError where the truth is the same everywhere (TLT0310) or a range has no end (TLT0311)."""
+    """Raise ResolutionError if the truth is constant (TLT0310) or a needed bound is missing (TLT0311)."""
     source = env.scope.source
     x, c = left, right.low
     if not right.is_constant:
@@ -89,7 +92,7 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
             fix = Fix(f"Write `{text}`", (Edit(Span(end, end), " %"),))
         fixes: tuple[Fix, ...] = (fix,)
         if source.text[expr.left.span.end :].lstrip().startswith("<-"):
-            # An arrow that points to the left, most likely.
+            # This was most likely meant as an arrow that points to the left.
             fixes, advice = (), f"{advice}; an implication is written `b implies a`"
         title = f"this comparison {'always' if holds else 'never'} holds"
         raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=fixes)
@@ -99,20 +102,20 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
 
 
 def _is_percentage(x: Quantity, c: float, op: str, expr: Binary, env: Env) -> bool:
-    """Whether a ratio is compared with a plain number that is a percentage, and then says something."""
+    """Whether a ratio is compared with a plain number that makes sense as a percentage."""
     is_plain = isinstance(expr.right, Number) and expr.right.unit is None
     is_percentage = is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
     return is_percentage and (x.low, x.high) == (0, 1) and _is_ratio(expr.left, env)
 
 
 def _is_ratio(expr: Expr, env: Env) -> bool:
-    """Whether this is a signal or a param that is declared as a ratio, by its type or by a range in percent."""
+    """Whether this is a signal or param declared as a ratio, by its type or by a range in percent."""
     binding = env.scope.names.get(expr.name) if isinstance(expr, Name) else None
     declaration = binding.declaration if binding else None
     if not isinstance(declaration, (SignalDecl, ParamDecl)):
         return False
-    written = (part for whole in expressions(declaration) for part in parts(whole))
-    return declaration.type == "ratio" or any(isinstance(part, Number) and part.unit == "%" for part in written)
+    written_parts = (part for expression in expressions(declaration) for part in parts(expression))
+    return declaration.type == "ratio" or any(isinstance(part, Number) and part.unit == "%" for part in written_parts)
 
 
 def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> ResolutionError:

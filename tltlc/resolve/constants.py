@@ -1,4 +1,4 @@
-"""Numbers that must be known at once: the ends of ranges, the values of params, periods and limits."""
+"""Evaluate constant numbers: the ends of ranges, the values of params, periods and limits."""
 
 from __future__ import annotations
 
@@ -17,20 +17,26 @@ from tltlc.resolve.units import Dimension
 from tltlc.resolve.values import Env
 
 MOST_SAMPLES = 10**9
-"""The greatest number of samples that a bound or a limit may name."""
+"""The largest number of samples that a bound or a limit may name."""
 
 
-def number(expr: Expr, dimension: Dimension, env: Env, what: str) -> float:
-    """The value of a constant expression in SI units; raises ResolutionError where it depends on anything."""
-    found = quantity(expr, replace(env, constant=True, local={}))
-    if found.dimension not in (None, dimension):
-        raise mismatch(dimension, found.dimension, expr, env, f"{what} is {units.described(dimension)}")
-    assert isinstance(found.expression, Const), "constants fold"
-    return found.expression.value
+def number(expr: Expr, dimension: Dimension, env: Env, subject: str) -> float:
+    """Return the value of a constant expression in SI units.
+
+    Raises ResolutionError if it is not constant.
+    """
+    value = quantity(expr, replace(env, constant=True, local={}))
+    if value.dimension not in (None, dimension):
+        raise mismatch(dimension, value.dimension, expr, env, f"{subject} is {units.described(dimension)}")
+    assert isinstance(value.expression, Const), "constants fold"
+    return value.expression.value
 
 
 def interval(written: Interval, dimension: Dimension, env: Env) -> tuple[float | None, float | None]:
-    """The ends of a range in SI units, None where open (``inf``); raises ResolutionError where it is empty."""
+    """Return the ends of a range in SI units; raise ResolutionError if it is empty.
+
+    An end is None where the range is open (``inf``).
+    """
     low = _end(written.low, dimension, env)
     high = _end(written.high, dimension, env)
     if low == inf or high == -inf or low > high:
@@ -45,9 +51,10 @@ def interval(written: Interval, dimension: Dimension, env: Env) -> tuple[float |
 
 
 def samples(value: Number, env: Env) -> int:
-    """A number of samples, written in steps or as a time (rounded up); raises ResolutionError.
+    """Return a number of samples, written in steps or as a time (rounded up).
 
-    Without a unit it counts samples.  A time needs a clock (TLT0313).
+    A number without a unit counts samples. A time needs a clock. Raises ResolutionError (TLT0312,
+    TLT0313 without a clock).
     """
     source = env.scope.source
     if value.unit in (None, "step", "steps"):
@@ -56,9 +63,9 @@ def samples(value: Number, env: Env) -> int:
             advice = f"write e.g. `{whole}`"
             raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice=advice)
         return _counted(value.value, value, env)
-    found = units.in_si(value.value, value.unit)
-    if found is None or found[1] != units.TYPES["time"]:
-        described = units.described(found[1]) if found else f"`{value.unit}`"
+    in_si = units.in_si(value.value, value.unit)
+    if in_si is None or in_si[1] != units.TYPES["time"]:
+        described = units.described(in_si[1]) if in_si else f"`{value.unit}`"
         title = f"expected a number of steps or a time, found {described}"
         raise problem("TLT0312", title, source, value.span, advice="write e.g. `20 steps` or `2 s`")
     period = env.context.clock_s
@@ -74,11 +81,11 @@ def samples(value: Number, env: Env) -> int:
             "or write the bound in steps",
         )
     # The tolerance keeps 0.15 s at 20 Hz at 3 samples.
-    return _counted(found[0] / period - 1e-9, value, env)
+    return _counted(in_si[0] / period - 1e-9, value, env)
 
 
 def _counted(steps: float, value: Number, env: Env) -> int:
-    """The number rounded up; raises ResolutionError where it is past all use."""
+    """Return the number rounded up; raise ResolutionError (TLT0312) above MOST_SAMPLES."""
     if steps > MOST_SAMPLES:
         title = f"this is more than {MOST_SAMPLES:,} steps"
         raise problem("TLT0312", title, env.scope.source, value.span, advice="write a smaller number")
@@ -89,21 +96,24 @@ _OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]
 
 
 def override(text: str) -> tuple[float, Dimension | None] | None:
-    """The value of ``--param NAME=25 m`` in SI units, dimension None without a unit; None where it is none."""
-    found = _OVERRIDE.fullmatch(text.strip())
-    if found is None:
+    """Return the value of ``--param NAME=25 m`` in SI units and its dimension.
+
+    The dimension is None without a unit. The result is None if the text is not a value.
+    """
+    matched = _OVERRIDE.fullmatch(text.strip())
+    if matched is None:
         return None
-    value, unit = float(found[1]), found[2]
+    value, unit = float(matched[1]), matched[2]
     if not unit:
         return None if isinf(value) else (value, None)
-    over, _, under = unit.partition("/")
-    top = units.in_si(value, over)
-    bottom = units.in_si(1.0, under) if under else (1.0, units.PLAIN)
-    if top is None or bottom is None:
+    numerator_unit, _, denominator_unit = unit.partition("/")
+    numerator = units.in_si(value, numerator_unit)
+    denominator = units.in_si(1.0, denominator_unit) if denominator_unit else (1.0, units.PLAIN)
+    if numerator is None or denominator is None:
         return None
-    if isinf(top[0] / bottom[0]):
+    if isinf(numerator[0] / denominator[0]):
         return None
-    return top[0] / bottom[0], units.product(top[1], bottom[1], -1.0)
+    return numerator[0] / denominator[0], units.product(numerator[1], denominator[1], -1.0)
 
 
 def _end(expr: Expr, dimension: Dimension, env: Env) -> float:

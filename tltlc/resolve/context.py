@@ -1,4 +1,4 @@
-"""What a whole run of resolution shares: the declared signals and params, the atoms found, the limits."""
+"""The state shared by one run of resolution: declared signals and params, atoms, limits."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
 
 LARGEST_EXPANSION = 100_000
-"""Nodes of a formula, written out as a tree, that bounds, quantifiers and lets may expand to."""
+"""The most nodes of a formula as a tree that bounds, quantifiers and lets may expand to."""
 MOST_EXPANSIONS = 50_000
-"""Uses of lets and quantifiers that the formulas of a program may expand."""
+"""The most uses of lets and quantifiers that the formulas of a program may expand."""
 
 
 @record
 class SignalInfo:
-    """A declared signal; with parameters, one signal for each choice of entities."""
+    """A declared signal. With parameters, it stands for one signal per choice of entities."""
 
     name: str
     parameters: tuple[str, ...]
@@ -33,18 +33,21 @@ class SignalInfo:
     high: float | None
     doc: str
     has_range: bool
-    """Whether the range is written, not that of the type."""
+    """Whether the range is written in the declaration, not taken from the type."""
     place: Label
 
     def of(self, entities: tuple[str, ...]) -> Signal:
-        """The signal of these entities."""
+        """Return the signal of these entities."""
         name = f"{self.name}({', '.join(entities)})" if entities else self.name
         return Signal(name, self.type, self.low, self.high, self.doc)
 
 
 @record
 class Instance:
-    """A predicate with its arguments, to be checked; entities go by parameter name, so that all share one check."""
+    """A predicate with its arguments, to be checked.
+
+    Entities are replaced by parameter names, so that all entities share one check.
+    """
 
     name: str
     expression: Expression
@@ -53,18 +56,18 @@ class Instance:
     source: SourceFile
     span: Span
     use: Label | None = None
-    """Where numbers are given for it, which decide what is found."""
+    """The use that passes numbers to the predicate, if any. The findings depend on these numbers."""
 
 
 class Context:
-    """Tables that fill up while a program is resolved.
+    """The tables that fill up while a program is resolved.
 
-    ``signals`` are those in use, by full name.  ``instances`` (predicates to be checked) and ``values`` (of
-    signals and predicates, expansions of lets, calls and comparisons) are keyed by identity of the
-    declaration or expression and by the values of its parameters or local names.
-    ``expanding`` holds the lets and predicates being expanded, outermost first: identity of the
-    declaration and its name; ``broken`` the declarations whose error has been reported.  ``bounds``
-    are those expanded so far.
+    ``signals`` holds the signals in use, by full name. ``instances`` (predicates to be checked) and
+    ``values`` (of signals and predicates, expansions of lets, calls and comparisons) are keyed by
+    the identity of the declaration or expression and by the values of its parameters or local
+    names. ``expanding`` maps the identity of each let and predicate that is being expanded to its
+    name, outermost first. ``broken`` holds the declarations whose error has been reported.
+    ``bounds`` holds the bounds expanded so far.
     """
 
     __slots__ = (
@@ -105,15 +108,15 @@ class Context:
         self._sizes: dict[Formula, int] = {}
 
     def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
-        """The signal of these entities, noted as used."""
-        found = info.of(entities)
-        return self.signals.setdefault(found.name, found)
+        """Return the signal of these entities and record that it is used."""
+        signal = info.of(entities)
+        return self.signals.setdefault(signal.name, signal)
 
     def atom(self, name: str, expression: Expression, doc: str, source: SourceFile, span: Span) -> Formula:
-        """The atom of that name.
+        """Return the atom of that name.
 
-        Raises ResolutionError where the name already stands for something else (TLT0216), or all atoms have too much
-        arithmetic (TLT0315).
+        Raises ResolutionError if the name already belongs to another expression (TLT0216), or if
+        the arithmetic of all atoms together is too large (TLT0315).
         """
         if name not in self.atoms:
             self._arithmetic += self.arithmetic_of(expression, source, span, self._arithmetic)
@@ -129,7 +132,11 @@ class Context:
         return atom(name)
 
     def arithmetic_of(self, expression: Expression, source: SourceFile, span: Span, others: int = 0) -> int:
-        """How many parts an expression has; raises ResolutionError (TLT0315) where that is too many beside others."""
+        """Return the number of nodes of an expression.
+
+        Raises ResolutionError (TLT0315) if that exceeds the limit together with the ``others``
+        already counted.
+        """
         left = WORK["arithmetic of all atoms"] - others
         size = sum(1 for _ in islice(nodes(expression), left + 1))
         if size > left:
@@ -144,7 +151,7 @@ class Context:
         return size
 
     def recursion(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
-        """The problem of a let or predicate that is being expanded already, reported once."""
+        """Return the problem of a let or predicate that uses itself; each cycle is reported once."""
         active = list(self.expanding)
         cycle = active[active.index(declaration) :]
         names = [self.expanding[key] for key in (*cycle, declaration)]
@@ -160,15 +167,15 @@ class Context:
         )
 
     def names_in(self, expr: Expr) -> tuple[str, ...]:
-        """The names in an expression."""
+        """Return the names in an expression."""
         names = self._names.get(id(expr))
         if names is None:
-            found = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (Name, Call)))
-            names = self._names[id(expr)] = tuple(found)
+            unique = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (Name, Call)))
+            names = self._names[id(expr)] = tuple(unique)
         return names
 
     def tree_size(self, formula: Formula) -> int:
-        """The number of nodes of the formula written out as a tree."""
+        """Return the number of nodes of the formula written out as a tree."""
         if formula in self._sizes:
             return self._sizes[formula]
         stack = [formula]
@@ -182,22 +189,25 @@ class Context:
                 stack.pop()
         return self._sizes[formula]
 
-    def checked_size(self, formula: Formula, what: str, source: SourceFile, span: Span) -> Formula:
-        """The formula itself; raises ResolutionError where an expansion has made it too large."""
+    def checked_size(self, formula: Formula, subject: str, source: SourceFile, span: Span) -> Formula:
+        """Return the formula; raise ResolutionError if an expansion has made it too large."""
         if self.tree_size(formula) > LARGEST_EXPANSION:
-            raise too_large(what, source, span)
+            raise too_large(subject, source, span)
         return formula
 
 
-def too_large(what: str, source: SourceFile, span: Span) -> ResolutionError:
-    """The problem of an expansion past the limit; ``what`` names the bound, let, quantifier or parameter."""
-    if what.startswith("the bound"):
+def too_large(subject: str, source: SourceFile, span: Span) -> ResolutionError:
+    """Return the problem of an expansion past the limit.
+
+    ``subject`` names the bound, let, quantifier or parameter.
+    """
+    if subject.startswith("the bound"):
         advice = "choose a smaller bound or a slower clock, or let a signal count the time"
     else:
         advice = "it multiplies with each use inside another: say the same with fewer of them"
     return problem(
         "TLT0315",
-        f"{what} expands to more than {LARGEST_EXPANSION:,} parts",
+        f"{subject} expands to more than {LARGEST_EXPANSION:,} parts",
         source,
         span,
         advice=advice,

@@ -1,4 +1,4 @@
-"""Signals, params and the clock: declared anywhere in the program, one table for all of it."""
+"""Resolve signals, params and the clock into tables shared by the whole program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tltlc.resolve.values import Env, range_text
 
 
 def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) -> None:
-    """Fills the context's tables of signals, params and the clock; problems go to its log."""
+    """Fill the context's tables of signals, params and the clock; problems go to its log."""
     places: dict[str, Label] = {}
     ranged: set[str] = set()
     clock: Label | None = None
@@ -41,10 +41,10 @@ def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) 
 
 
 def _type(declaration: SignalDecl | ParamDecl, scope: Scope) -> ValueType:
-    found = units.value_type(declaration.type or "number")
-    if found is None:
+    type_ = units.value_type(declaration.type or "number")
+    if type_ is None:
         raise unknown_type(str(declaration.type), declaration, scope)
-    return found
+    return type_
 
 
 def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> tuple[float | None, float | None]:
@@ -120,10 +120,10 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: s
     raise _conflict("param", new.name, place, places[new.name])
 
 
-def _conflict(what: str, name: str, new: Label, old: Label) -> ResolutionError:
+def _conflict(kind: str, name: str, new: Label, old: Label) -> ResolutionError:
     return problem(
         "TLT0204",
-        f"the {what} `{name}` is declared in two different ways",
+        f"the {kind} `{name}` is declared in two different ways",
         new.source,
         new.span,
         "differs from the other declaration",
@@ -134,11 +134,11 @@ def _conflict(what: str, name: str, new: Label, old: Label) -> ResolutionError:
 
 def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
     source, written = env.scope.source, declaration.value
-    found = units.in_si(written.value, written.unit)
-    if found is not None and written.unit == "Hz" and written.value > 0:
-        period = 1.0 / found[0]
-    elif found is not None and found[1] == units.TYPES["time"] and written.value > 0:
-        period = found[0]
+    in_si = units.in_si(written.value, written.unit)
+    if in_si is not None and written.unit == "Hz" and written.value > 0:
+        period = 1.0 / in_si[0]
+    elif in_si is not None and in_si[1] == units.TYPES["time"] and written.value > 0:
+        period = in_si[0]
     else:
         title = "a clock is a frequency or a period, above zero"
         raise problem("TLT0314", title, source, written.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
@@ -160,11 +160,11 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
 
 
 def _override(options: ResolveOptions, context: Context) -> None:
-    """Applies the values given from outside the source text."""
+    """Apply the param values given outside the source text."""
     if options.params:
         from tltlc.resolve.overrides import overridden
 
-        params, found = overridden(context.params, options.params)
+        params, diagnostics = overridden(context.params, options.params)
         context.params.update(params)
-        for diagnostic in found:
+        for diagnostic in diagnostics:
             context.log.add(diagnostic)

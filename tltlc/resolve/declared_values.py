@@ -17,19 +17,19 @@ from tltlc.resolve.values import Env, Quantity
 
 
 def param(binding: Binding, env: Env) -> Quantity:
-    """The value of a declared param."""
+    """Return the value of a declared param."""
     declaration = binding.declaration
     assert isinstance(declaration, ParamDecl)
-    found = env.context.params.get(declaration.name)
-    if found is None:
+    declared = env.context.params.get(declaration.name)
+    if declared is None:
         raise ResolutionError(None)
-    low = -inf if found.low is None else found.low
-    high = inf if found.high is None else found.high
-    return Quantity(ParamNode(found.name), units.TYPES[found.type], low, high, found.name)
+    low = -inf if declared.low is None else declared.low
+    high = inf if declared.high is None else declared.high
+    return Quantity(ParamNode(declared.name), units.TYPES[declared.type], low, high, declared.name)
 
 
 def signal(expr: Name | Call, binding: Binding, env: Env) -> Quantity:
-    """The value of a declared signal, of the entities given."""
+    """Return the value of a declared signal for the entities given as arguments."""
     declaration = binding.declaration
     assert isinstance(declaration, SignalDecl)
     pairs = match(expr, binding, declaration.parameters, env.scope)
@@ -40,13 +40,13 @@ def signal(expr: Name | Call, binding: Binding, env: Env) -> Quantity:
         if info is None:
             raise ResolutionError(None)
         env.context.values[memo] = of_signal(env.context.signal(info, entities))
-    found: Quantity = env.context.values[memo]
-    return found
+    value: Quantity = env.context.values[memo]
+    return value
 
 
-def of_signal(found: Signal) -> Quantity:
-    """A signal's value."""
-    low = -inf if found.low is None else found.low
-    high = inf if found.high is None else found.high
-    dimension = units.TYPES[found.type]
-    return Quantity(SignalNode(found.name), dimension, low, high, found.name, is_bool=found.type == "bool")
+def of_signal(signal: Signal) -> Quantity:
+    """Return the value of a signal."""
+    low = -inf if signal.low is None else signal.low
+    high = inf if signal.high is None else signal.high
+    dimension = units.TYPES[signal.type]
+    return Quantity(SignalNode(signal.name), dimension, low, high, signal.name, is_bool=signal.type == "bool")

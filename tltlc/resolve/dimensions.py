@@ -1,4 +1,4 @@
-"""Checks of units: what is added, compared or handed over must have one dimension (TLT0305)."""
+"""Check units: numbers that are added, compared or passed must have one dimension (TLT0305)."""
 
 from __future__ import annotations
 
@@ -12,16 +12,20 @@ from tltlc.resolve.values import Env, Quantity
 
 
 def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
-    """The dimension of two quantities that are added or compared; raises ResolutionError (TLT0305) if they differ."""
+    """Return the dimension of two quantities that are added or compared.
+
+    Raises ResolutionError (TLT0305) if they differ.
+    """
     if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
         return left.dimension if left.dimension is not None else right.dimension
     raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.described(left.dimension)}")
 
 
-def _goes_on(written: str | None, wanted: str | None, found: Dimension) -> bool:
-    """Whether the number keeps its value with the unit that is wanted: none was written, or one that this begins with.
+def _keeps_value(written: str | None, wanted: str | None, found: Dimension) -> bool:
+    """Whether a fix may keep the written number and write the wanted unit after it.
 
-    A number is wanted without the unit that was written, if it is that of SI.
+    This holds if no unit was written, or if the wanted unit continues it (``m`` in ``m/s``). If no
+    unit is wanted, the written unit must be the SI unit.
     """
     if wanted is None:
         return written == units.si_unit(found)
@@ -29,16 +33,19 @@ def _goes_on(written: str | None, wanted: str | None, found: Dimension) -> bool:
 
 
 def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
-    """Whether a visible signal, param or parameter of this dimension is declared in other units than that of SI."""
+    """Whether a visible declaration of this dimension uses units other than the SI unit.
+
+    Looks at signals, params, and the parameters of lets and predicates.
+    """
     usual = {unit, *unit.split("/")}
     for binding in env.scope.names.values():
         declaration = binding.declaration
         if not isinstance(declaration, Name) and _is_of(dimension, declaration):
-            written = [part for whole in expressions(declaration) for part in parts(whole)]
-            of_numbers = {part.unit for part in written if isinstance(part, Number) and part.unit}
-            if of_numbers and not of_numbers & usual:
+            written = [part for expression in expressions(declaration) for part in parts(expression)]
+            number_units = {part.unit for part in written if isinstance(part, Number) and part.unit}
+            if number_units and not number_units & usual:
                 return True
-            # The unit of time behind the `/` of a speed is read as a name.
+            # The unit of time after the `/` of a speed is parsed as a name.
             names = {part.name for part in written if isinstance(part, Name)}
             if any(units.in_si(1.0, name) for name in names - usual):
                 return True
@@ -46,34 +53,34 @@ def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
 
 
 def _is_of(dimension: Dimension, declaration: Declaration) -> bool:
-    """Whether a declaration is of a signal or a param of this dimension, or has a parameter that is."""
+    """Whether a declaration is a signal or param of this dimension, or has such a parameter."""
     if isinstance(declaration, (SignalDecl, ParamDecl)):
         return units.TYPES.get(declaration.type or "") == dimension
     if isinstance(declaration, (LetDecl, PredicateDecl)):
-        return any(units.TYPES.get(each.type or "") == dimension for each in declaration.parameters)
+        return any(units.TYPES.get(parameter.type or "") == dimension for parameter in declaration.parameters)
     return False
 
 
 def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
-    """The problem of a quantity of the wrong dimension at ``at``."""
+    """Return the problem of a quantity of the wrong dimension at ``at``."""
     while isinstance(at, Group):
         at = at.inner
     unit = units.si_unit(expected)
-    advice, meant = None, ""
+    advice, replacement = None, ""
     if isinstance(at, Number):
         digits = env.scope.source.text[at.span.start : at.span.end]
         if at.unit and digits.endswith(at.unit):
             digits = digits[: -len(at.unit)].rstrip()
-        meant = f"{digits} {unit}" if unit else digits if expected == units.PLAIN else ""
-        why += f"; write `{meant}`" if meant else ""
+        replacement = f"{digits} {unit}" if unit else digits if expected == units.PLAIN else ""
+        why += f"; write `{replacement}`" if replacement else ""
         if expected == units.TYPES["angle"]:
-            why, meant = f"{why} or `{digits} deg`", ""
-        elif not _goes_on(at.unit, unit, found) or (unit and _has_other_units(expected, unit, env)):
-            meant = ""
+            why, replacement = f"{why} or `{digits} deg`", ""
+        elif not _keeps_value(at.unit, unit, found) or (unit and _has_other_units(expected, unit, env)):
+            replacement = ""
     elif unit:
         advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"
     elif expected == units.PLAIN and "divide" not in why:
         advice = f"divide it by {units.described(found)} to get a number"
     title = f"expected {units.described(expected)}, found {units.described(found)}"
-    fixes = (instead(env.scope.source, at.span, meant),) if meant else ()
+    fixes = (instead(env.scope.source, at.span, replacement),) if replacement else ()
     return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice, fixes=fixes)

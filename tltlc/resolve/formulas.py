@@ -1,7 +1,7 @@
-"""Formulas: from syntax to logic, with predicates, comparisons, lets, quantifiers and bounds settled.
+"""Resolve formulas: replace predicates, comparisons, lets, quantifiers and bounds by logic.
 
-The functions that walk the tree are generators (:mod:`tltlc.resolve.steps`): neither a long chain of
-operators nor a deep nest of lets can exhaust Python's stack.
+The functions that walk the tree are generators (:mod:`tltlc.resolve.steps`). Neither a long chain
+of operators nor deeply nested lets can exhaust Python's stack.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 
 def formula(expr: Expr, env: Env) -> Formula:
-    """The formula that an expression stands for; raises ResolutionError where it is none."""
+    """Return the formula of an expression; raise ResolutionError if it is not a formula."""
     return run(_formula(expr, env))
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Expands a let with symbolic arguments, so that its body is checked even if nothing uses it."""
+    """Expand a let with symbolic arguments, so that its body is checked even if nothing uses it."""
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
     values: dict[str, Value] = {}
@@ -93,7 +93,7 @@ def _formula(expr: Expr, env: Env) -> Steps:
 
 
 def _shared(expr: Call | Binary, env: Env) -> Steps:
-    """A call or comparison, once for each choice of the local names in it."""
+    """Resolve a call or comparison once for each choice of the local names in it."""
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
     if memo not in values:
@@ -123,13 +123,13 @@ def _named(expr: Name | Call, env: Env) -> Steps:
     if isinstance(declaration, SignalDecl) and declaration.type == "bool":
         return _bool_atom(signal(expr, binding, env), declaration.doc, expr, env)
     if isinstance(declaration, SignalDecl) and declaration.type is not None and value_type(declaration.type) is None:
-        # That there is no such type has been said where it is declared.
+        # The declaration has already been reported for its unknown type.
         raise ResolutionError(None)
     raise not_a_formula(expr, env)
 
 
 def _bool_atom(value: Quantity, doc: str, expr: Name | Call, env: Env) -> Formula:
-    """A bool as an atom: robustness 1 where it is true, -1 where it is false."""
+    """Return a bool as an atom: robustness 1 where it is true, -1 where it is false."""
     if value.is_constant:
         return logic.TRUE if value.low else logic.FALSE
     if env.symbolic:
@@ -143,21 +143,21 @@ def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
     assert isinstance(declaration, LetDecl)
     values: dict[str, Value] = {}
     for parameter, argument in match(expr, binding, declaration.parameters, env.scope):
-        where = env if argument is not None else env.within(binding.scope, dict(values))
-        given = argument if argument is not None else parameter.default
-        assert given is not None
-        local = where.local.get(given.name) if isinstance(given, Name) else None
+        argument_env = env if argument is not None else env.within(binding.scope, dict(values))
+        expression = argument if argument is not None else parameter.default
+        assert expression is not None
+        local = argument_env.local.get(expression.name) if isinstance(expression, Name) else None
         if isinstance(local, Unknown):
             values[parameter.name] = local
-        elif parameter.type == "formula" or (parameter.type is None and kind_of(given, where) == "formula"):
-            formula = yield _formula(given, where)
+        elif parameter.type == "formula" or (parameter.type is None and kind_of(expression, argument_env) == "formula"):
+            formula = yield _formula(expression, argument_env)
             if not env.unbounded:
-                # A default may use the parameters before it, and so double at each of them.
-                what = f"`{parameter.name}` of `{declaration.name}`"
-                env.context.checked_size(formula, what, where.scope.source, given.span)
+                # A default may use earlier parameters, so its size may double with each of them.
+                subject = f"`{parameter.name}` of `{declaration.name}`"
+                env.context.checked_size(formula, subject, argument_env.scope.source, expression.span)
             values[parameter.name] = formula
         else:
-            values[parameter.name] = argument_value(parameter, given, where, binding, 0)
+            values[parameter.name] = argument_value(parameter, expression, argument_env, binding, 0)
     try:
         return (yield _expand(declaration, binding, env.within(binding.scope, values), expr.span, env))
     except ResolutionError as failure:
@@ -167,7 +167,7 @@ def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
 
 
 def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> Steps:
-    """The body of a let with its parameters' values, each combination once."""
+    """Expand the body of a let with the values of its parameters, once per combination of values."""
     context, source = inside.context, user.scope.source
     key = id(declaration)
     if key in context.broken:
@@ -190,29 +190,29 @@ def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, use
         except ResolutionError:
             context.broken.add(key)
             raise
-    found: Formula = context.values[memo]
-    return found
+    expansion: Formula = context.values[memo]
+    return expansion
 
 
 def _quantified(expr: Quantified, env: Env) -> Steps:
-    what = f"`{'all' if expr.all else 'any'} {expr.variable}`"
+    subject = f"`{'all' if expr.all else 'any'} {expr.variable}`"
     parts: list[Formula] = []
     size = 0
     for name in expr.entities:
-        _count(what, expr.span, env)
+        _count(subject, expr.span, env)
         part = yield _formula(expr.body, env.also(expr.variable, entity(name, env)))
         parts.append(part)
         size += env.context.tree_size(part)
         if size > LARGEST_EXPANSION and not env.unbounded:
-            raise too_large(what, env.scope.source, expr.span)
+            raise too_large(subject, env.scope.source, expr.span)
     return logic.and_(*parts) if expr.all else logic.or_(*parts)
 
 
-def _count(what: str, span: Span, env: Env) -> None:
+def _count(subject: str, span: Span, env: Env) -> None:
     if env.unbounded:
         return
     env.context.expansions += 1
     if env.context.expansions > MOST_EXPANSIONS:
         env.context.broken.update(env.context.expanding)
         first = env.context.expansions == MOST_EXPANSIONS + 1
-        raise too_large(what, env.scope.source, span) if first else ResolutionError(None)
+        raise too_large(subject, env.scope.source, span) if first else ResolutionError(None)

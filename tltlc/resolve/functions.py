@@ -1,4 +1,4 @@
-"""Calls of the language's functions: how many arguments they take, and the dimension of their value."""
+"""Check calls of built-in functions: their number of arguments and the dimension of their value."""
 
 from __future__ import annotations
 
@@ -18,20 +18,23 @@ _ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3, "min": None,
 
 
 def check_arguments(call: Call, env: Env) -> None:
-    """Raises ResolutionError (TLT0210) where a function does not get the arguments that it takes."""
-    name, source, given = call.name, env.scope.source, len(call.arguments)
+    """Raise ResolutionError (TLT0210) if a function does not get the arguments that it takes."""
+    name, source, count = call.name, env.scope.source, len(call.arguments)
     named = next((argument for argument in call.arguments if argument.name is not None), None)
     if named is not None:
         title, advice = f"`{name}` takes its arguments by position", f"leave out `{named.name} =`"
         raise problem("TLT0210", title, source, named.span, advice=advice)
-    wanted = _ARGUMENTS[name]
-    if given < 2 if wanted is None else given != wanted:
-        text, example = _FORMS[wanted]
+    arity = _ARGUMENTS[name]
+    if count < 2 if arity is None else count != arity:
+        text, example = _FORMS[arity]
         raise problem("TLT0210", f"`{name}` takes {text}", source, call.span, advice=f"`{name}{example}`")
 
 
 def dimension(call: Call, values: tuple[Quantity, ...], env: Env) -> Dimension | None:
-    """The dimension of a function's value; raises ResolutionError (TLT0305) where those of its arguments do not fit."""
+    """Return the dimension of a function's value.
+
+    Raises ResolutionError (TLT0305) if the dimensions of the arguments do not fit.
+    """
     first, rest = values[0], values[1:]
     if call.name in ("exp", "tanh"):
         if first.dimension not in (None, units.PLAIN):
@@ -40,8 +43,8 @@ def dimension(call: Call, values: tuple[Quantity, ...], env: Env) -> Dimension |
         return units.PLAIN
     if call.name == "sqrt":
         return units.power(first.dimension, 0.5)
-    found = first.dimension
+    common = first.dimension
     for argument, value in zip(call.arguments[1:], rest, strict=True):
-        found = same_dimension(first, value, argument.value, env)
+        common = same_dimension(first, value, argument.value, env)
         first = value if first.dimension is None else first
-    return found
+    return common

@@ -1,4 +1,4 @@
-"""Finds, reads and parses the files that a module imports, directly or through others."""
+"""Find, read and parse the files that a module imports, directly or indirectly."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ _NO_FILE: Final = "there is no file `{}` beside this one"
 
 @record
 class Loaded:
-    """A parsed module, the name by which messages speak of it, and what each of its imports led to."""
+    """A parsed module, its name in messages, and the module that each of its imports leads to."""
 
     module: Module
     title: str
     imports: tuple[tuple[Import, Loaded], ...]
     complete: bool
-    """Whether the file could be read without error, and all that it imports."""
+    """Whether the file and everything it imports could be read without error."""
 
 
 def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...]:
-    """Every module reached from ``module``, each once, imported ones before those that import them.
+    """Return every module reachable from ``module``, once each, imported modules first.
 
-    The last one is ``module`` itself.  Imports that fail are reported and left out.
+    The last one is ``module`` itself. Imports that fail are logged and left out.
     """
     done: dict[Path, Loaded] = {}
     stack = [_Visit(module, _path_of(module.source), Path(module.source.name).stem)]
@@ -66,29 +66,35 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...
 
 
 def standard_library() -> Path:
-    """The folder of the standard library: inside an installed package, else beside it in a checkout."""
+    """Return the folder of the standard library.
+
+    It lies inside an installed package, and beside the package in a checkout.
+    """
     package = Path(__file__).parent.parent
     installed = package / "stdlib"
     return installed if installed.is_dir() else package.parent / "stdlib_predicates"
 
 
 def library_with(name: str) -> str | None:
-    """The standard library that declares a name, to suggest its import."""
+    """Return the standard library that declares a name, to suggest its import."""
     return _names_of_libraries().get(name)
 
 
 @lru_cache(maxsize=1)
 def _names_of_libraries() -> Mapping[str, str]:
-    """For each name, the first standard library that declares it; reads the files, so only for messages."""
+    """Map each name to the first standard library that declares it.
+
+    Reads the library files, so it is used only for messages.
+    """
     import re
 
     declared = re.compile(r"^(?:predicate|signal|param|let)\s+([A-Za-z_][A-Za-z0-9_]*)(?![A-Za-z0-9_.])", re.MULTILINE)
-    found: dict[str, str] = {}
+    libraries: dict[str, str] = {}
     for path in _files(standard_library()):
         if not path.stem.endswith("_tests"):
             for match in declared.finditer(read_source(path, _shown(path)).text):
-                found.setdefault(match[1], path.stem)
-    return found
+                libraries.setdefault(match[1], path.stem)
+    return libraries
 
 
 class _Visit:
@@ -106,7 +112,7 @@ class _Visit:
         self.pending = iter([d for d in module.declarations if isinstance(d, Import)])
 
     def add(self, declaration: Import, loaded: Loaded) -> None:
-        """Notes what an import led to."""
+        """Record the module that an import leads to."""
         self.found.append((declaration, loaded))
         self.complete = self.complete and loaded.complete
 
@@ -122,14 +128,17 @@ def _path_of(source: SourceFile) -> Path:
 
 
 def _folder(source: SourceFile) -> Path:
-    """The folder that imports are relative to, as the user wrote it; a text without a file is in the current one."""
+    """Return the folder that imports are relative to, as the user wrote it.
+
+    A text without a file uses the current folder.
+    """
     if source.name.startswith(STANDARD_LIBRARY_NAME):
         return standard_library()
     return Path(source.name).parent if not source.name.startswith("<") else Path()
 
 
 def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, str]:
-    """The absolute path of an imported file and the name to show for it."""
+    """Return the absolute path of an imported file and the name to show for it."""
     target = declaration.target
     here = _folder(source)
     folders = tuple(folder for folder in (here, *options.library_dirs, standard_library()) if not _is_gone(folder))
@@ -141,18 +150,18 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
             raise problem("TLT0010", _NO_FILE.format(target), source, declaration.target_span, advice=advice)
         _check_inside(shown, declaration, source)
         if not is_file(shown):
-            wanted = f"{shown.name.removesuffix('.tltl')}.tltl"
-            close = meant(wanted, [path.name for path in _files(shown.parent) if path.name != itself])
+            file_name = f"{shown.name.removesuffix('.tltl')}.tltl"
+            close = meant(file_name, [path.name for path in _files(shown.parent) if path.name != itself])
             unquoted = None if close else _library(target, folders)
             beginning = target[: target.rfind("/") + 1]
-            offered = f'"{beginning}{close}"' if close else unquoted
+            replacement = f'"{beginning}{close}"' if close else unquoted
             raise problem(
                 "TLT0010",
                 _NO_FILE.format(target),
                 source,
                 declaration.target_span,
                 advice=_similar(close) or _unquoted(unquoted) or "a path begins at the folder of this file",
-                fixes=(instead(source, declaration.target_span, offered),) if offered else (),
+                fixes=(instead(source, declaration.target_span, replacement),) if replacement else (),
             )
         return Path(_normal(shown.absolute())), _shown(shown)
     name = target.replace(".", "/") + ".tltl"
@@ -169,7 +178,10 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
 
 
 def _is_gone(path: Path) -> bool:
-    """Whether a path is relative to the current folder, and that has been deleted: nothing is read through it."""
+    """Whether a path is relative to a current folder that has been deleted.
+
+    Nothing can be read through such a path.
+    """
     if path.is_absolute():
         return False
     try:
@@ -180,9 +192,10 @@ def _is_gone(path: Path) -> bool:
 
 
 def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
-    """Raise TLT0777 for a path that may not be read, whether there is a file or not: that is not said either.
+    """Raise TLT0777 for a path that may not be read, whether or not the file exists.
 
-    A path with a NUL leads nowhere in any system, and so not out of a folder.
+    The error does not reveal whether there is a file. A path with a NUL byte is accepted here: it
+    names no file on any system, so it cannot leave a folder.
     """
     if "\0" not in declaration.target and not may_read(path):
         raise ResolutionError(outside(declaration.target, (Label(source, declaration.target_span),)))
@@ -193,7 +206,7 @@ def _similar(close: str | None) -> str | None:
 
 
 def _library(target: str, folders: tuple[Path, ...]) -> str | None:
-    """The library that a path in quotes names, if there is one."""
+    """Return the library that a quoted path names, or None."""
     name = target.removesuffix(".tltl")
     return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
 
@@ -218,7 +231,10 @@ def _normal(path: Path) -> str:
 
 
 def _shown(path: Path) -> str:
-    """Library files are shown under one name, wherever the package is installed."""
+    """Return the path to show for a file.
+
+    Library files have the same path wherever the package is installed.
+    """
     try:
         inside = Path(_normal(path.absolute())).relative_to(standard_library().absolute())
     except ValueError:
@@ -231,10 +247,10 @@ def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log:
         text = read_source(path, shown)
     except TltlError as failure:
         here = Label(source, declaration.target_span, "imported here")
-        found = failure.diagnostics[0]
-        # TLT0001 is for the files that a command names.
-        code = "TLT0010" if found.code == "TLT0001" else found.code
-        raise ResolutionError(replace(found, code=code, labels=(*found.labels, here))) from None
+        cause = failure.diagnostics[0]
+        # TLT0001 is reserved for files named on the command line.
+        code = "TLT0010" if cause.code == "TLT0001" else cause.code
+        raise ResolutionError(replace(cause, code=code, labels=(*cause.labels, here))) from None
     module, diagnostics = _parsed(text)
     for diagnostic in diagnostics:
         log.add(diagnostic)
@@ -244,7 +260,7 @@ def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log:
 
 @lru_cache(maxsize=64)
 def _parsed(text: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
-    """An imported file, parsed once however many files import it."""
+    """Parse an imported file, once no matter how many files import it."""
     from tltlc.grammar.parser import parse
 
     return parse(text)
@@ -253,7 +269,7 @@ def _parsed(text: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
 def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Visit]) -> ResolutionError:
     start = next(i for i, visit in enumerate(stack) if visit.path == path)
     names = [visit.title for visit in stack[start:]] + [stack[start].title]
-    others = tuple(
+    labels = tuple(
         Label(stack[i - 1].module.source, visit.reason.target_span, f"`{visit.title}` is imported here")
         for i, visit in enumerate(stack)
         if i > start and visit.reason
@@ -264,5 +280,5 @@ def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Vis
         source,
         declaration.target_span,
         advice="move what both need into a third file",
-        other=others,
+        other=labels,
     )
