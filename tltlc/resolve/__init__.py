@@ -1,1 +1,1 @@
-"""From a syntax tree to specs: imports, names, types, units, predicates, formulas."""
+"""Resolve a syntax tree into specs: imports, names, types, units, predicates, formulas."""

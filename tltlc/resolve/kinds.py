@@ -1,4 +1,4 @@
-"""Looks names up, and says what kind of thing an expression is."""
+"""Look names up and classify expressions as entities, numbers or formulas."""
 
 from __future__ import annotations
 
@@ -19,23 +19,24 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
 
 _MOST_LETTERS = 4
-"""So many operators may stand in front of a name."""
+"""The most operator letters that may stand directly in front of a name."""
 _MOST_NAMES = 5
-"""So many entities are named in a message."""
+"""The most entities that a message lists."""
 _MOST_HINTS = 50
-"""Behind so many problems an unknown name is not compared with all that are known: of many, that takes long."""
+"""The number of logged problems after which unknown names get no suggestions: comparisons are slow."""
 _DECLARATIONS = {
     "predicate": "signal {name}: bool",
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
-"""How a name can be declared of which nothing alike is known, by the kind that was looked for."""
+"""The declaration to suggest for an unknown name without a similar known one, by its kind."""
 
 
-def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> Binding:
-    """What a name stands for in a scope; raises ResolutionError (TLT0201) with a suggestion where it is unknown.
+def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], noun: str) -> Binding:
+    """Return the binding of a name.
 
-    Nothing is said where an import has failed that may have brought the name.
+    Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. Reports nothing if a
+    failed import may have declared the name.
     """
     binding = env.scope.names.get(use.name)
     if binding is not None:
@@ -51,15 +52,17 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
             span,
             advice="`if a, then b` is written `a implies b`; where both are to hold at one step, `a and b`",
         )
-    title, source = f"no {what} `{use.name}` here", env.scope.source
+    title, source = f"no {noun} `{use.name}` here", env.scope.source
     is_helped = len(env.context.log) < _MOST_HINTS
-    meant = _in_two_words(use.name, env, wanted) if is_helped and what == "predicate" else None
-    if meant:
-        raise problem("TLT0201", title, source, span, f"did you mean `{meant}`?", fixes=(instead(source, span, meant),))
+    spaced = _in_two_words(use.name, env, wanted) if is_helped and noun == "predicate" else None
+    if spaced:
+        raise problem(
+            "TLT0201", title, source, span, f"did you mean `{spaced}`?", fixes=(instead(source, span, spaced),)
+        )
     if source.text[: span.start].endswith("-- "):
         raise problem("TLT0201", title, source, span, advice="comments begin with `//`")
     constant = use.name.lower()
-    if what == "predicate" and constant in ("true", "false"):
+    if noun == "predicate" and constant in ("true", "false"):
         hint = f"did you mean `{constant}`?"
         raise problem("TLT0201", title, source, span, hint, fixes=(instead(source, span, constant),))
     near = closest_name(use.name, env.scope, wanted, env.local) if is_helped else None
@@ -69,13 +72,13 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
         hint = f"did you mean `{near}`{via}?"
         raise problem("TLT0201", title, source, span, hint, fixes=(instead(source, span, near),))
     library = library_with(use.name)
-    line = f"import {library}" if library else _DECLARATIONS[what].format(name=use.name)
+    line = f"import {library}" if library else _DECLARATIONS[noun].format(name=use.name)
     if library:
         advice = f"`{use.name}` is in the library {library}: add `{line}`"
     else:
-        advice = f"declare it: `{line}`" if what == "entity" else _OTHERWISE.format(line)
+        advice = f"declare it: `{line}`" if noun == "entity" else _OTHERWISE.format(line)
     fixes: tuple[Fix, ...] = ()
-    # What a call needs is another declaration, with parameters.
+    # A call would need a declaration with parameters, which this fix does not offer.
     if is_helped and (library or isinstance(use, Name)):
         fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (at_top(env.scope.module, line),)),)
     raise problem("TLT0201", title, source, span, advice=advice, fixes=fixes)
@@ -85,7 +88,10 @@ _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
 
 
 def _in_two_words(name: str, env: Env, wanted: tuple[Kind, ...]) -> str | None:
-    """``F a`` for ``Fa``, where `a` is a name of one of these kinds; None for all else."""
+    """Return ``F a`` for ``Fa`` if `a` is a visible name of one of these kinds.
+
+    Returns None otherwise.
+    """
     for letters in range(1, min(len(name), _MOST_LETTERS + 1)):
         if name[letters - 1] not in "FGXN":
             break
@@ -97,7 +103,7 @@ def _in_two_words(name: str, env: Env, wanted: tuple[Kind, ...]) -> str | None:
 
 
 def entity(expr: Expr, env: Env) -> Entity:
-    """The entity that an argument names; raises ResolutionError."""
+    """Return the entity that an argument names; raise ResolutionError if it names none."""
     while isinstance(expr, Group):
         expr = expr.inner
     if isinstance(expr, Name):
@@ -123,15 +129,15 @@ _ONE_ENTITY = "name one entity, and join what is said of each by `and`, `or` or 
 
 
 def _entities(env: Env) -> str:
-    """Which entities there are."""
+    """Return a help that lists the visible entities."""
     known = [f"`{name}`" for name, binding in env.scope.names.items() if binding.kind == "entity"]
     listed = ", ".join(known[:_MOST_NAMES]) + (", …" if len(known) > _MOST_NAMES else "")
     return f"the entities are {listed}" if known else "declare one with `entity NAME`"
 
 
 def said_of(entity: str, env: Env, *, number: bool) -> str:
-    """What can be said of an entity in this scope, or measured of it, as a help."""
-    # What a predicate says is meant to be asked for.
+    """Return a help that shows how to use an entity as a condition, or as a number."""
+    # Sorting by kind puts predicates before signals: predicates are declared to be used this way.
     for name, binding in sorted(env.scope.names.items(), key=lambda item: item[1].kind):
         declared = binding.declaration
         if isinstance(declared, (SignalDecl, tree.PredicateDecl)):
@@ -145,7 +151,7 @@ def said_of(entity: str, env: Env, *, number: bool) -> str:
 
 
 def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
-    """What an argument is, from its outermost part alone; unknown names count as formulas."""
+    """Return the kind of an argument from its outermost part; unknown names count as formulas."""
     while isinstance(expr, Group):
         expr = expr.inner
     if isinstance(expr, (tree.Number, tree.When)):
@@ -169,7 +175,7 @@ def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
 
 
 def described_kind(expr: Expr, env: Env) -> str:
-    """The kind of an expression in words, for ``expected a number, found …``."""
+    """Return the kind of an expression in words, for ``expected a number, found …``."""
     while isinstance(expr, Group):
         expr = expr.inner
     if isinstance(expr, tree.Constant):
@@ -181,18 +187,18 @@ def described_kind(expr: Expr, env: Env) -> str:
 
 
 def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
-    """The problem of a number or an entity where a formula must stand."""
+    """Return the problem of a number or an entity in place of a formula."""
     advice = None
     if kind_of(expr, env) == "number":
         advice = _how_to_compare(expr, env)
     elif kind_of(expr, env) == "entity":
         advice = said_of(env.scope.source.slice(expr.span), env, number=False)
-    found = described_kind(expr, env)
-    return problem("TLT0301", f"expected a formula, found {found}", env.scope.source, expr.span, advice=advice)
+    kind = described_kind(expr, env)
+    return problem("TLT0301", f"expected a formula, found {kind}", env.scope.source, expr.span, advice=advice)
 
 
 def _how_to_compare(expr: Expr, env: Env) -> str:
-    """How a number becomes a condition."""
+    """Return a help that shows how to turn a number into a condition."""
     text = env.scope.source.slice(expr.span)
     is_short = len(text) <= 40 and not isinstance(expr, tree.When)
     if _is_literal(expr):
@@ -201,12 +207,12 @@ def _how_to_compare(expr: Expr, env: Env) -> str:
 
 
 def _is_literal(expr: Expr) -> bool:
-    """Whether an expression is written with numbers alone."""
+    """Whether an expression consists of numbers only."""
     return not any(isinstance(part, (Name, Call, tree.When)) for part in parts(expr))
 
 
 def _threshold(expr: Expr, env: Env) -> str:
-    """A number that a signal or param may be compared with, in the unit of its type."""
+    """Return an example value to compare a signal or param with, in the unit of its type."""
     binding = env.scope.names.get(expr.name) if isinstance(expr, (Name, Call)) else None
     declaration = binding.declaration if binding else None
     type_ = declaration.type if isinstance(declaration, (SignalDecl, tree.ParamDecl)) else None

@@ -1,9 +1,10 @@
-"""The robustness of a comparison: its margin, scaled to [-1, 1], with the sign that its truth gives.
+"""The robustness of a comparison: its margin scaled to [-1, 1], with the sign of its truth.
 
-The margin is ``left - right``. Doubles subtract without losing the sign: the margin is above 0 exactly where the left
-side is greater. Scaling may lose it: a small margin over a large width rounds to 0, and the width of a large range is
-too large for a number. So a margin above 0 that might round to 0 gives at least the smaller of itself and
-:data:`tltlc.expression.tree.LEAST`, and halves of both sides are subtracted where the width is too large.
+The margin is ``left - right``. Subtraction of doubles keeps the sign: the margin is above 0 exactly
+where the left side is greater. Scaling can lose the sign: a small margin over a large width rounds
+to 0, and the width of a large range overflows. Two measures prevent this. A margin above 0 that
+might round to 0 gives at least the smaller of itself and :data:`tltlc.expression.tree.LEAST`. If
+the width overflows, the halves of both sides are subtracted instead.
 """
 
 from __future__ import annotations
@@ -16,39 +17,40 @@ from tltlc.expression.tree import LEAST, Const, Expression, Op
 from tltlc.resolve.values import Quantity
 
 _NEVER_LOST: Final = 2.0**-126
-"""The smallest normal number of 32 bits: a quotient at least this large does not round to 0."""
+"""The smallest normal 32-bit float: a quotient at least this large does not round to 0."""
 
 
 def robustness(left: Quantity, right: Quantity) -> Expression:
-    """The robustness of ``left > right``: 1 and -1 where the margin is greatest and least, each side scaled on its own.
+    """Return the robustness of ``left > right``, scaled separately above and below 0.
 
-    The sides have finite ranges, and some of their values make the comparison true.
+    It is 1 at the greatest margin and -1 at the least. The sides must have finite ranges, and some
+    of their values must make the comparison true.
     """
     holding, failing = _Width(left.high, right.low), _Width(right.high, left.low)
     share = _share(left, right, holding)
     is_lost = _gap(left, right) / holding.full < _NEVER_LOST
-    kept = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.full > 1 else ()
+    floor = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.full > 1 else ()
     if failing.full == 0 or failing.order == holding.order:
-        return _greatest(share, *kept)
-    # Of the two quotients, the one over the smaller divisor is the greater above 0 and the smaller below.
+        return _greatest(share, *floor)
+    # The quotient with the smaller divisor is the greater of the two above 0 and the smaller one below 0.
     other = _share(left, right, failing)
     if holding.order < failing.order:
-        return _greatest(share, *kept, other)
+        return _greatest(share, *floor, other)
     if failing.full > 1:
-        return _greatest(Op("min", (share, other)), *kept)
-    return Op("min", (_greatest(share, *kept), other))
+        return _greatest(Op("min", (share, other)), *floor)
+    return Op("min", (_greatest(share, *floor), other))
 
 
 @record
 class _Width:
-    """The greatest margin on one side: from ``least`` to ``most``."""
+    """The greatest margin on one side: the distance from ``least`` to ``most``."""
 
     most: float
     least: float
 
     @property
     def full(self) -> float:
-        """Infinite where it is too large for a number."""
+        """The width, infinite if it overflows."""
         return self.most - self.least
 
     @property
@@ -57,12 +59,12 @@ class _Width:
 
     @property
     def order(self) -> tuple[float, float]:
-        """What widths are compared by."""
+        """The key by which widths are compared."""
         return self.full, self.half
 
 
 def _share(left: Quantity, right: Quantity, width: _Width) -> Expression:
-    """The margin over its greatest value."""
+    """Return the margin divided by its greatest value."""
     if isinf(width.full):
         halves = Op("-", (_half(left.expression), _half(right.expression)))
         return Op("/", (halves, Const(width.half)))
@@ -83,12 +85,12 @@ def _margin(left: Quantity, right: Quantity) -> Expression:
 
 
 def _gap(left: Quantity, right: Quantity) -> float:
-    """What two different values of the sides differ by at least, if only by 0."""
+    """Return a lower bound for the difference of two unequal values of the sides; may be 0."""
     return max(_spacing(left), _spacing(right))
 
 
 def _spacing(side: Quantity) -> float:
-    """How near the next number may be to a value of a side."""
+    """Return a lower bound for the distance from a value of a side to the next float."""
     if side.low <= 0 <= side.high:
         return 0.0
     return ulp(min(abs(side.low), abs(side.high))) / 2

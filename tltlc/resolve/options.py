@@ -1,4 +1,4 @@
-"""What resolution is told from outside the source text."""
+"""Settings of resolution that come from outside the source text."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from tltlc.core.record import EMPTY, record
 
 @record
 class ResolveOptions:
-    """``library_dirs`` are searched for imports after the file's own folder; ``params`` overrides values by name.
+    """Settings of resolution.
 
-    A value is written as in a source text, ``"25 m"``; without a unit it is in SI units.  ``proofs`` says whether
-    predicates are proved to stay in their ranges, which takes longer than all the rest.
+    ``library_dirs`` are searched for imports after the file's own folder. ``params`` overrides the
+    values of params by name; a value is written as in a source text, ``"25 m"``, and is in SI units
+    if it has no unit. ``proofs`` turns on the proofs that predicates stay in their ranges, which
+    take longer than everything else.
     """
 
     library_dirs: tuple[Path, ...] = ()

@@ -1,4 +1,4 @@
-"""Values of params that are given from outside: on the command line, or when an artefact is loaded."""
+"""Param values given on the command line or when an artefact is loaded."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from tltlc.resolve.values import number_text, range_text
 
 
 def overridden(params: Mapping[str, Param], values: Mapping[str, str]) -> tuple[dict[str, Param], list[Diagnostic]]:
-    """The params with the values as written (``{"level_size": "25 m"}``), and what is wrong with those.
+    """Return the params with the given values (``{"level_size": "25 m"}``) and the problems found.
 
-    Diagnostics: TLT0308 for a name that is no param and for a text that is no value for it, TLT0307
-    for a value outside the param's range.
+    Diagnostics: TLT0308 for a name that is not a param and for a text that is not a value for it,
+    TLT0307 for a value outside the param's range.
     """
     result = dict(params)
-    found = []
+    diagnostics = []
     for name, text in values.items():
         old = params.get(name)
         changed = _unknown(name, params) if old is None else _override(old, text)
         if isinstance(changed, Diagnostic):
-            found.append(changed)
+            diagnostics.append(changed)
         else:
             result[name] = changed
-    return result, found
+    return result, diagnostics
 
 
 def _unknown(name: str, params: Mapping[str, Param]) -> Diagnostic:
@@ -43,14 +43,14 @@ def _unknown(name: str, params: Mapping[str, Param]) -> Diagnostic:
 
 
 def _override(old: Param, text: str) -> Param | Diagnostic:
-    found = override(text)
+    parsed = override(text)
     dimension = units.TYPES[old.type]
-    if found is None or found[1] not in (None, dimension):
+    if parsed is None or parsed[1] not in (None, dimension):
         unit = units.si_unit(dimension)
         advice = f"write a number, e.g. `{old.name}={number_text(old.value)}{' ' + unit if unit else ''}`"
         return Diagnostic("TLT0308", f"`{text}` is no value for the param `{old.name}`", (), advice)
     low, high = -inf if old.low is None else old.low, inf if old.high is None else old.high
-    if not low <= found[0] <= high:
+    if not low <= parsed[0] <= high:
         advice = f"its range is {range_text(low, high, dimension)}"
         return Diagnostic("TLT0307", f"`{text}` lies outside the range of the param `{old.name}`", (), advice)
-    return replace(old, value=found[0])
+    return replace(old, value=parsed[0])

@@ -1,4 +1,4 @@
-"""Uses of predicates: their arguments, the value they stand for, and the names of their atoms."""
+"""Uses of predicates: their arguments, their value, and the names of their atoms."""
 
 from __future__ import annotations
 
@@ -29,14 +29,20 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
 
 @record
 class PredicateUse:
-    """A predicate with its arguments: its value (named and bounded as declared) and its documentation."""
+    """A predicate with its arguments: its value and its documentation.
+
+    The value has the name of the atom and the declared range.
+    """
 
     value: Quantity
     doc: str
 
 
 def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
-    """The value of a predicate where it is used; its name is that of the atom, e.g. ``near(s1, close=3)``."""
+    """Return the value of a predicate where it is used.
+
+    The name of the value is the name of the atom, e.g. ``near(s1, close=3)``.
+    """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
     values: dict[str, Value] = {}
@@ -57,7 +63,7 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
             continue
         if isinstance(value, Quantity):
             place = Label(env.scope.source, use.span)
-            # A number that is passed on is known only where the definition around is used: the range is checked there.
+            # A symbolic number gets its value where the enclosing definition is used; the range is checked there.
             settled = settled and (value.is_constant or not env.symbolic)
     name = f"{declaration.name}({', '.join(shown)})" if shown else declaration.name
     try:
@@ -70,9 +76,9 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Instantiates a predicate with symbolic arguments, so that its body is checked even if nothing uses it.
+    """Instantiate a predicate with symbolic arguments, so that its body is checked even if unused.
 
-    Its range is checked only if it needs no numbers: those decide what the range is.
+    Its range is checked only if the predicate needs no numbers, because the range depends on them.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
@@ -95,7 +101,10 @@ def check_unused(binding: Binding, env: Env) -> None:
 
 
 def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> Value:
-    """The value of an argument for a parameter of a predicate or a numeric one of a ``let``; raises ResolutionError."""
+    """Return the value of an argument of a predicate, or of a numeric argument of a ``let``.
+
+    Raises ResolutionError if the argument does not fit the parameter.
+    """
     while isinstance(argument, Group):
         argument = argument.inner
     if parameter.type == "entity" or (parameter.type is None and kind_of(argument, env) == "entity"):
@@ -112,10 +121,10 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
     env.context.arithmetic_of(value.expression, env.scope.source, argument.span)
     if type_ is None or value.dimension is None:
         return value
-    wanted = units.TYPES[type_]
-    if value.dimension != wanted:
+    dimension = units.TYPES[type_]
+    if value.dimension != dimension:
         article = "an" if type_ == "angle" else "a"
-        raise mismatch(wanted, value.dimension, argument, env, f"`{parameter.name}` is {article} {type_}")
+        raise mismatch(dimension, value.dimension, argument, env, f"`{parameter.name}` is {article} {type_}")
     if type_ == "ratio" and isinstance(value.expression, Const) and not 0 <= value.expression.value <= 1:
         raise problem(
             "TLT0307",
@@ -128,7 +137,10 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
 
 
 def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
-    """The value type of a parameter, None where it takes any; raises ResolutionError (TLT0211) for an unknown one."""
+    """Return the value type of a parameter, or None if it takes any.
+
+    Raises ResolutionError (TLT0211) for an unknown type.
+    """
     if parameter.type is None or parameter.type in units.TYPES:
         return parameter.type
     raise unknown_type(parameter.type, parameter, binding.scope)
@@ -141,11 +153,11 @@ _TYPES_ELSEWHERE: Final = {
     "duration": "time",
     "velocity": "speed",
 }
-"""What types are called elsewhere, beside units."""
+"""Names of types in other languages, apart from units."""
 
 
 def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
-    """The problem of a type that the language has not."""
+    """Return the problem of a type that the language does not have."""
     known = [*units.TYPES, "entity"]
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
     close = elsewhere or meant(name, known)
@@ -157,16 +169,16 @@ def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, sc
 
 
 def _symbolic(parameter: Parameter, binding: Binding, env: Env) -> Value:
-    """A value for a parameter of which only the type is known: a number becomes a signal of its own."""
+    """Return a symbolic value for a parameter: a number becomes a signal of its own."""
     if parameter.type == "entity":
         return Entity(parameter.name)
     type_ = parameter_type(parameter, binding)
     if type_ is None:
         return Unknown(parameter.name)
     low, high = (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
-    found = Signal(parameter.name, cast(ValueType, type_), low, high)
-    env.context.signals.setdefault(found.name, found)
-    return of_signal(found)
+    signal = Signal(parameter.name, cast(ValueType, type_), low, high)
+    env.context.signals.setdefault(signal.name, signal)
+    return of_signal(signal)
 
 
 def _text(value: Value) -> str:
@@ -186,8 +198,8 @@ def _instantiate(
     context = env.context
     memo = (id(declaration), tuple(values.values()))
     if memo in context.values:
-        found: Quantity = context.values[memo]
-        return found
+        known: Quantity = context.values[memo]
+        return known
     if id(declaration) in context.broken:
         raise ResolutionError(None)
     settled = settled and not any(isinstance(value, Unknown) for value in values.values())
@@ -202,7 +214,10 @@ def _instantiate(
 
 
 def declared_range(declaration: PredicateDecl, scope: Scope, env: Env) -> tuple[float, float]:
-    """The declared range of a predicate, [-1, 1] where there is none; raises ResolutionError."""
+    """Return the declared range of a predicate, or [-1, 1] if there is none.
+
+    Raises ResolutionError (TLT0303) if the range does not lie in [-1, 1].
+    """
     if declaration.interval is None:
         return -1.0, 1.0
     low, high = interval(declaration.interval, units.PLAIN, env.within(scope, {}))
@@ -241,7 +256,10 @@ def _note_instance(
     depth: int,
     place: Label | None,
 ) -> None:
-    """Keeps the predicate to be checked, once for all entities: they are replaced by the parameters' names."""
+    """Record the predicate for the check, once for all entities.
+
+    Entities are replaced by the names of the parameters.
+    """
     general: dict[str, Value] = {}
     names: dict[str, str] = {}
     for name, value in values.items():

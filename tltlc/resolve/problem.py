@@ -1,4 +1,4 @@
-"""The one exception inside resolution: it ends the clause or declaration at hand, never the whole run."""
+"""The one exception of resolution: it ends the current clause or declaration, never the whole run."""
 
 from __future__ import annotations
 
@@ -10,28 +10,33 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
 class ResolutionError(Exception):
-    """Carries a diagnostic; ``diagnostic`` is None where the cause has been reported already."""
+    """Carries a diagnostic, or None if the cause has already been reported."""
 
     def __init__(self, diagnostic: Diagnostic | None) -> None:
         self.diagnostic = diagnostic
         super().__init__(diagnostic.title if diagnostic else "reported before")
 
     def used_at(self, use: Label, source: SourceFile, body: Span) -> None:
-        """Adds the place that uses a definition to a problem in its body that the arguments may have caused."""
-        found = self.diagnostic
-        if found is None or found.code not in _OF_ARGUMENTS or len(found.labels) >= _MOST_PLACES:
+        """Add the place of a use to a problem in the body of a definition.
+
+        Only for problems that the arguments may have caused.
+        """
+        diagnostic = self.diagnostic
+        if diagnostic is None or diagnostic.code not in _OF_ARGUMENTS or len(diagnostic.labels) >= _MOST_PLACES:
             return
-        last = found.labels[-1]
+        last = diagnostic.labels[-1]
         if last.source is source and body.start <= last.span.start <= last.span.end <= body.end:
-            # Other uses of the definition may be right: what mends it for this one does not mend it.
-            self.diagnostic = replace(found, labels=(*found.labels, replace(use, message="used here")), fixes=())
+            # Other uses of the definition may be correct, so a fix for this use must not change the definition.
+            self.diagnostic = replace(
+                diagnostic, labels=(*diagnostic.labels, replace(use, message="used here")), fixes=()
+            )
 
 
 _OF_ARGUMENTS: Final = {"TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "TLT0310", "TLT0311"}
 """The codes of problems that a definition may have with some arguments and not with others."""
 
 _MOST_PLACES: Final = 4
-"""How many places a problem shows, its own included, where definitions use each other."""
+"""The most places that one problem shows, its own included, where definitions use each other."""
 
 
 def problem(
@@ -45,13 +50,13 @@ def problem(
     other: tuple[Label, ...] = (),
     fixes: tuple[Fix, ...] = (),
 ) -> ResolutionError:
-    """A problem whose main place is ``span``, with a short remark under its caret and further places behind it."""
+    """Return a problem at ``span``, with a short message under the caret and optional further labels."""
     labels = (Label(source, span, message), *other)
     return ResolutionError(Diagnostic(code, title, labels, advice, fixes=fixes))
 
 
 class Log:
-    """The diagnostics found so far, each place and code once."""
+    """The diagnostics so far; one per code and place."""
 
     def __init__(self) -> None:
         self._found: dict[object, Diagnostic] = {}
@@ -60,7 +65,7 @@ class Log:
         return len(self._found)
 
     def add(self, diagnostic: Diagnostic | None) -> None:
-        """Keep a diagnostic; None and repetitions are ignored."""
+        """Store a diagnostic; ignore None and repetitions."""
         if diagnostic is None:
             return
         main = diagnostic.labels[0] if diagnostic.labels else None
@@ -68,7 +73,7 @@ class Log:
         self._found.setdefault((diagnostic.code, place), diagnostic)
 
     def all(self) -> tuple[Diagnostic, ...]:
-        """Every diagnostic: those of a file in the order of its text, files in the order in which they came up."""
+        """Return every diagnostic, by file in order of first report, and within a file by position."""
         files: dict[str, int] = {}
 
         def place(diagnostic: Diagnostic) -> tuple[int, int]:

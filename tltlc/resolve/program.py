@@ -1,4 +1,4 @@
-"""From a syntax tree to a program: every name, type and unit settled."""
+"""Resolve a syntax tree into a program: every name, type and unit."""
 
 from __future__ import annotations
 
@@ -25,12 +25,16 @@ from tltlc.resolve.tests import resolved_test
 from tltlc.resolve.values import Env
 
 FormulaOf = Callable[[Expr], "Formula | None"]
-"""The formula that an expression stands for, None where it stands for none."""
+"""Return the formula of an expression, or None if it is not a formula."""
 
 
 @record
 class Resolution:
-    """A program, what its module sees (``env``), the modules it is made of (itself last), and what is to be said."""
+    """The result of resolution: the program, its environment, its modules and the diagnostics.
+
+    ``env`` holds everything that the module sees. ``modules`` are in import order, the module
+    itself last.
+    """
 
     program: Program
     env: Env
@@ -39,16 +43,20 @@ class Resolution:
 
 
 def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Program, tuple[Diagnostic, ...]]:
-    """The specs and tests of a module that resolve, and everything that is to be said about it.
+    """Return the specs and tests of a module that resolve, and all diagnostics.
 
-    Reads the files that it imports.  Never raises on bad input: what is in error is reported and left out.
+    Reads the files that the module imports. Never raises on bad input: everything in error is
+    reported and left out.
     """
-    found = resolution(module, options)
-    return found.program, found.diagnostics
+    result = resolution(module, options)
+    return result.program, result.diagnostics
 
 
 def resolution(module: Module, options: ResolveOptions | None = None) -> Resolution:
-    """As :func:`resolve`, with the scope and the modules, for tools that look at expressions and names themselves."""
+    """Like :func:`resolve`, but also returns the scope and the modules.
+
+    For tools that look at expressions and names themselves.
+    """
     options = options or ResolveOptions()
     env, groups, modules = _declared(module, options)
     context, scope = env.context, env.scope
@@ -62,8 +70,8 @@ def resolution(module: Module, options: ResolveOptions | None = None) -> Resolut
     if options.proofs:
         check_predicates(context)
     program = Program(
-        tuple(found for found in specs.values() if found is not None),
-        tuple(found for found in tests if found is not None),
+        tuple(resolved for resolved in specs.values() if resolved is not None),
+        tuple(test for test in tests if test is not None),
         vocabulary([name for group in groups for name in group], groups, context),
     )
     return Resolution(program, env, modules, context.log.all())
@@ -72,19 +80,20 @@ def resolution(module: Module, options: ResolveOptions | None = None) -> Resolut
 def resolve_atoms(
     module: Module, written: Sequence[SourceFile], options: ResolveOptions | None = None
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
-    """The atoms that texts elsewhere stand for, in the words of a module, and what is to be said and is not allowed.
+    """Resolve texts from elsewhere to atoms in the vocabulary of a module.
 
-    A text is a formula that is an atom, or the name that an atom of the module's own specs has, which says no units.
-    None where the module or a text is in error, and where two are one atom.  Further formulas can be read, of which
-    nothing is said.
+    A text is a formula that is an atom, or the name of an atom of the module's own specs, written
+    without units. Returns the vocabulary, a function that resolves further formulas without
+    reporting anything, and the diagnostics that no ``allow`` silences. The vocabulary is None if
+    the module or a text is in error, or if two texts name the same atom.
     """
     env, groups, modules = _declared(module, options or ResolveOptions())
     context = env.context
-    kept: list[Expr] = []
+    expressions: list[Expr] = []
 
     def formula_of(expression: Expr) -> Formula | None:
-        # The context knows expressions by their identity, so they must live as long as it does.
-        kept.append(expression)
+        # The context refers to expressions by identity, so they must live as long as the context.
+        expressions.append(expression)
         try:
             return formulas.formula(expression, env)
         except ResolutionError:
@@ -95,23 +104,23 @@ def resolve_atoms(
     own, context.log = context.log, Log()
     _specs(env.scope, groups, env)
     context.log = own
-    found: dict[str, Label] = {}
+    places: dict[str, Label] = {}
     for source in written:
         try:
-            name, here = _atom(source, env, kept)
-            if name in found:
+            name, here = _atom(source, env, expressions)
+            if name in places:
                 title, advice = f"`{name}` stands here twice", "give each atom a predicate of its own"
-                raise problem("TLT0655", title, source, here.span, advice=advice, other=(found[name],))
-            found[name] = here
+                raise problem("TLT0655", title, source, here.span, advice=advice, other=(places[name],))
+            places[name] = here
         except ResolutionError as failure:
             context.log.add(failure.diagnostic)
     check_predicates(context)
-    said = unsilenced((loaded.module for loaded in modules), context.log.all())
-    return vocabulary(found, groups, context) if len(found) == len(written) else None, formula_of, said
+    diagnostics = unsilenced((loaded.module for loaded in modules), context.log.all())
+    return vocabulary(places, groups, context) if len(places) == len(written) else None, formula_of, diagnostics
 
 
-def _atom(source: SourceFile, env: Env, kept: list[Expr]) -> tuple[str, Label]:
-    """The name of the atom that a text stands for, and where it stands; raises ResolutionError where it is none."""
+def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, Label]:
+    """Return the name of the atom of a text and its place; raise ResolutionError if it is not an atom."""
     text = source.text.strip()
     start = source.text.find(text)
     here = Label(source, Span(start, start + len(text)))
@@ -119,30 +128,33 @@ def _atom(source: SourceFile, env: Env, kept: list[Expr]) -> tuple[str, Label]:
     if name in env.context.atoms:
         return name, here
     expression, problems = parse_formula(source)
-    for each in problems:
-        if each.severity == "error":
-            raise ResolutionError(each)
-        env.context.log.add(each)
+    for diagnostic in problems:
+        if diagnostic.severity == "error":
+            raise ResolutionError(diagnostic)
+        env.context.log.add(diagnostic)
     assert expression is not None
-    kept.append(expression)
-    found = formulas.formula(expression, replace(env, scope=replace(env.scope, module=Module(source, (), ()))))
-    if found.op != "atom":
+    expressions.append(expression)
+    atom = formulas.formula(expression, replace(env, scope=replace(env.scope, module=Module(source, (), ()))))
+    if atom.op != "atom":
         title, advice = "this is no atom", "name a predicate, a `bool` signal or a comparison with `<` or `>`"
         raise problem("TLT0655", title, source, here.span, advice=advice)
-    return found.name, here
+    return atom.name, here
 
 
 def _declared(module: Module, options: ResolveOptions) -> tuple[Env, tuple[tuple[str, ...], ...], tuple[Loaded, ...]]:
-    """What a module sees, itself and by its imports, the groups of ``exclusive``, and these modules."""
+    """Return the environment of a module, the ``exclusive`` groups, and all modules.
+
+    The groups come from the module and from its imports.
+    """
     context = Context()
     modules = load(module, options, context.log)
     scopes = build_scopes(modules, context.log)
     declare(scopes, options, context)
-    return Env(context, scopes[-1]), tuple(group for each in scopes for group in _exclusive(each, context)), modules
+    return Env(context, scopes[-1]), tuple(group for scope in scopes for group in _exclusive(scope, context)), modules
 
 
 def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:
-    """The names of the atoms of each ``exclusive`` of a module."""
+    """Return the names of the atoms of each ``exclusive`` of a module."""
     env = Env(context, scope)
     groups = []
     for declaration in scope.module.declarations:
@@ -157,12 +169,12 @@ def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:
 def _group(declaration: ExclusiveDecl, env: Env) -> tuple[str, ...]:
     names: dict[str, None] = {}
     for written in declaration.atoms:
-        found = formulas.formula(written, env)
-        if found.op != "atom":
+        atom = formulas.formula(written, env)
+        if atom.op != "atom":
             title = "`exclusive` lists atoms"
             advice = "name predicates, `bool` signals or comparisons with `<` or `>`"
             raise problem("TLT0316", title, env.scope.source, written.span, advice=advice)
-        names[found.name] = None
+        names[atom.name] = None
     if len(names) < 2:
         title = "`exclusive` needs at least two different atoms"
         raise problem("TLT0316", title, env.scope.source, declaration.span, advice="name another one, or leave it out")
@@ -170,17 +182,17 @@ def _group(declaration: ExclusiveDecl, env: Env) -> tuple[str, ...]:
 
 
 def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[str, Spec | None]:
-    found: dict[str, Spec | None] = {}
+    specs: dict[str, Spec | None] = {}
     places: dict[str, SpecDecl] = {}
     for declaration in scope.module.declarations:
         if not isinstance(declaration, SpecDecl):
             continue
         name = declaration.name
         resolved = spec(declaration, groups, env)
-        # The names of specs are names of files, and some file systems do not tell capitals apart.
+        # Spec names become file names, and some file systems ignore case.
         earlier = places.setdefault(name.lower(), declaration)
         if earlier is declaration:
-            found[name] = resolved
+            specs[name] = resolved
             continue
         title = f"`{earlier.name}` and `{name}` would share their files"
         remarks = ("differs in capitals only", "the other spec")
@@ -197,11 +209,11 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
             other=(Label(scope.source, earlier.name_span, remarks[1]),),
         )
         env.context.log.add(twice.diagnostic)
-    return found
+    return specs
 
 
 def _check_unused(scope: Scope, env: Env) -> None:
-    """The module's own predicates and lets that nothing has used must be right as well."""
+    """Check the module's own predicates and lets that nothing has used."""
     for binding in scope.names.values():
         if binding.scope is not scope:
             continue

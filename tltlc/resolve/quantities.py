@@ -1,4 +1,4 @@
-"""Arithmetic: from syntax to expressions over signals and params, with units checked."""
+"""Resolve arithmetic to expressions over signals and params, and check units."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 
 
 def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
-    """The number that an expression stands for; raises ResolutionError where it is none or its units do not fit."""
+    """Return the number of an expression.
+
+    Raises ResolutionError if it is not a number or its units do not fit.
+    """
     while isinstance(expr, Group):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
@@ -41,7 +44,7 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
-    """The condition of a ``when`` and its text; raises ResolutionError."""
+    """Return the condition of a ``when`` and its text; raise ResolutionError if it is not one."""
     while isinstance(expr, Group):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
@@ -96,8 +99,8 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
 
 
 def _number(expr: Number, env: Env) -> Quantity:
-    found = units.in_si(expr.value, expr.unit)
-    if found is None:
+    in_si = units.in_si(expr.value, expr.unit)
+    if in_si is None:
         raise problem(
             "TLT0304",
             f"`{expr.unit}` cannot be used in arithmetic",
@@ -105,7 +108,7 @@ def _number(expr: Number, env: Env) -> Quantity:
             expr.span,
             advice="steps count samples: they belong to bounds such as `within 20 steps` and to `limit`",
         )
-    value, dimension = found
+    value, dimension = in_si
     if isinf(value):
         advice = "write a number that is finite in SI units"
         raise problem("TLT0109", "this number is too large", env.scope.source, expr.span, advice=advice)
@@ -118,9 +121,9 @@ def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
         if isinstance(local, Quantity) and isinstance(expr, Name):
             return local
         if isinstance(local, Unknown):
-            found = Signal(local.name, "number", None, None)
-            env.context.signals.setdefault(found.name, found)
-            return replace(of_signal(found), dimension=None)
+            placeholder = Signal(local.name, "number", None, None)
+            env.context.signals.setdefault(placeholder.name, placeholder)
+            return replace(of_signal(placeholder), dimension=None)
         raise _not_a_number(expr, env)
     if env.constant:
         raise problem(
@@ -165,9 +168,10 @@ def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
 
 
 def _is_per_time(expr: tree.Binary, env: Env) -> bool:
-    """Whether this is a literal speed such as ``3 m/s``: a unit lexes as a name behind the ``/``.
+    """Whether this is a literal speed such as ``3 m/s``.
 
-    A signal or param of that name takes precedence, except in constants, where it could not stand.
+    The unit after the ``/`` is lexed as a name. A signal or param of that name takes precedence,
+    except in constants, where neither is allowed.
     """
     left, per = expr.left, expr.right
     if isinstance(left, tree.Unary) and left.op == "-":
@@ -181,7 +185,10 @@ def _is_per_time(expr: tree.Binary, env: Env) -> bool:
 
 
 def _check_speed(expr: tree.Binary, env: Env) -> None:
-    """Raises ResolutionError for ``a / 1 m/s``, which is read as ``(a / 1 m) / s``, where there is no `s`."""
+    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if there is no `s`.
+
+    It is read as ``(a / 1 m) / s``.
+    """
     inner, per = expr.left, expr.right
     if expr.op != "/" or not isinstance(inner, tree.Binary) or inner.op not in ("*", "/") or not isinstance(per, Name):
         return
@@ -226,12 +233,12 @@ def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
         values.append(quantity(case.value, env, depth))
     otherwise = quantity(expr.otherwise, env, depth)
     values.append(otherwise)
-    # What a test compares may be a value that was known before, and deep.
+    # A test may compare a value that was computed earlier, whose expression may be deep.
     deepest = max([*(value.depth for value in values), *(depth_of(test) for test, _ in tests)])
     typical = next((value for value in values if value.dimension is not None), otherwise)
     for value, at in zip(values, [*(case.value for case in expr.cases), expr.otherwise], strict=True):
         same_dimension(typical, value, at, env)
-    # The last value has no test: that is `otherwise`.
+    # The last value, `otherwise`, has no test.
     cases = tuple((test, value.expression) for (test, _), value in zip(tests, values, strict=False))
     texts = [f"when {text}: {value.text}" for (_, text), value in zip(tests, values, strict=False)]
     return Quantity(
@@ -265,7 +272,7 @@ def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
 
 
 def _too_deep(expr: Expr, env: Env) -> ResolutionError:
-    # Reported once for all predicates on the way, or a chain of a thousand would be followed a thousand times.
+    # Report this once for all predicates being expanded. Otherwise a chain of n predicates is followed n times.
     env.context.broken.update(env.context.expanding)
     return problem(
         "TLT0317",

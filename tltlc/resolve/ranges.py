@@ -1,9 +1,9 @@
 """The range of an operator's result from the ranges of its arguments.
 
-Plain interval arithmetic without outward rounding: it gives the ends by which comparisons are
-scaled, where 0 to 1 must stay 0 to 1, and the values of constants.  Each operation rounds as the
-evaluator's does, so no value of an expression lies outside its range by a rounding.  Proofs about predicates use
-the rigorous arithmetic of :mod:`tltlc.resolve.range_proof`.
+This is plain interval arithmetic without outward rounding. It gives the ends that scale
+comparisons, where 0 to 1 must stay 0 to 1, and the values of constants. Each operation rounds as
+the evaluator does, so rounding never puts the value of an expression outside its range. Proofs
+about predicates use the rigorous arithmetic of :mod:`tltlc.resolve.range_proof`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ EVERYTHING: Range = (-inf, inf)
 
 
 def range_of(op: str, args: tuple[Range, ...]) -> Range:
-    """The range of ``op`` (as in :class:`tltlc.expression.tree.Op`); everything where it has no bound or no value."""
+    """Return the range of ``op`` (see :class:`tltlc.expression.tree.Op`).
+
+    Returns everything if the result is unbounded or undefined.
+    """
     try:
         low, high = _FUNCTIONS[op](*args)
     except (OverflowError, ZeroDivisionError):
@@ -28,7 +31,7 @@ def range_of(op: str, args: tuple[Range, ...]) -> Range:
 
 
 def overflows(op: str, args: tuple[Range, ...]) -> bool:
-    """Whether ``op`` has a value everywhere in finite ranges, and that value may be too large for a number."""
+    """Whether ``op`` is defined everywhere in finite ranges, but its value may overflow."""
     if not all(isfinite(end) for arg in args for end in arg) or not _is_defined(op, args):
         return False
     return not all(isfinite(end) for end in range_of(op, args))
@@ -46,7 +49,7 @@ def _is_defined(op: str, args: tuple[Range, ...]) -> bool:
 
 
 def hull(ranges: tuple[Range, ...]) -> Range:
-    """The smallest range that contains all of them."""
+    """Return the smallest range that contains all the ranges."""
     return min(low for low, _ in ranges), max(high for _, high in ranges)
 
 
@@ -82,7 +85,7 @@ def _power(a: Range, b: Range) -> Range:
 
 
 def _integer_power(x: float, exponent: float) -> float:
-    """``x ^ exponent``, rounded as :func:`tltlc.expression.evaluate.evaluate` rounds it."""
+    """Return ``x ^ exponent``, rounded as :func:`tltlc.expression.evaluate.evaluate` rounds it."""
     factors = MULTIPLIED_EXPONENTS.get(exponent)
     return float(x**exponent) if factors is None else prod([x] * (factors - 1), start=x)
 

@@ -1,4 +1,4 @@
-"""Which names a module sees: its own and those that its imports offer."""
+"""The names that a module sees: its own and those of its imports."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MERGED = ("signal", "param", "entity")
 
 @record
 class Binding:
-    """What a name stands for, the scope it was declared in, and the import that brought it, if any."""
+    """The declaration of a name, its scope, and the import that brought it, if any."""
 
     kind: Kind
     declaration: Declared
@@ -31,42 +31,43 @@ class Binding:
 
     @property
     def name(self) -> str:
-        """The declared name, whatever alias led here."""
+        """The declared name, without any alias."""
         return self.declaration.name
 
     @property
     def span(self) -> Span:
-        """Where the name is declared, in ``scope.source``."""
+        """The place of the declared name in ``scope.source``."""
         return self.declaration.span if isinstance(self.declaration, Name) else self.declaration.name_span
 
 
 @record
 class Scope:
-    """A module's source and the names visible in it."""
+    """A module and the names visible in it."""
 
     module: Module
     title: str
     incomplete: bool
-    """Whether an import that failed may have brought further names, here or in a module that this one imports."""
+    """Whether names may be missing because an import failed, here or in an imported module."""
     names: dict[str, Binding]
 
     @property
     def source(self) -> SourceFile:
-        """The text that spans of this scope's declarations point into."""
+        """The text that the spans of this scope's declarations refer to."""
         return self.module.source
 
 
 def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
-    """One scope per module, in the same order, which has imported modules first.
+    """Return one scope per module, in the given order (imported modules first).
 
-    The import that exceeds the limit of names (TLT0012) brings none, and neither does any later import.
+    The import that exceeds the limit of names (TLT0012) brings no names, and neither does any later
+    import.
     """
     scopes: dict[int, Scope] = {}
     room = _Room()
     for loaded in modules:
         imports = [(declaration, scopes[id(target)]) for declaration, target in loaded.imports]
-        taken = [each for each in imports if room.has_for(*each, loaded.module.source, log)]
-        incomplete = not loaded.complete or len(taken) < len(imports) or any(each.incomplete for _, each in taken)
+        taken = [pair for pair in imports if room.has_for(*pair, loaded.module.source, log)]
+        incomplete = not loaded.complete or len(taken) < len(imports) or any(target.incomplete for _, target in taken)
         scope = Scope(loaded.module, loaded.title, incomplete, {})
         scopes[id(loaded)] = scope
         for binding in _own(scope):
@@ -77,13 +78,16 @@ def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
 
 
 def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str | None:
-    """The visible name of one of these kinds that an unknown name is a slip of, if any is."""
+    """Return the visible name of one of these kinds that an unknown name most likely misspells.
+
+    Returns None if no name is close.
+    """
     wanted = set(kinds)
     return meant(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in wanted)])
 
 
 class _Room:
-    """How many names, of how many letters, the imports of a program may still offer."""
+    """The number of names, and of their letters, that the imports of a program may still offer."""
 
     def __init__(self) -> None:
         self._names: int = IMPORTED.values or 0
@@ -91,10 +95,10 @@ class _Room:
         self._is_over = False
 
     def has_for(self, declaration: Import, target: Scope, source: SourceFile, log: Log) -> bool:
-        """Whether there is room for the names of an import, which is counted before it is done."""
+        """Whether there is room for the names of an import; counts them before the import is done."""
         if self._is_over:
             return False
-        chosen = target.names if declaration.names is None else [each.name for each in declaration.names]
+        chosen = target.names if declaration.names is None else [wanted.name for wanted in declaration.names]
         self._names -= len(chosen)
         if declaration.alias and self._names >= 0:
             self._letters -= (len(declaration.alias) + 1) * len(chosen) + sum(map(len, chosen))
@@ -111,7 +115,7 @@ class _Room:
 
 
 def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:
-    """Makes the chosen names of an imported module visible."""
+    """Make the chosen names of an imported module visible."""
     chosen = dict(offered) if declaration.names is None else {}
     for wanted in declaration.names or ():
         if wanted.name in offered:
@@ -119,8 +123,8 @@ def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, l
         else:
             log.add(_not_offered(scope, wanted, declaration.target, offered))
     prefix = f"{declaration.alias}." if declaration.alias else ""
-    for name, found in chosen.items():
-        log.add(_offer(scope, prefix + name, replace(found, via=declaration.target), declaration.span))
+    for name, binding in chosen.items():
+        log.add(_offer(scope, prefix + name, replace(binding, via=declaration.target), declaration.span))
 
 
 def _own(scope: Scope) -> Iterator[Binding]:
@@ -203,9 +207,9 @@ def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str,
 
 
 def _prefixed(target: str | None) -> str:
-    """The import of a library or file that puts a short name in front of its own."""
+    """Return the import of a library or file with a short alias."""
     target = target or ""
     letters = "".join(c for c in target.rsplit("/", 1)[-1] if c.isascii() and c.isalpha())[:2].lower()
     written = f'"{target}"' if "/" in target or target.endswith(".tltl") else target
-    # `or` is the one reserved word of two letters.
+    # `or` is the only reserved word of two letters.
     return f"import {written} as {letters if len(letters) == 2 and letters != 'or' else 'lib'}"

@@ -1,6 +1,6 @@
-"""What a specification means once every name, type and unit is settled: the compiler's middle.
+"""The data model of a resolved specification: every name, type and unit is known.
 
-Nothing here points back to the syntax tree, except by span for messages.
+Nothing here refers to the syntax tree, except by span for messages.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ Judge = Literal["goal", "limit"]
 
 @record
 class Signal:
-    """A number that the game supplies at each step, in SI units; None is an open end of the range."""
+    """A number that the game supplies at each step, in SI units.
+
+    A bound is None where the range is open.
+    """
 
     name: str
     type: ValueType
@@ -41,7 +44,7 @@ class Param:
 
 @record
 class Atom:
-    """An atom: holds iff its expression, with values in [-1, 1], is > 0."""
+    """An atom: it holds iff its expression, with values in [-1, 1], is > 0."""
 
     name: str
     expression: Expression
@@ -50,7 +53,7 @@ class Atom:
 
 @record
 class Bound:
-    """A bound of a temporal operator: its greatest number of samples, and where it is written."""
+    """A bound of a temporal operator: its largest number of samples, and its place."""
 
     samples: int
     source: SourceFile
@@ -59,11 +62,11 @@ class Bound:
 
 @record
 class Part:
-    """One conjunct of a spec's formula and the clause that it came from, so that errors can name it.
+    """One conjunct of a spec's formula and its clause, so that errors can name the clause.
 
-    ``bounds`` are those that were expanded in the clause.  ``unbounded`` is the formula with ``F p`` for
-    ``F[0,3] p`` and ``G p`` for ``G[0,3] p``, which decides when a spec is judged (docs/adr/0009), and None where
-    it is ``formula``.
+    ``bounds`` are the bounds expanded in the clause. ``unbounded`` is the formula with ``F p`` for
+    ``F[0,3] p`` and ``G p`` for ``G[0,3] p``; it decides when a spec is judged (docs/adr/0009). It
+    is None if it equals ``formula``.
     """
 
     formula: Formula
@@ -77,10 +80,10 @@ class Part:
 class Spec:
     """A specification, ready for the automaton.
 
-    ``atoms`` are those of the formula in order of appearance, then those only in ``exclusive``.
-    ``exclusive`` holds groups of indices into ``atoms``; ``signals`` and ``params`` are those that
-    the atoms use, in order of first use.  ``judge`` is None where no clause decides
-    (semantics, section 4).  ``clock_s`` is the sampling period in seconds, or None.
+    ``atoms`` are the atoms of the formula in order of appearance, then those only in ``exclusive``.
+    ``exclusive`` holds groups of indices into ``atoms``. ``signals`` and ``params`` are those that
+    the atoms use, in order of first use. ``judge`` is None if no clause sets it (semantics, section
+    4). ``clock_s`` is the sampling period in seconds, or None.
     """
 
     name: str
@@ -103,7 +106,10 @@ class Spec:
 
 @record
 class Vocabulary:
-    """What letters are made of, beside a formula: fields as of :class:`Spec`, ``atoms`` in the order asked for."""
+    """The atoms that letters consist of, without a formula.
+
+    The fields are as in :class:`Spec`; ``atoms`` are in the requested order.
+    """
 
     atoms: tuple[Atom, ...]
     signals: tuple[Signal, ...]
@@ -122,7 +128,7 @@ class Step:
 
 @record
 class Expect:
-    """What must hold of the prefix so far; fields as in :class:`tltlc.grammar.tree.TestExpect`."""
+    """An expectation about the prefix so far; fields as in :class:`tltlc.grammar.tree.TestExpect`."""
 
     kind: Literal["verdict", "progress", "state"]
     value: str | float
@@ -146,7 +152,8 @@ class Test:
 class Program:
     """A resolved file: its own specs and tests, in order.
 
-    ``exclusive`` are the atoms of all groups that it and its imports declare, used or not, with these groups.
+    ``exclusive`` is the vocabulary of all ``exclusive`` groups that the file and its imports
+    declare, used or not.
     """
 
     specs: tuple[Spec, ...]

@@ -1,4 +1,4 @@
-"""Specs: their clauses, what they conjoin to, and what they say about themselves."""
+"""Resolve specs: their clauses, the conjunction of these, and their metadata."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _ONCE = ("level", "limit", "judge", "semantics")
 
 
 def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -> Spec | None:
-    """The resolved spec, or None where a clause is in error or none asks for anything.
+    """Return the resolved spec, or None if a clause is in error or no clause asks for anything.
 
     Every clause in error is reported to the log.
 
-    ``groups`` are the names of the atoms of each ``exclusive``; those of which the formula has at least
-    two are part of the spec.
+    ``groups`` holds the atom names of each ``exclusive``. The groups that share at least two atoms
+    with the formula become part of the spec.
     """
     log, source = env.context.log, env.scope.source
     parts: list[Part] = []
@@ -55,12 +55,12 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
         complete = False
     if not complete or not parts:
         return None
-    whole = and_(*(part.formula for part in parts))
-    words = vocabulary(whole.atoms(), groups, env.context)
+    conjunction = and_(*(part.formula for part in parts))
+    words = vocabulary(conjunction.atoms(), groups, env.context)
     return Spec(
         name=declaration.name,
         doc=declaration.doc,
-        formula=whole,
+        formula=conjunction,
         parts=tuple(parts),
         atoms=words.atoms,
         signals=words.signals,
@@ -78,7 +78,7 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
 
 
 def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Context) -> Vocabulary:
-    """The atoms of these names, and those of each ``exclusive`` of which at least two are used."""
+    """Return the atoms of these names, and those of each ``exclusive`` with at least two of them."""
     used = list(used)
     exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
     names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
@@ -94,7 +94,7 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
 
 
 def _parts(clause: Clause, env: Env) -> list[Part]:
-    """What a clause asks for, with its bounds, and without them where the program has any."""
+    """Return the formulas of a clause, with their bounds and their unbounded form if there are bounds."""
     read = _READERS[clause.kind]
     before = len(env.context.bounds)
     parts = read(clause, env)
@@ -109,7 +109,7 @@ def _parts(clause: Clause, env: Env) -> list[Part]:
 
 
 def _reach(clause: Clause, env: Env) -> list[Part]:
-    # Read in the order written, so that the first error is the one reported.
+    # Resolve in the order written, so that the first error is the one reported.
     *before, result = [formula(operand, env) for operand in operands(_expression(clause), "then")]
     if not before:
         result = eventually(result)
@@ -143,12 +143,12 @@ def _expression(clause: Clause) -> Expr:
     return clause.value
 
 
-def _part(whole: Formula, clause: Clause, env: Env) -> Part:
-    return Part(whole, env.scope.source, clause.span)
+def _part(conjunct: Formula, clause: Clause, env: Env) -> Part:
+    return Part(conjunct, env.scope.source, clause.span)
 
 
 def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
-    """Keeps a clause of metadata; raises ResolutionError where it is repeated."""
+    """Store a metadata clause; raise ResolutionError (TLT0214) if it is repeated."""
     source = env.scope.source
     if clause.kind in metadata:
         raise problem(
@@ -185,5 +185,5 @@ def _word(clause: Clause | None) -> str | None:
 
 
 def _variables(expression: Expression) -> list[SignalNode | ParamNode]:
-    """The signals and params of an expression, in order of appearance."""
+    """Return the signals and params of an expression, in order of appearance."""
     return [node for node in nodes(expression) if isinstance(node, (SignalNode, ParamNode))]

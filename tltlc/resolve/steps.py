@@ -1,4 +1,4 @@
-"""Recursion without Python's stack: generators that yield those whose results they wait for."""
+"""Recursion without Python's stack: generators that yield the generators they wait for."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ Steps = Generator[Any, Any, Any]
 
 
 def run(steps: Steps) -> Formula:
-    """The result of a generator; a ResolutionError passes through all that wait for the one that raises it."""
+    """Return the result of a generator.
+
+    A ResolutionError passes through all generators that wait for the one that raises it.
+    """
     stack = [steps]
     result: Formula | None = None
     failure: ResolutionError | None = None

@@ -1,4 +1,4 @@
-"""``test`` blocks: traces in atoms and what must hold of them."""
+"""Resolve ``test`` blocks: traces of atoms and expectations about them."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tltlc.resolve.values import Env
 
 
 def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env) -> Test | None:
-    """The resolved test, or None where something in it is in error or its spec is.
+    """Return the resolved test, or None if anything in it or its spec is in error.
 
-    ``specs`` holds every spec of the file, None for those in error.  Problems go to the log.
+    ``specs`` holds every spec of the file, None for a spec in error. Problems go to the log.
     """
     context, source = env.context, env.scope.source
     name = declaration.spec.name
@@ -72,20 +72,23 @@ def _step(item: TestStep, spec: Spec, env: Env) -> Step:
 
 
 def _literal(written: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:
-    """The name of an atom, written as a formula or as the name that it has, which says no units, and its polarity."""
+    """Return the name of an atom and its polarity.
+
+    The atom is written as a formula, or as the name of the atom, which has no units.
+    """
     holds, inner = True, written
     while isinstance(inner, Group) or (isinstance(inner, Unary) and inner.op == "not"):
         inner, holds = (inner.inner, holds) if isinstance(inner, Group) else (inner.operand, not holds)
     name = names.get(_squeezed(env.scope.source.text[inner.span.start : inner.span.end]))
     if name is not None:
         return name, holds
-    found = formula(inner, env)
-    while found.op == "not":
-        found, holds = found.args[0], not holds
-    if found.op != "atom":
+    literal = formula(inner, env)
+    while literal.op == "not":
+        literal, holds = literal.args[0], not holds
+    if literal.op != "atom":
         advice = "name predicates, `bool` signals or comparisons, each with `not` or without"
         raise problem("TLT0316", "a step consists of atoms", env.scope.source, written.span, advice=advice)
-    return found.name, holds
+    return literal.name, holds
 
 
 def _squeezed(text: str) -> str:

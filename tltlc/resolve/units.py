@@ -1,4 +1,4 @@
-"""Dimensions, units and how messages name them."""
+"""Dimensions, units and their names in messages."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final, cast
 from tltlc.resolve.spec import ValueType
 
 Dimension = tuple[float, float, float]
-"""Exponents of metre, second and radian."""
+"""The exponents of metre, second and radian."""
 
 PLAIN: Final[Dimension] = (0.0, 0.0, 0.0)
 _FREQUENCY: Final[Dimension] = (0.0, -1.0, 0.0)
@@ -56,12 +56,12 @@ _SI: Final[dict[Dimension, str]] = {
 
 
 def value_type(name: str) -> ValueType | None:
-    """The type of that name, or None if the language has no such type."""
+    """Return the type of that name, or None if the language has no such type."""
     return cast(ValueType, name) if name in TYPES else None
 
 
 def type_of_unit(unit: str) -> str | None:
-    """The type of what is measured in a unit; None for what is no unit of a type."""
+    """Return the type that is measured in a unit, or None if there is none."""
     if unit == "%":
         return "ratio"
     dimension = _UNITS[unit][2] if unit in _UNITS else None
@@ -69,28 +69,31 @@ def type_of_unit(unit: str) -> str | None:
 
 
 def in_si(value: float, unit: str | None) -> tuple[float, Dimension] | None:
-    """A literal's value in SI units and its dimension; None for a unit that measures no quantity (``steps``)."""
+    """Return a literal's value in SI units and its dimension.
+
+    Returns None for a unit that measures no quantity (``steps``).
+    """
     if unit is None:
         return value, PLAIN
     if unit not in _UNITS:
         return None
     numerator, denominator, dimension = _UNITS[unit]
-    # One division, so that 29 % is the same number as 0.29.
+    # Divide once, so that 29 % is the same number as 0.29.
     return value * numerator / denominator, dimension
 
 
 def time_units() -> tuple[str, ...]:
-    """The units of time, as they may stand behind the ``/`` of a speed."""
+    """Return the units of time that may follow the ``/`` of a speed."""
     return tuple(unit for unit, (_, _, dimension) in _UNITS.items() if dimension == TYPES["time"])
 
 
 def si_unit(dimension: Dimension) -> str | None:
-    """How a literal of that dimension may be written in SI units, or None if no unit does."""
+    """Return the SI unit of a literal of that dimension, or None if there is none."""
     return _SI.get(dimension)
 
 
 def described(dimension: Dimension) -> str:
-    """The dimension in words, e.g. ``a length``."""
+    """Return the dimension in words, e.g. ``a length``."""
     if dimension in _NAMES:
         return _NAMES[dimension]
     return "a quantity in " + " ".join(
@@ -101,12 +104,15 @@ def described(dimension: Dimension) -> str:
 
 
 def product(left: Dimension | None, right: Dimension | None, sign: float = 1.0) -> Dimension | None:
-    """The dimension of ``left * right``, or of ``left / right`` where ``sign`` is -1; None fits any dimension."""
+    """Return the dimension of ``left * right``, or of ``left / right`` if ``sign`` is -1.
+
+    None fits any dimension.
+    """
     if left is None or right is None:
         return None
     return (left[0] + sign * right[0], left[1] + sign * right[1], left[2] + sign * right[2])
 
 
 def power(base: Dimension | None, exponent: float) -> Dimension | None:
-    """The dimension of ``base ^ exponent``."""
+    """Return the dimension of ``base ^ exponent``."""
     return None if base is None else (base[0] * exponent, base[1] * exponent, base[2] * exponent)

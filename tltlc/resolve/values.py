@@ -1,4 +1,4 @@
-"""What an expression of the surface language stands for while it is resolved."""
+"""The values of expressions of the surface language during resolution."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tltlc.resolve.scope import Scope
 from tltlc.resolve.units import Dimension, si_unit
 
 LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
-"""How tightly the text of a quantity binds."""
+"""How tightly the text of a quantity binds, from loosest to tightest."""
 
 
 @record
@@ -29,10 +29,11 @@ class Entity:
 class Quantity:
     """A number that depends on signals and params.
 
-    ``dimension`` None fits any (0, inf); ``low`` and ``high`` bound the value, in SI units; ``text`` is
-    its one spelling in the names of atoms and ``binding`` how tightly that spelling binds; ``depth``
-    is that of the expression; ``is_bool`` marks a value that is 0 or 1 by type; ``overflows`` one whose arithmetic may
-    be too large for a number although all that it is computed from has a finite range.
+    ``dimension`` None fits any (0, inf). ``low`` and ``high`` bound the value, in SI units.
+    ``text`` is its unique spelling in the names of atoms, and ``binding`` how tightly that spelling
+    binds. ``depth`` is the depth of the expression. ``is_bool`` marks a value that is 0 or 1 by
+    type. ``overflows`` marks a value whose arithmetic may overflow although all its inputs have
+    finite ranges.
     """
 
     expression: Expression
@@ -51,13 +52,13 @@ class Quantity:
         return isinstance(self.expression, Const)
 
     def bracketed(self, binding: int) -> str:
-        """The text, in brackets where it binds more loosely than asked."""
+        """Return the text, in brackets if it binds more loosely than ``binding``."""
         return self.text if self.binding >= binding else f"({self.text})"
 
 
 @record
 class Unknown:
-    """A parameter whose value may be anything: what a ``let`` is checked with before its first use."""
+    """A parameter of unknown value; used to check a ``let`` before its first use."""
 
     name: str
 
@@ -67,11 +68,13 @@ Value = Union[Entity, Quantity, Formula, Unknown]
 
 @record
 class Env:
-    """Where an expression stands: the scope of its text and the values of the parameters around it.
+    """The environment of an expression: the scope of its text and the values of parameters in
+    scope.
 
-    ``symbolic`` marks the check of a definition whose parameters have no values yet; ``constant`` allows
-    numbers only.  ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``, in what has been read
-    with its bounds before, so that no size is checked and nothing counted again.
+    ``symbolic`` marks the check of a definition whose parameters have no values yet. ``constant``
+    allows numbers only. ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``. It
+    is only used on text that has already been read with its bounds, so no size is checked and
+    nothing is counted again.
     """
 
     context: Context
@@ -82,29 +85,29 @@ class Env:
     unbounded: bool = False
 
     def within(self, scope: Scope, local: Mapping[str, Value]) -> Env:
-        """The inside of a declaration of ``scope``."""
+        """Return the environment inside a declaration of ``scope``."""
         return replace(self, scope=scope, local=local)
 
     def also(self, name: str, value: Value) -> Env:
-        """With one more local name."""
+        """Return the environment with one more local name."""
         return replace(self, local={**self.local, name: value})
 
 
 def number_text(value: float) -> str:
-    """The shortest text that reads back as the same number, whole ones without a point."""
-    whole = not isinf(value) and abs(value) < 1e15 and value == int(value)
-    return str(int(value)) if whole else repr(value)
+    """Return the shortest text that reads back as the same number; whole numbers have no point."""
+    is_whole = not isinf(value) and abs(value) < 1e15 and value == int(value)
+    return str(int(value)) if is_whole else repr(value)
 
 
 def range_text(low: float, high: float, dimension: Dimension | None) -> str:
-    """A range as messages show it, in SI units: ``[2 m, inf]``."""
+    """Return a range as messages show it, in SI units: ``[2 m, inf]``."""
     unit = si_unit(dimension) if dimension else None
     ends = (number_text(end) + (f" {unit}" if unit and not isinf(end) else "") for end in (low, high))
     return f"[{', '.join(ends)}]"
 
 
 def constant(value: float, dimension: Dimension | None) -> Quantity:
-    """A plain number."""
+    """Return a plain number as a quantity."""
     return Quantity(Const(value), dimension, value, value, number_text(value), SIGN if value < 0 else CLOSED)
 
 
@@ -117,7 +120,10 @@ _INFIX = {
 
 
 def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Quantity | None:
-    """``op`` over quantities; of constants, a constant, or None if they give no finite value (``1 / 0``)."""
+    """Apply ``op`` to quantities.
+
+    Constants give a constant, or None if the value is not finite (``1 / 0``).
+    """
     ranges = tuple((arg.low, arg.high) for arg in args)
     low, high = range_of(op, ranges)
     if all(arg.is_constant for arg in args):
