@@ -68,8 +68,7 @@ Value = Union[Entity, Quantity, Formula, Unknown]
 
 @record
 class Env:
-    """The environment of an expression: the scope of its text and the values of parameters in
-    scope.
+    """The environment of an expression: the scope of its text and the values of its parameters.
 
     ``symbolic`` marks the check of a definition whose parameters have no values yet. ``constant``
     allows numbers only. ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``. It

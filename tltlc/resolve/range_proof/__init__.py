@@ -1,4 +1,4 @@
-"""Checks of predicates: range and continuity, proved, wrong at a point, or unproved."""
+"""Check the range and continuity of predicates. The result is proved, wrong at a point, or unproved."""
 
 from tltlc.resolve.range_proof.check import Finding, check_predicate
 

@@ -1,4 +1,4 @@
-"""Splits an expression with ``when`` into cases, each an expression without ``when`` under constraints."""
+"""Split an expression with ``when`` into cases: expressions without ``when``, under constraints."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tltlc.resolve.range_proof.work import spend
 
 LARGEST_NUMBER_OF_CASES = 64
 MOST_MEETING_CASES = 24
-"""Of a `when` whose continuity is checked; their pairs count."""
+"""The most cases of a `when` whose continuity is checked. The work grows with the number of pairs."""
 
 
 class TooManyCasesError(Exception):
@@ -20,7 +20,7 @@ class TooManyCasesError(Exception):
 
 @record
 class Constraint:
-    """``difference >= 0``, or ``difference > 0`` where strict."""
+    """``difference >= 0``, or ``difference > 0`` if strict."""
 
     difference: Expression
     strict: bool
@@ -31,16 +31,16 @@ Constraints = tuple[Constraint, ...]
 
 @record
 class Case:
-    """Where all constraints hold, the whole expression has the value of ``value``."""
+    """The value of the whole expression where all constraints hold."""
 
     constraints: Constraints
     value: Expression
 
 
 def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[Case, ...]:
-    """The cases of an expression, in order; together they cover every point.
+    """Return the cases of an expression, in order; together they cover every point.
 
-    ``split_extremes`` also splits min, max, abs and clamp.  Raises TooManyCasesError.
+    ``split_extremes`` also splits min, max, abs and clamp. Raises TooManyCasesError.
     """
     result: list[Case] = []
     for case in _expand(expression, (), split_extremes):
@@ -51,14 +51,17 @@ def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[Case
 
 
 def condition_operands(expression: Expression) -> tuple[Case, ...]:
-    """What the ``when`` conditions compare, each under the constraints that hold when it is evaluated."""
+    """Return the expressions that the ``when`` conditions compare.
+
+    Each comes with the constraints that hold when it is evaluated. Raises TooManyCasesError.
+    """
     result: list[Case] = []
     _collect_operands(expression, (), result)
     return tuple(result)
 
 
 def whens(expression: Expression) -> Iterator[When]:
-    """The ``when`` expressions that are not inside another one."""
+    """Yield the ``when`` expressions that are not inside another one."""
     if isinstance(expression, When):
         yield expression
     elif isinstance(expression, Op):
@@ -67,15 +70,15 @@ def whens(expression: Expression) -> Iterator[When]:
 
 
 def size(expression: Expression, most: int) -> int:
-    """The number of nodes, counted only as far as just past ``most``."""
+    """Return the number of nodes, or ``most + 1`` if there are more than ``most``."""
     return sum(1 for _ in islice(nodes(expression), most + 1))
 
 
 def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
-    """The signals and params that an expression reads, in order of appearance."""
-    found = list(nodes(expression))
-    spend(1 + len(found) // 10)
-    return dict.fromkeys(node for node in found if isinstance(node, (Signal, Param)))
+    """Return the signals and params that an expression reads, in order of appearance."""
+    all_nodes = list(nodes(expression))
+    spend(1 + len(all_nodes) // 10)
+    return dict.fromkeys(node for node in all_nodes if isinstance(node, (Signal, Param)))
 
 
 def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iterator[Case]:
@@ -86,7 +89,7 @@ def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iter
             for path in remaining:
                 for taken in _where(condition, True, path, extremes):
                     yield from _expand(value, taken, extremes)
-            remaining = [left for path in remaining for left in _where(condition, False, path, extremes)]
+            remaining = [refused for path in remaining for refused in _where(condition, False, path, extremes)]
             if len(remaining) > LARGEST_NUMBER_OF_CASES:
                 raise TooManyCasesError
         for path in remaining:
@@ -122,13 +125,13 @@ def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -
             yield from _split_extreme("min", (inner.value, high), inner.constraints)
     else:
         for chosen in args:
-            others = [other for other in args if other != chosen]
-            pairs = [(other, chosen) if op == "min" else (chosen, other) for other in others]
+            rest = [other for other in args if other != chosen]
+            pairs = [(other, chosen) if op == "min" else (chosen, other) for other in rest]
             yield Case((*before, *(Constraint(Op("-", pair), False) for pair in pairs)), chosen)
 
 
 def _where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
-    """The ways in which a condition is true (or false), as constraints added to ``before``."""
+    """Yield the constraint sets under which a condition is true (or false), each added to ``before``."""
     spend()
     if condition.op == "not":
         yield from _where(_condition(condition.args[0]), not truth, before, extremes)
@@ -136,7 +139,7 @@ def _where(condition: Condition, truth: bool, before: Constraints, extremes: boo
         if (condition.op == "and") == truth:
             paths = [before]
             for arg in condition.args:
-                paths = [way for path in paths for way in _where(_condition(arg), truth, path, extremes)]
+                paths = [extended for path in paths for extended in _where(_condition(arg), truth, path, extremes)]
                 if len(paths) > LARGEST_NUMBER_OF_CASES:
                     raise TooManyCasesError
             yield from paths
@@ -167,7 +170,7 @@ def _collect_operands(node: Expression, before: Constraints, result: list[Case])
                 _collect_condition(condition, path, result)
                 for taken in _where(condition, True, path, False):
                     _collect_operands(value, taken, result)
-            remaining = [left for path in remaining for left in _where(condition, False, path, False)]
+            remaining = [refused for path in remaining for refused in _where(condition, False, path, False)]
             if len(result) + len(remaining) > LARGEST_NUMBER_OF_CASES:
                 raise TooManyCasesError
         for path in remaining:
@@ -185,8 +188,8 @@ def _collect_condition(condition: Condition, before: Constraints, result: list[C
                 result.extend(_expand(arg, path, False))
         if (
             isinstance(arg, Condition) and condition.op != "not"
-        ):  # the next one is only looked at if this leaves it open
-            paths = [way for path in paths for way in _where(arg, condition.op == "and", path, False)]
+        ):  # the next operand is only evaluated if this one does not decide
+            paths = [extended for path in paths for extended in _where(arg, condition.op == "and", path, False)]
 
 
 def _condition(arg: Expression | Condition) -> Condition:

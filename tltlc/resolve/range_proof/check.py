@@ -1,8 +1,10 @@
-"""Checks a predicate: is its value within the declared range, and is it continuous between ``when`` cases?
+"""Check a predicate: does its value stay in the declared range, and do its ``when`` cases join
+continuously?
 
-Every answer is one of four: proved (no finding), wrong at a concrete point, unproved, or unchecked, where the answer
-would take more work than a check may do.  The means, cheapest first: interval arithmetic, a search for a wrong point,
-exact signs and subdivision, remembered answers, sympy.  Only the last imports it.
+There are four answers: proved (no finding), wrong at a concrete point, unproved, and unchecked (the
+check would exceed its step limit). The methods, cheapest first, are interval arithmetic, a search
+for a wrong point, exact signs and subdivision, cached answers, and sympy. Only the last one imports
+sympy.
 """
 
 from __future__ import annotations
@@ -45,10 +47,10 @@ _NO_POINT: Mapping[str, float] = {}
 
 @record
 class Finding:
-    """What is wrong with a predicate, or could not be shown.
+    """A property of a predicate that is wrong or could not be proved.
 
-    ``witness`` gives the value of each signal and param at the point that ``message`` speaks of; it is
-    empty where the kind ends in ``unproved`` or ``unchecked``.
+    ``witness`` gives the value of each signal and param at the point in ``message``. It is empty if
+    the kind ends in ``unproved`` or ``unchecked``.
     """
 
     kind: FindingKind
@@ -63,11 +65,12 @@ def check_predicate(
     low: float,
     high: float,
 ) -> tuple[Finding, ...]:
-    """The findings on a predicate whose declared range is ``[low, high]``, for all signal and param values.
+    """Return the findings on a predicate with the declared range ``[low, high]``.
 
-    ``signals`` and ``params`` hold at least those that the expression reads, by name; an end of a range
-    that is None is open.  At most one finding on the range and one on continuity.  Takes a bounded number of steps
-    and never raises.
+    The checks cover all values of the signals and params. ``signals`` and ``params`` hold at least
+    those that the expression reads, by name; an end of a range that is None is open. There is at
+    most one finding on the range and one on continuity. Takes a bounded number of steps and never
+    raises.
     """
     with limited(_MOST_STEPS):
         if size(expression, LARGEST_SIZE) > LARGEST_SIZE:
@@ -82,26 +85,26 @@ def check_predicate(
 LARGEST_SIZE = 2000
 _MOST_STEPS = WORK["check of a predicate"]
 _STEPS_FOR_A_WITNESS = _MOST_STEPS // 3
-"""What is left for a search for a wrong point after a proof has been given up."""
+"""The steps reserved for the search for a wrong point after a proof is abandoned."""
 _STEPS_OF_A_QUESTION = _MOST_STEPS // 3
-"""What a proof with sympy may take."""
+"""The steps that a proof with sympy may take."""
 _TOO_LONG = f"the check takes too many steps: {_MOST_STEPS:,} are allowed"
 
 
-def _unchecked(what: Literal["range", "continuity"], why: str) -> Finding:
-    return Finding("range_unchecked" if what == "range" else "continuity_unchecked", why)
+def _unchecked(aspect: Literal["range", "continuity"], why: str) -> Finding:
+    return Finding("range_unchecked" if aspect == "range" else "continuity_unchecked", why)
 
 
 def _findings(predicate: Predicate) -> tuple[Finding, ...]:
-    """On the range, then on continuity; only where the former can be checked is the latter."""
+    """Check the range, then continuity. Continuity is skipped if the range cannot be checked."""
     try:
         with limited(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
-            found = _check_range(predicate)
+            range_finding = _check_range(predicate)
     except TooManyCasesError:
         return (_wrong(predicate) or _unchecked("range", _TOO_MANY_CASES),)
     except OutOfWorkError:
         return (_wrong(predicate) or _unchecked("range", _TOO_LONG),)
-    return tuple(finding for finding in (found, _bounded_continuity(predicate)) if finding is not None)
+    return tuple(finding for finding in (range_finding, _bounded_continuity(predicate)) if finding is not None)
 
 
 def _bounded_continuity(predicate: Predicate) -> Finding | None:
@@ -119,7 +122,10 @@ _TOO_MANY_MEETINGS = f"more than {MOST_MEETING_CASES} cases of its `when` may me
 
 @record
 class Predicate:
-    """What is checked: the value, where its variables range, which of them are bools, the declared range."""
+    """The predicate to check: its value, the ranges of its variables, and the declared range.
+
+    ``bools`` are the variables that are bools.
+    """
 
     expression: Expression
     box: Box
@@ -132,7 +138,9 @@ def _check_range(predicate: Predicate) -> Finding | None:
     whole = Region(predicate.box, {})
     low, high = predicate.low, predicate.high
     tasks = [Task(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
-    tasks += [Task(o.value, o.constraints, -inf, inf) for o in condition_operands(predicate.expression)]
+    tasks += [
+        Task(operand.value, operand.constraints, -inf, inf) for operand in condition_operands(predicate.expression)
+    ]
     doubtful = unproved(tasks, whole)
     if not doubtful:
         return None
@@ -145,7 +153,10 @@ def _check_range(predicate: Predicate) -> Finding | None:
 
 
 def _wrong(predicate: Predicate) -> Finding | None:
-    """A point at which the value leaves its range, or has none, as far as the search gets."""
+    """Return a point where the value leaves its range or is undefined.
+
+    Returns None if the search finds no such point within its steps.
+    """
     from tltlc.resolve.range_proof.witness import find_outside
 
     try:
@@ -155,8 +166,8 @@ def _wrong(predicate: Predicate) -> Finding | None:
     if witness is None:
         return None
     values = _by_name(witness.point)
-    what = witness.reason if witness.value is None else f"is {_number(witness.value)}"
-    return Finding("range_wrong", f"{_where(values)}the value {what}", values)
+    problem = witness.reason if witness.value is None else f"is {_number(witness.value)}"
+    return Finding("range_wrong", f"{_where(values)}the value {problem}", values)
 
 
 def _check_continuity(predicate: Predicate) -> Finding | None:
@@ -182,27 +193,27 @@ def _check_continuity(predicate: Predicate) -> Finding | None:
 
 
 def _doubtful_borders(when: When, predicate: Predicate) -> list[Task]:
-    """What is left to prove where the cases of a ``when`` meet."""
+    """Return the proofs that are still needed where the cases of a ``when`` meet."""
     all_cases = cases(when)
     if len(all_cases) < 2:
         return []
     from tltlc.resolve.range_proof.continuity import agreement, meetings, proves_agreement
 
-    found = meetings(all_cases, Region(predicate.box, {}), predicate.bools)
-    return [agreement(meeting) for meeting in found if not proves_agreement(meeting)]
+    pairs = meetings(all_cases, Region(predicate.box, {}), predicate.bools)
+    return [agreement(meeting) for meeting in pairs if not proves_agreement(meeting)]
 
 
 def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whole: Region) -> bool:
-    """True if sympy proves the tasks that are left of a question, or once did."""
+    """Whether sympy proves the remaining tasks, now or in a cached answer."""
     from tltlc.resolve.range_proof import memory
 
     def compute() -> memory.Answer:
         if sys.platform == "emscripten":
-            # A browser has no sympy: what it alone could prove stays unproved.
+            # A browser has no sympy. Tasks that only sympy can prove stay unproved.
             return memory.Answer(False, 0)
         from tltlc.resolve.range_proof.exact import proves_all
 
-        # Apart from all other work, so that the answer depends on the question alone and can be remembered.
+        # Count these steps separately, so that the answer depends on the question alone and can be cached.
         with limited(_STEPS_OF_A_QUESTION, counts_outside=False) as work:
             try:
                 proved = proves_all(tasks, whole)
@@ -211,15 +222,15 @@ def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whol
             return memory.Answer(proved, _STEPS_OF_A_QUESTION - max(0, work.left))
 
     text = memory.question(kind, predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
-    found = memory.answer(text, compute)
-    spend(found.steps)
-    return found.proved
+    answer = memory.answer(text, compute)
+    spend(answer.steps)
+    return answer.proved
 
 
 def box_of(
     expression: Expression, signals: Mapping[str, spec.Signal], params: Mapping[str, spec.Param]
 ) -> tuple[Box, frozenset[Variable]]:
-    """The ranges of the variables that the expression reads, and those variables that are bools."""
+    """Return the ranges of the variables that the expression reads, and the variables that are bools."""
     box: dict[Variable, tuple[float, float]] = {}
     bools = set()
     for variable in variables(expression):
@@ -239,7 +250,7 @@ def _by_name(point: Mapping[Variable, float]) -> dict[str, float]:
 
 
 def _where(values: Mapping[str, float]) -> str:
-    """``with distance = 3, far = 2 ``, or nothing where there are no variables."""
+    """Return ``with distance = 3, far = 2 ``, or an empty text if there are no variables."""
     if not values:
         return ""
     return "with " + ", ".join(f"{name} = {_number(value)}" for name, value in values.items()) + " "

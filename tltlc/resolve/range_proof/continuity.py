@@ -1,8 +1,9 @@
-"""Is a value continuous in its signals where one ``when`` case meets another?
+"""Check whether a value is continuous in its signals where ``when`` cases meet.
 
-A value is continuous if each ``when`` in it is.  For fixed params, two cases of a ``when`` meet at most
-where all their constraints hold with ``>`` read as ``>=``.  If both values agree there, for every pair of
-cases, the ``when`` is continuous.  Bool signals only take two values and are treated like params.
+A value is continuous if each ``when`` in it is. For fixed params, two cases of a ``when`` meet at
+most where all their constraints hold with ``>`` read as ``>=``. If both values agree there, for
+every pair of cases, the ``when`` is continuous. Bool signals take only two values and are treated
+like params.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _PARTS = 30
 
 @record
 class Meeting:
-    """Two cases and the region that contains every point where they meet."""
+    """Two cases and a region that contains every point where they meet."""
 
     first: Case
     second: Case
@@ -32,7 +33,7 @@ class Meeting:
 
 
 def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable]) -> Iterator[Meeting]:
-    """The pairs of cases with different values that may meet.  Raises TooManyCasesError."""
+    """Yield the pairs of cases with different values that may meet. Raises TooManyCasesError."""
     if len(all_cases) > MOST_MEETING_CASES:
         raise TooManyCasesError
     for first, second in combinations(all_cases, 2):
@@ -41,7 +42,9 @@ def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable
         constraints = tuple(
             _closed(constraint, bools)
             for constraint in dict.fromkeys((*first.constraints, *second.constraints))
-            if holds_at_once(constraint.difference, whole, -inf, inf)  # else its border may not show where it ends
+            if holds_at_once(
+                constraint.difference, whole, -inf, inf
+            )  # if it may be undefined, its border may not show where the case ends
         )
         region = whole.where(constraints)
         if region is not None:
@@ -49,7 +52,7 @@ def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable
 
 
 def proves_agreement(meeting: Meeting) -> bool:
-    """True if both values are defined and equal wherever the two cases meet."""
+    """Whether both values are provably defined and equal wherever the two cases meet."""
     difference = Op("-", (meeting.first.value, meeting.second.value))
     if holds_at_once(difference, meeting.region, 0.0, 0.0):
         return True
@@ -61,20 +64,23 @@ def proves_agreement(meeting: Meeting) -> bool:
 
 
 def agreement(meeting: Meeting) -> Task:
-    """What is to be proved where two cases meet."""
+    """Return the task of proving that two cases agree where they meet."""
     difference = Op("-", (meeting.first.value, meeting.second.value))
     return Task(difference, meeting.constraints, 0.0, 0.0)
 
 
 def _closed(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
-    """The constraint on the border: ``>=`` if a signal can come arbitrarily near to it."""
+    """Return the constraint on the border: ``>=`` if a signal can come arbitrarily close to it."""
     if any(isinstance(v, Signal) and v not in bools for v in variables(constraint.difference)):
         return Constraint(constraint.difference, False)
     return constraint
 
 
 def _same_after_substitution(difference: Expression, region: Region) -> bool:
-    """True if the difference is zero once each equation that holds on the region is solved and put in."""
+    """Whether the difference is zero after substitution.
+
+    Each equation that holds on the region is solved for a factor, which is then replaced.
+    """
     from tltlc.resolve.range_proof import normal_form as nf
 
     try:

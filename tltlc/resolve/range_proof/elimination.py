@@ -1,9 +1,11 @@
-"""Shows that a quotient of polynomials is never negative, by eliminating one variable after the other.
+"""Prove that a quotient of polynomials is never negative, by eliminating one variable after
+another.
 
-On a closed region, for fixed other variables, the least value of a continuous ``f`` over one variable
-lies where ``df = 0``, at a root of a constraint, at an end of its range, or in the limit at an open end.
-Putting each of these candidates in leaves functions of the other variables, which must not be negative
-either.  Work is counted: an answer comes within a bounded number of steps on terms of bounded size.
+On a closed region, for fixed other variables, the minimum of a continuous ``f`` over one variable
+lies where ``df = 0``, at a root of a constraint, at an end of its range, or in the limit at an open
+end. Substituting each of these candidates gives functions of the other variables, which must not be
+negative either. Steps are counted: an answer comes within a bounded number of steps on terms of
+bounded size.
 """
 
 from __future__ import annotations
@@ -29,26 +31,27 @@ _MOST_TERMS = 3000
 _PARTS = 10
 _SURELY_POSITIVE = 1e-12
 _STEPS_OF_SYMPY = 300
-"""What a call of sympy counts as at least."""
+"""The least number of steps that a sympy call counts as."""
 
-Term = Any  # a sympy expression: sympy brings no types
+Term = Any  # a sympy expression; sympy has no type annotations
 Ranges = Mapping[Term, Interval]
 
 
 class GiveUpError(Exception):
-    """The question is outside of what is treated here, or needs too much work."""
+    """The question is outside the supported fragment, or needs too much work."""
 
 
 class Prover:
-    """Answers questions until the steps allowed for all of them are used up; raises GiveUpError then."""
+    """Answers questions within one common step limit; raises GiveUpError when it is used up."""
 
     def __init__(self) -> None:
         self.steps = 0
 
     def never_negative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
-        """True if f is >= 0 (> 0 where strict) at all points of the ranges where each limit is >= 0.
+        """Whether f is provably >= 0 (> 0 if strict) at all points of the ranges where each limit
+        is >= 0.
 
-        Limits are terms; every symbol has its range.  False means: not shown.
+        Limits are terms, and every symbol has a range. False means that it could not be proved.
         """
         self.steps += 1
         if self.steps > _MOST_STEPS:
@@ -71,7 +74,7 @@ class Prover:
         return self._by_elimination(f, limits, {**ranges, **_sides(region)}, strict)
 
     def _by_elimination(self, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Tries the variables in turn, those of the lowest degree first."""
+        """Try the variables in turn, those of the lowest degree first."""
 
         def degree(x: Term) -> tuple[int, str]:
             return max(_degree(term, x) for term in (f, *limits)), x.name
@@ -88,7 +91,7 @@ class Prover:
         return any(self.never_negative(term, limits, ranges, strict=True) for term in (f, -f))
 
     def _without(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """The same question with each candidate for the least value over x put in."""
+        """Ask the same question with each candidate for the minimum over x substituted."""
         if _degree(f, x) > LARGEST_DEGREE:
             raise GiveUpError
         rest = {symbol: side for symbol, side in ranges.items() if symbol != x}
@@ -96,13 +99,13 @@ class Prover:
         bound_to_x = [limit for limit in limits if x in limit.free_symbols]
         ends = [sympy.Rational(repr(end)) for end in ranges[x] if isfinite(end)]
         solvable = [limit for limit in bound_to_x if _is_solvable(limit, x)]
-        if len(solvable) < len(bound_to_x):  # a proof on a larger region will do
+        if len(solvable) < len(bound_to_x):  # a proof on a larger region is enough
             return self.never_negative(f, [*free, *solvable], ranges, strict=strict)
         borders = [root for limit in bound_to_x for root in _border_roots(limit, x)]
         numerator = sympy.fraction(_simplified(sympy.diff(f, x)))[0]
         polynomial = sympy.Poly(numerator, x)
         factors = [sympy.Poly(factor, x) for factor, _ in sympy.factor_list(polynomial.as_expr())[1]]
-        # A factor of degree 1 whose leading coefficient vanishes has no root, or f is constant and has an end.
+        # A factor of degree 1 whose leading coefficient is 0 has no root, or f is constant in x, so an end covers it.
         for part in factors:
             may_lose_roots = part.degree() > 1 or not ends
             if may_lose_roots and not self._holds_where_zero(part.LC(), f, limits, ranges, strict):
@@ -133,7 +136,10 @@ class Prover:
         return self.never_negative(limit, free, rest, strict=strict and excess == 0)
 
     def _holds_where_zero(self, leading: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """The question where a leading coefficient vanishes, as general roots and limits leave that out."""
+        """Ask the question where a leading coefficient is zero.
+
+        General roots and limits do not cover these points.
+        """
         if leading.is_number:
             return True
         region = _region(limits, ranges)
@@ -157,7 +163,7 @@ class Prover:
 
 
 def _roots(factor: Any) -> Iterator[Term]:
-    """The roots of a polynomial: exact for degrees up to 2, else only with number coefficients."""
+    """Yield the roots of a polynomial: exact up to degree 2, otherwise only for numeric coefficients."""
     if factor.degree() in (1, 2):
         yield from sympy.roots(factor, multiple=True)
     elif factor.degree() > 2:
@@ -175,19 +181,19 @@ def _is_solvable(limit: Term, x: Term) -> bool:
 
 
 def _border_roots(limit: Term, x: Term) -> list[Term]:
-    """Where a solvable constraint on x begins or ends to hold."""
+    """Return the points where a solvable constraint on x starts or stops to hold."""
     return list(sympy.roots(sympy.Poly(sympy.fraction(limit)[0], x), multiple=True))
 
 
 def _within(x: Term, side: Interval) -> list[Term]:
-    """What is >= 0 in the range of x."""
+    """Return the terms that are >= 0 in the range of x."""
     low, high = side
     lower = [x - sympy.Rational(repr(low))] if isfinite(low) else []
     return [*lower, sympy.Rational(repr(high)) - x] if isfinite(high) else lower
 
 
 def _real_where(candidate: Term) -> Iterator[Term]:
-    """What must be >= 0 for a root to be a real number."""
+    """Yield the terms that must be >= 0 for a root to be real."""
     for power in candidate.atoms(sympy.Pow):
         base, exponent = power.as_base_exp()
         if not exponent.is_integer:
@@ -217,7 +223,7 @@ def _number(f: Term) -> float:
 
 
 def _total_degree(f: Term) -> int:
-    """At least the degree of numerator and denominator when written out."""
+    """Return an upper bound for the degree of numerator and denominator after expansion."""
     if f.is_Add:
         return sum(_total_degree(arg) for arg in f.args if arg.is_number or not arg.is_polynomial()) + max(
             _total_degree(arg) for arg in f.args
@@ -260,7 +266,7 @@ def _bound(f: Term, region: Region) -> Interval:
 
 
 def _expression(f: Term) -> Expression:
-    """A term as an expression over signals that are named as its symbols."""
+    """Convert a term to an expression over signals with the names of its symbols."""
     above, below = sympy.fraction(f)
     if below != 1:
         return Op("/", (_expression(above), _expression(below)))

@@ -1,7 +1,7 @@
-"""Proofs with sympy: questions on expressions become questions on quotients of polynomials.
+"""Prove bounds with sympy, by turning expressions into quotients of polynomials.
 
-Any other function in them counts as a variable of its own, with the range that interval arithmetic
-gives it.
+Any other function in an expression becomes a variable of its own, with the range that interval
+arithmetic gives it.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from tltlc.resolve.range_proof.region import Region, bound
 
 
 def proves_all(tasks: Iterable[Task], whole: Region) -> bool:
-    """True if each task is proved: the value is defined and in the bounds where the constraints hold."""
+    """Whether each task is proved: its value is defined and within bounds where the constraints hold."""
     try:
         for task in tasks:
             parts = cases(task.value, split_extremes=True)
-            around = whole.where(task.constraints)
-            if around is None:
+            task_region = whole.where(task.constraints)
+            if task_region is None:
                 continue
-            if len(parts) > 1 and not proves_defined(task.value, around):
-                return False  # comparing undefined values would hide that they are
+            if len(parts) > 1 and not proves_defined(task.value, task_region):
+                return False  # splitting compares values, which would hide that one is undefined
             for case in parts:
                 constraints = (*task.constraints, *case.constraints)
                 region = whole.where(constraints)
@@ -45,9 +45,10 @@ def proves_all(tasks: Iterable[Task], whole: Region) -> bool:
 def proves_within_exactly(
     value: Expression, constraints: Sequence[Constraint], region: Region, low: float, high: float
 ) -> bool:
-    """True if the value is defined and in ``[low, high]``, up to TOLERANCE, where the constraints hold in the region.
+    """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE.
 
-    ``region`` knows the constraints already; ``value`` has no ``when``.
+    The proof covers the points of the region where the constraints hold. ``region`` already
+    includes the constraints; ``value`` has no ``when``.
     """
     try:
         translation, prover = _Translation(region), Prover()
@@ -67,7 +68,7 @@ def proves_within_exactly(
 
 
 class _Translation:
-    """From expressions to sympy terms, over one symbol for each variable and each other function."""
+    """Translates expressions to sympy terms, with one symbol per variable and per other function."""
 
     def __init__(self, region: Region) -> None:
         self.region = region
@@ -107,7 +108,7 @@ class _Translation:
 
 
 def _power(base: Term, exponent: int) -> Term:
-    """Raises GiveUpError where the exponent or the numbers in the result are too large to work with."""
+    """Return the power; raise GiveUpError if the exponent or the resulting numbers are too large."""
     bits = max((number.p.bit_length() + number.q.bit_length() for number in base.atoms(sympy.Rational)), default=0)
     if abs(exponent) > LARGEST_DEGREE or bits * abs(exponent) > MOST_BITS:
         raise GiveUpError
@@ -115,7 +116,7 @@ def _power(base: Term, exponent: int) -> Term:
 
 
 def _divisors(value: Expression) -> Iterator[Expression]:
-    """What the value divides by, also as a negative power."""
+    """Yield the expressions that the value divides by, including bases of negative powers."""
     if isinstance(value, Op):
         for arg in value.args:
             yield from _divisors(arg)

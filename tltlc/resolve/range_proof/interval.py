@@ -1,9 +1,9 @@
 """Interval arithmetic on the real line, rounded outwards.
 
-An interval is a pair ``(low, high)`` with ``low <= high``; an infinite end means that there is no
-bound on that side, the values themselves are finite.  Every function returns an interval that
-contains each value the operation can take on members of its arguments; zeros stay exact, so signs
-survive rounding.
+An interval is a pair ``(low, high)`` with ``low <= high``. An infinite end means that there is no
+bound on that side; the values themselves are finite. Every function returns an interval that
+contains each value of the operation on members of its arguments. Zeros stay exact, so signs survive
+rounding.
 """
 
 from __future__ import annotations
@@ -18,34 +18,34 @@ _LARGEST_POWER = 64
 
 
 class UndefinedError(Exception):
-    """The operation has no value for some members of its arguments; the text says what may go wrong."""
+    """The operation is undefined for some members of its arguments; the text says why."""
 
 
 def add(a: Interval, b: Interval) -> Interval:
-    """Sum."""
+    """Return the sum."""
     return _sum(a[0], b[0], -inf), _sum(a[1], b[1], inf)
 
 
 def negate(a: Interval) -> Interval:
-    """``-a``."""
+    """Return ``-a``."""
     return -a[1], -a[0]
 
 
 def subtract(a: Interval, b: Interval) -> Interval:
-    """Difference."""
+    """Return the difference."""
     return add(a, negate(b))
 
 
 def multiply(a: Interval, b: Interval) -> Interval:
-    """Product, for independent factors."""
+    """Return the product of independent factors."""
     corners = [(x, y) for x in a for y in b]
     return min(_product(x, y, -inf) for x, y in corners), max(_product(x, y, inf) for x, y in corners)
 
 
 def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
-    """Quotient; ``nonzero`` promises that the divisor is not 0 although its interval may end there.
+    """Return the quotient; raise UndefinedError if the divisor may be 0.
 
-    Raises UndefinedError where the divisor may be 0.
+    ``nonzero`` states that the divisor is not 0 although its interval may end there.
     """
     if b[0] < 0 < b[1] or b == (0.0, 0.0) or (0.0 in b and not nonzero):
         raise UndefinedError("divides by zero")
@@ -54,7 +54,7 @@ def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
 
 
 def power(a: Interval, b: Interval) -> Interval:
-    """``a ^ b``; raises UndefinedError for roots of negatives and for 0 to a negative power."""
+    """Return ``a ^ b``; raise UndefinedError for roots of negatives and for 0 to a negative power."""
     if b[0] == b[1] and b[0] == int(b[0]) and abs(b[0]) <= _LARGEST_POWER:
         return _integer_power(a, int(b[0]))
     if a[0] < 0:
@@ -66,14 +66,14 @@ def power(a: Interval, b: Interval) -> Interval:
 
 
 def root(a: Interval) -> Interval:
-    """Square root; raises UndefinedError where the argument may be negative."""
+    """Return the square root; raise UndefinedError if the argument may be negative."""
     if a[0] < 0:
         raise UndefinedError("takes the root of a negative number")
     return _root(a[0], -inf), _root(a[1], inf)
 
 
 def exponential(a: Interval) -> Interval:
-    """``exp``; raises UndefinedError where the value may be too large for a number."""
+    """Return ``exp``; raise UndefinedError if the value may overflow."""
     if a[1] > LARGEST_EXPONENT:
         raise UndefinedError("is too large to compute")
     low, high = (1.0 if end == 0 else _outwards(exp(end), towards) for end, towards in zip(a, (-inf, inf), strict=True))
@@ -81,7 +81,7 @@ def exponential(a: Interval) -> Interval:
 
 
 def hyperbolic_tangent(a: Interval) -> Interval:
-    """``tanh``."""
+    """Return ``tanh``."""
     low, high = (
         0.0 if end == 0 else _outwards(tanh(end), towards) for end, towards in zip(a, (-inf, inf), strict=True)
     )
@@ -89,30 +89,30 @@ def hyperbolic_tangent(a: Interval) -> Interval:
 
 
 def absolute(a: Interval) -> Interval:
-    """``abs``."""
+    """Return ``abs``."""
     if a[0] >= 0:
         return a
     return (-a[1], -a[0]) if a[1] <= 0 else (0.0, max(-a[0], a[1]))
 
 
 def smaller(a: Interval, b: Interval) -> Interval:
-    """``min``."""
+    """Return ``min``."""
     return min(a[0], b[0]), min(a[1], b[1])
 
 
 def larger(a: Interval, b: Interval) -> Interval:
-    """``max``."""
+    """Return ``max``."""
     return max(a[0], b[0]), max(a[1], b[1])
 
 
 def meet(a: Interval, b: Interval) -> Interval | None:
-    """The intersection, or None if it is empty."""
+    """Return the intersection, or None if it is empty."""
     low, high = max(a[0], b[0]), min(a[1], b[1])
     return (low, high) if low <= high else None
 
 
 def midpoint(low: float, high: float) -> float:
-    """The middle of two finite numbers, also where their difference is too large for a number."""
+    """Return the middle of two finite numbers, even if their difference overflows."""
     return low + (high - low) / 2 if isfinite(high - low) else low / 2 + high / 2
 
 
@@ -165,7 +165,7 @@ def _product(x: float, y: float, towards: float) -> float:
 
 def _quotient(x: float, y: float, towards: float) -> float:
     if x == 0 or isinf(y):
-        return 0.0  # with both infinite, the other corners give the infinite end
+        return 0.0  # if both are infinite, the other corners give the infinite end
     if abs(y) == 1:
         return x * y
     if x == y:
@@ -177,12 +177,18 @@ def _quotient(x: float, y: float, towards: float) -> float:
 
 
 def _signed_ends(b: Interval) -> Interval:
-    """The ends of an interval without 0 inside, an end at 0 replaced by the tiniest number of its sign."""
+    """Return the ends of an interval without 0 inside.
+
+    An end at 0 is replaced by the smallest number of its sign.
+    """
     return (b[0] or 5e-324), (b[1] or -5e-324)
 
 
 def _outwards(x: float, towards: float, negative: bool | None = None) -> float:
-    """Two steps outwards, as library functions may err by one, but not past 0 where the sign is known."""
+    """Move two floats outwards, because library functions may err by one.
+
+    Never crosses 0 if the sign is known.
+    """
     value = nextafter(nextafter(x, towards), towards)
     if negative is not None and (value > 0) == negative:
         return 0.0

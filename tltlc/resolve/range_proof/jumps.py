@@ -1,4 +1,4 @@
-"""Searches for points on the border between two cases where the value jumps; deterministic, of bounded work."""
+"""Search for points on the border of two cases where the value jumps; deterministic, bounded work."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tltlc.resolve.range_proof.witness import CLEARLY, Point, points, value_at
 
 _MOST_POINTS = 150
 _MOST_CROSSINGS = 60
-_BORDER_WIDTH = 1e-14  # relative distance of the two points that stand for the sides of a border
-_NEAR = 1e-7  # relative distance at which the value must still be about the same as at the border
+_BORDER_WIDTH = 1e-14  # relative distance between the two points on either side of a border
+_NEAR = 1e-7  # relative distance within which the value must stay about the same as at the border
 
 
 @record
 class Jump:
-    """At ``point`` the value is ``before`` on one side of a border and ``after`` on the other."""
+    """A point where the value is ``before`` on one side of a border and ``after`` on the other."""
 
     point: Point
     before: float
@@ -27,9 +27,10 @@ class Jump:
 
 
 def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools: frozenset[Variable]) -> Jump | None:
-    """A border point between two of the cases where the expression clearly jumps, or None if no such point is found.
+    """Return a border point between two cases where the expression clearly jumps.
 
-    The cases are those of one ``when`` in the expression.
+    Returns None if the search finds no such point. The cases belong to one ``when`` in the
+    expression.
     """
     crossings = 0
     everywhere = list(points(expression, box, bools))
@@ -50,7 +51,7 @@ def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools
                 jump = _jump_between(all_cases, expression, start, end, variable)
                 if jump is not None:
                     return jump
-                break  # a second crossing on the same line tells little more
+                break  # a second crossing on the same line adds little
     return None
 
 
@@ -66,7 +67,7 @@ def _active(all_cases: Sequence[Case], point: Point) -> Case | None:
 
 
 def _along(start: Point, variable: Variable, box: Box, expression: Expression) -> Iterator[Point]:
-    """Other points on the line through ``start`` along one axis."""
+    """Yield other points on the line through ``start`` along one axis."""
     seen = {start[variable]}
     for other in points(expression, {variable: box[variable]}, frozenset()):
         if other[variable] not in seen:
@@ -79,7 +80,7 @@ def _along(start: Point, variable: Variable, box: Box, expression: Expression) -
 def _jump_between(
     all_cases: Sequence[Case], expression: Expression, start: Point, end: Point, variable: Variable
 ) -> Jump | None:
-    """Halve the way between points of different cases down to the border; is there a jump?"""
+    """Bisect between points of different cases down to the border; return the jump there, if any."""
     low, high = start[variable], end[variable]
     left, right = _active(all_cases, start), _active(all_cases, end)
     while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):

@@ -1,7 +1,7 @@
-"""Remembers the answers that needed sympy, so that each question costs its import at most once.
+"""Cache the answers that need sympy, so that each question imports it at most once.
 
-They are kept in ``$TLTLC_CACHE_DIR`` (set but empty: nowhere) or the system's place for caches.  A file
-that cannot be read or written is as good as none.
+Answers are stored in ``$TLTLC_CACHE_DIR`` (nowhere if it is set but empty) or in the system's cache
+folder. A file that cannot be read or written is ignored.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tltlc.io.temporary import temporaries
 from tltlc.resolve.range_proof.cases import variables
 from tltlc.resolve.range_proof.region import Box, Variable
 
-CHECKER_VERSION = 2  # raise it whenever an answer may change
+CHECKER_VERSION = 2  # increase this whenever an answer may change
 
 _FILE_NAME = "predicates.json"
 _MOST_ANSWERS = 2000
@@ -30,30 +30,30 @@ _MOST_STEPS = WORK["check of a predicate"]
 
 @record
 class Answer:
-    """Whether something is proved, and the steps that this took: they count where it is remembered, too."""
+    """Whether a question is proved, and the steps of its proof; a cached answer counts them again."""
 
     proved: bool
     steps: int
 
 
 def answer(question: str, compute: Callable[[], Answer]) -> Answer:
-    """The remembered answer to a question, or the computed one, which is remembered from then on."""
+    """Return the cached answer to a question, or compute and cache it."""
     from hashlib import sha256
 
     key = sha256(question.encode()).hexdigest()
     folder = cache_folder()
-    own = _read(folder / _FILE_NAME) if folder else {}
-    if key in own:
-        return own[key]
+    answers = _read(folder / _FILE_NAME) if folder else {}
+    if key in answers:
+        return answers[key]
     result = compute()
     if folder:
-        kept = list(own.items())[1 - _MOST_ANSWERS :]
-        _write(folder / _FILE_NAME, dict([*kept, (key, result)]))
+        recent = list(answers.items())[1 - _MOST_ANSWERS :]
+        _write(folder / _FILE_NAME, dict([*recent, (key, result)]))
     return result
 
 
 def question(kind: str, expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float) -> str:
-    """A text that two predicates share only if they are the same but for the names of signals and params."""
+    """Return a text that two predicates share only if they differ in names of signals and params alone."""
     names = {variable: f"{type(variable).__name__[0].lower()}{n}" for n, variable in enumerate(variables(expression))}
     ranges = [
         f"{name}{'?' if variable in bools else ''}:{box[variable][0]!r},{box[variable][1]!r}"
@@ -64,7 +64,7 @@ def question(kind: str, expression: Expression, box: Box, bools: frozenset[Varia
 
 
 def cache_folder() -> Path | None:
-    """Where the user's answers are kept, or None if nowhere."""
+    """Return the folder of the user's cached answers, or None if there is none."""
     chosen = os.environ.get("TLTLC_CACHE_DIR")
     if chosen is not None:
         return Path(chosen) if chosen else None
@@ -79,7 +79,7 @@ def cache_folder() -> Path | None:
 
 
 def _read(path: Path) -> dict[str, Answer]:
-    """The answers in a file; none where it is missing, damaged or of another version."""
+    """Return the answers in a file; none if it is missing, damaged or of another version."""
     try:
         content = load(path, REPORT)
     except (OSError, ValueError, RecursionError):
@@ -97,12 +97,12 @@ def _is_answer(value: object) -> bool:
 
 
 def _write(path: Path, answers: Mapping[str, Answer]) -> None:
-    kept = {key: [answer.proved, answer.steps] for key, answer in answers.items()}
-    # Without it, the answers only take longer the next time.
+    entries = {key: [answer.proved, answer.steps] for key, answer in answers.items()}
+    # If writing fails, the answers only take longer next time.
     with suppress(OSError), temporaries() as made:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = made.path(path)
-        temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": kept}), "utf-8")
+        temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": entries}), "utf-8")
         temporary.replace(path)
 
 

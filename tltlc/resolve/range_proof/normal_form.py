@@ -1,7 +1,7 @@
-"""Quotients of polynomials with exact coefficients: when are two expressions the same, what sign have they.
+"""Quotients of polynomials with exact coefficients, to compare expressions and find their signs.
 
-A polynomial maps monomials to coefficients; a monomial is a set of (factor, exponent) pairs, where a
-factor is a signal, a param or any other expression that is not built by ``+ - * / ^``.
+A polynomial maps monomials to coefficients. A monomial is a set of (factor, exponent) pairs. A
+factor is a signal, a param, or an expression whose operator is not one of ``+ - * / ^``.
 """
 
 from __future__ import annotations
@@ -22,23 +22,26 @@ ONE: Monomial = frozenset()
 _MOST_TERMS = 200
 _LARGEST_EXPONENT = 12
 MOST_BITS = 10_000
-"""Of a coefficient: enough for any float to the power of four."""
+"""The most bits of a coefficient: enough for any float to the power of four."""
 
 
 class TooLargeError(Exception):
-    """The expression has no normal form of a size worth working with."""
+    """The normal form of the expression would be too large."""
 
 
 @record
 class Quotient:
-    """``numerator / denominator``; equal to the expression it came from wherever that is defined."""
+    """``numerator / denominator``; equals the original expression wherever that is defined."""
 
     numerator: Polynomial
     denominator: Polynomial
 
 
 def quotient(expression: Expression) -> Quotient:
-    """The normal form of an expression without ``when``; remembered while a check lasts.  Raises TooLargeError."""
+    """Return the normal form of an expression without ``when``.
+
+    The result is cached for the duration of a check. Raises TooLargeError.
+    """
     work = current()
     if work is None or not isinstance(expression, Op):
         return _quotient(expression)
@@ -48,11 +51,11 @@ def quotient(expression: Expression) -> Quotient:
             work.memo[expression] = _quotient(expression)
         except TooLargeError as error:
             work.memo[expression] = error
-    found = work.memo[expression]
-    if isinstance(found, TooLargeError):
+    form = work.memo[expression]
+    if isinstance(form, TooLargeError):
         raise TooLargeError
-    assert isinstance(found, Quotient)
-    return found
+    assert isinstance(form, Quotient)
+    return form
 
 
 def _quotient(expression: Expression) -> Quotient:
@@ -69,19 +72,19 @@ def _quotient(expression: Expression) -> Quotient:
 
 
 def exact(value: float) -> Fraction:
-    """The decimal number that was meant: 0.1 is one tenth."""
+    """Return the decimal number that was written: 0.1 is one tenth."""
     return Fraction(repr(float(value)))
 
 
 def constant(value: Fraction | int) -> Polynomial:
-    """A number as a polynomial."""
+    """Return a number as a polynomial."""
     return {ONE: Fraction(value)} if value else {}
 
 
 def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
-    """An interval that contains the polynomial's values on a region.
+    """Return an interval that contains the polynomial's values on a region.
 
-    Raises UndefinedError like its factors, and TooLargeError for a coefficient that is no float.
+    Raises UndefinedError like its factors, and TooLargeError for a coefficient that is not a float.
     """
     total = _sum_of_terms(polynomial, region)
     for expression, known in region.known.items():
@@ -99,7 +102,7 @@ def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
 
 
 def add(a: Polynomial, b: Polynomial, scale: Fraction | int = 1) -> Polynomial:
-    """``a + scale * b``."""
+    """Return ``a + scale * b``."""
     spend(len(b))
     result = dict(a)
     for monomial, coefficient in b.items():
@@ -112,7 +115,7 @@ def add(a: Polynomial, b: Polynomial, scale: Fraction | int = 1) -> Polynomial:
 
 
 def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
-    """The product.  Raises TooLargeError."""
+    """Return the product. Raises TooLargeError."""
     if len(a) * len(b) > _MOST_TERMS * 10:
         raise TooLargeError
     spend(2 * len(a) * len(b))
@@ -128,7 +131,7 @@ def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 def substitute(polynomial: Polynomial, factor: Expression, by: Polynomial) -> Polynomial:
-    """The polynomial with ``factor`` replaced.  Raises TooLargeError."""
+    """Return the polynomial with ``factor`` replaced. Raises TooLargeError."""
     result: Polynomial = {}
     spend(len(polynomial))
     for monomial, coefficient in polynomial.items():
@@ -142,7 +145,10 @@ def substitute(polynomial: Polynomial, factor: Expression, by: Polynomial) -> Po
 
 
 def solved(equation: Polynomial) -> tuple[Expression, Polynomial] | None:
-    """``equation = 0`` solved for a factor that occurs once, with a constant coefficient; None if none does."""
+    """Solve ``equation = 0`` for a factor that occurs once, with a constant coefficient.
+
+    Returns the factor and its value, or None if there is no such factor.
+    """
     occurrences: dict[Expression, int] = {}
     for monomial in equation:
         for factor, _ in monomial:
@@ -177,7 +183,10 @@ def _arithmetic(op: str, args: list[Quotient]) -> Quotient:
 
 
 def _reduced(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> Quotient:
-    """``a/b * c/d``, cancelling a numerator that is a multiple of the other denominator."""
+    """Return ``a/b * c/d``.
+
+    Cancels a numerator that is a multiple of the other denominator.
+    """
     scale = _multiple(a, d)
     if scale is not None:
         return Quotient(add({}, c, scale), b)
@@ -208,7 +217,7 @@ def _join(a: Monomial, b: Monomial) -> Monomial:
 
 
 def _multiple(a: Polynomial, b: Polynomial) -> Fraction | None:
-    """``c`` with ``a = c * b``, or None."""
+    """Return ``c`` with ``a = c * b``, or None."""
     if not b or a.keys() != b.keys():
         return None
     first = next(iter(b))
@@ -217,7 +226,7 @@ def _multiple(a: Polynomial, b: Polynomial) -> Fraction | None:
 
 
 def _ratio(a: Polynomial, b: Polynomial) -> Fraction | None:
-    """``c`` with ``a = c * b`` but for the constant terms, or None."""
+    """Return ``c`` with ``a = c * b`` except for the constant terms, or None."""
     return _multiple({m: c for m, c in a.items() if m}, {m: c for m, c in b.items() if m})
 
 

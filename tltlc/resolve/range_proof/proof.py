@@ -1,8 +1,8 @@
-"""Proves that an expression stays within bounds on a region, without sympy.
+"""Prove that an expression stays within bounds on a region, without sympy.
 
-Three means, cheapest first: interval arithmetic on the whole region, the sign of the exact
-difference to a bound (of the whole and of each ratio in it), and interval arithmetic on ever
-smaller parts of the region.
+There are three methods, cheapest first: interval arithmetic on the whole region, the sign of the
+exact difference to a bound (of the whole expression and of each ratio in it), and interval
+arithmetic on smaller and smaller parts of the region.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedEr
 from tltlc.resolve.range_proof.region import Region, bound
 from tltlc.resolve.range_proof.work import spend
 
-TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
+TOLERANCE = 1e-9  # the most that rounding may add to a value on a bound
 MOST_PARTS = 300
-_NODES_OF_ALL = 30_000  # visited in all parts together
+_NODES_OF_ALL = 30_000  # the most nodes visited in all parts together
 _FEWEST_PARTS = 10
 
 
 @record
 class Task:
-    """To prove: the value is defined and in ``[low, high]`` where all constraints hold."""
+    """A proof goal: the value is defined and in ``[low, high]`` where all constraints hold."""
 
     value: Expression
     constraints: Constraints
@@ -34,20 +34,20 @@ class Task:
 
 
 def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
-    """The tasks that are not proved for all points of a region; the work on all together is bounded."""
+    """Return the tasks that are not proved on the whole region; the total work is bounded."""
     nodes = sum(size(task.value, _NODES_OF_ALL) for task in tasks)
     parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
-    left = []
+    open_tasks = []
     spend(nodes // 10)
     for task in tasks:
         region = whole.where(task.constraints)
         if region is not None and not proves_within(task.value, region, task.low, task.high, parts):
-            left.append(task)
-    return left
+            open_tasks.append(task)
+    return open_tasks
 
 
 def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = MOST_PARTS) -> bool:
-    """True if the value is defined and in ``[low, high]``, up to TOLERANCE, at each point of the region.
+    """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE, on the region.
 
     ``parts`` limits the subdivision.
     """
@@ -61,7 +61,7 @@ def proves_within(value: Expression, region: Region, low: float, high: float, pa
 
 
 def holds_at_once(value: Expression, region: Region, low: float, high: float) -> bool:
-    """Like proves_within, by one evaluation with intervals."""
+    """Like proves_within, but with one interval evaluation."""
     try:
         return inside(bound(value, region), low, high)
     except UndefinedError:
@@ -69,12 +69,12 @@ def holds_at_once(value: Expression, region: Region, low: float, high: float) ->
 
 
 def proves_defined(value: Expression, region: Region, parts: int = MOST_PARTS) -> bool:
-    """True if the value exists at each point of the region."""
+    """Whether the value is provably defined at each point of the region."""
     return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, parts)
 
 
 def inside(bounds: Interval, low: float, high: float) -> bool:
-    """True if the interval lies in ``[low, high]``, up to TOLERANCE."""
+    """Whether the interval lies in ``[low, high]``, up to TOLERANCE."""
     return bounds[0] >= low - TOLERANCE and bounds[1] <= high + TOLERANCE
 
 
@@ -83,7 +83,10 @@ def _defined(value: Expression, region: Region) -> bool:
 
 
 def _with_ratios(value: Expression, region: Region) -> Region:
-    """The region, knowing of each ratio in a defined value whether it is at least -1 or 0 and at most 0 or 1."""
+    """Return the region with bounds on each ratio in a defined value.
+
+    The bounds are at least 0 or -1 and at most 0 or 1, where these can be proved.
+    """
     known = dict(region.known)
     for node in _ratios(value):
         low = next((end for end in (0.0, -1.0) if _proves_by_sign(node, region, end, inf)), -inf)
@@ -102,7 +105,10 @@ def _ratios(value: Expression) -> Iterator[Op]:
 
 
 def _proves_by_sign(value: Expression, region: Region, low: float, high: float) -> bool:
-    """For ``n/d`` with d of one sign: the signs of ``n - low * d`` and ``n - high * d`` tell."""
+    """Whether the value is provably in bounds by its sign.
+
+    For ``n/d`` with d of one sign, the signs of ``n - low * d`` and ``n - high * d`` decide.
+    """
     from tltlc.resolve.range_proof.normal_form import TooLargeError, add, exact, polynomial_bound, quotient
 
     try:

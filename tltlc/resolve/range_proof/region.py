@@ -1,4 +1,4 @@
-"""Regions of signal and param values, and the bounds that an expression has on them."""
+"""Regions of signal and param values, and bounds of expressions on them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ _FAR_AWAY = 1e6
 class Region:
     """The points of a box where some expressions lie within known bounds.
 
-    ``nonzero`` expressions are not 0 anywhere.  A region may be empty without knowing it.
+    ``nonzero`` expressions are not 0 anywhere. A region may be empty without being recognised as
+    empty.
     """
 
     box: Box
@@ -31,7 +32,10 @@ class Region:
     nonzero: frozenset[Expression] = frozenset()
 
     def where(self, constraints: Iterable[Constraint]) -> Region | None:
-        """The part where the constraints hold, its box narrowed, or None if that is surely empty."""
+        """Return the part where the constraints hold, with its box narrowed.
+
+        Returns None if it is provably empty.
+        """
         known, nonzero = dict(self.known), set(self.nonzero)
         for constraint in _with_chains(constraints):
             difference = constraint.difference
@@ -46,7 +50,10 @@ class Region:
         return Region(self.box, known, frozenset(nonzero)).narrowed()
 
     def narrowed(self) -> Region | None:
-        """The same points in a box as small as the known bounds allow, or None if they exclude each other."""
+        """Return the same points in a box as small as the known bounds allow.
+
+        Returns None if the bounds exclude each other.
+        """
         box = dict(self.box)
         narrowing = _Narrowing(box)
         for _ in range(_ROUNDS if self.known else 0):
@@ -54,8 +61,8 @@ class Region:
             spend(len(box))
             try:
                 for expression, bounds in self.known.items():
-                    found = narrowing.narrow(expression, bounds)
-                    if expression in self.nonzero and found == (0.0, 0.0):
+                    remaining = narrowing.narrow(expression, bounds)
+                    if expression in self.nonzero and remaining == (0.0, 0.0):
                         return None
             except _EmptyError:
                 return None
@@ -64,7 +71,7 @@ class Region:
         return replace(self, box=box)
 
     def halves(self) -> tuple[Region, Region] | None:
-        """The region cut in two across its relatively longest side, or None if no side can be cut."""
+        """Return the region cut in two across its relatively longest side, or None if no side can be cut."""
         widest = max(self.box, key=lambda variable: _length(self.box[variable]), default=None)
         if widest is None or _length(self.box[widest]) < 1e-9:
             return None
@@ -75,16 +82,19 @@ class Region:
 
 
 def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
-    """The constraints, and ``a - c`` wherever they order a, b and c: the bounds of each alone do not show it."""
-    given = list(constraints)
-    differences = [c for c in given if isinstance(c.difference, Op) and c.difference.op == "-"]
+    """Return the constraints, plus ``a - c`` where they order a, b and c.
+
+    The bounds of the single constraints do not imply this one.
+    """
+    chained = list(constraints)
+    differences = [c for c in chained if isinstance(c.difference, Op) and c.difference.op == "-"]
     spend(len(differences) * len(differences) // 4)
     for upper in differences:
         for lower in differences:
             (a, b), (also_b, c) = _operands(upper), _operands(lower)
             if b == also_b and a != c:
-                given.append(Constraint(Op("-", (a, c)), upper.strict or lower.strict))
-    return given
+                chained.append(Constraint(Op("-", (a, c)), upper.strict or lower.strict))
+    return chained
 
 
 def _operands(constraint: Constraint) -> tuple[Expression, Expression]:
@@ -94,9 +104,9 @@ def _operands(constraint: Constraint) -> tuple[Expression, Expression]:
 
 
 def bound(expression: Expression, region: Region) -> Interval:
-    """An interval that contains every value of an expression without ``when`` on a region.
+    """Return an interval that contains every value of an expression without ``when`` on a region.
 
-    Raises UndefinedError where the expression may have no value somewhere in the region.
+    Raises UndefinedError if the expression may be undefined somewhere in the region.
     """
     value = _bound(expression, region)
     known = region.known.get(expression) if region.known else None
@@ -115,9 +125,10 @@ def _bound(expression: Expression, region: Region) -> Interval:
 
 
 def _combined(expression: Op, args: list[Interval], nonzero: bool) -> Interval:
-    """The bounds of an operation from those of its arguments, ``nonzero``: its divisor is not 0.
+    """Return the bounds of an operation from the bounds of its arguments.
 
-    Raises UndefinedError where it may have no value.
+    ``nonzero`` states that its divisor is not 0. Raises UndefinedError if the operation may be
+    undefined.
     """
     if expression.op == "/":
         quotient = interval.divide(args[0], args[1], nonzero=nonzero)
@@ -164,28 +175,31 @@ class _EmptyError(Exception):
 
 
 class _Narrowing:
-    """Shrinks a box to where expressions lie within bounds: forward evaluation, then each operator's inverse (HC4)."""
+    """Shrinks a box to the points where expressions lie within bounds.
+
+    The method is HC4: forward evaluation, then the inverse of each operator.
+    """
 
     def __init__(self, box: dict[Variable, Interval]) -> None:
         self._box = box
         self._bounds: dict[Op, Interval | None] = {}
 
     def narrow(self, expression: Expression, target: Interval) -> Interval:
-        """Shrink the box to where the expression can lie in ``target``; returns what is left of ``target``.
+        """Shrink the box to the points where the expression can lie in ``target``.
 
-        Raises _EmptyError where it can lie there nowhere.
+        Returns the remaining part of ``target``. Raises _EmptyError if no part remains.
         """
         spend()
-        left = interval.meet(self._bound(expression), target)
-        if left is None:
+        remaining = interval.meet(self._bound(expression), target)
+        if remaining is None:
             raise _EmptyError
         if isinstance(expression, (Signal, Param)):
-            if self._box[expression] != left:
-                self._box[expression] = left
+            if self._box[expression] != remaining:
+                self._box[expression] = remaining
                 self._bounds.clear()
         elif isinstance(expression, Op):
-            self._narrow_args(expression, left)
-        return left
+            self._narrow_args(expression, remaining)
+        return remaining
 
     def _narrow_args(self, expression: Op, value: Interval) -> None:
         op, args = expression.op, expression.args
@@ -222,7 +236,7 @@ class _Narrowing:
         self.narrow(args[1], interval.subtract(value, a) if op == "+" else interval.subtract(a, value))
 
     def _bound(self, expression: Expression) -> Interval:
-        """The bounds of an expression in the box as it is now, EVERYTHING where it may have no value."""
+        """Return the bounds of an expression in the current box, EVERYTHING if it may be undefined."""
         return self._computed(expression) or EVERYTHING
 
     def _computed(self, expression: Expression) -> Interval | None:
@@ -251,7 +265,10 @@ def _defined(bounds: Interval | None) -> Interval:
 
 
 def _length(side: Interval) -> float:
-    """How much a cut across a side may help: its length where numbers grow as their logarithms do."""
+    """Return how much a cut across a side may help.
+
+    This is the length of the side on a logarithmic scale.
+    """
     return sum(copysign(log1p(min(abs(end), _FAR_AWAY)), end) * sign for end, sign in zip(side, (-1, 1), strict=True))
 
 

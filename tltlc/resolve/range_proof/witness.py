@@ -1,4 +1,4 @@
-"""Searches for points that show a wrong range; deterministic and of bounded work."""
+"""Search for points where a range is wrong; deterministic and of bounded work."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from tltlc.resolve.range_proof.work import OutOfWorkError, spend
 
 Point = Mapping[Variable, float]
 
-CLEARLY = 1e-6  # how far outside a value must be to be called so
+CLEARLY = 1e-6  # how far outside its range a value must be to count as outside
 _LARGEST_GRID = 500
 _SCATTERED = 300
 _CLIMBING_ROUNDS = 40
-_SPREAD = (1.0, 3.0, 10.0, 100.0, 1e6)  # distances from the closed end of a range without bound
+_SPREAD = (1.0, 3.0, 10.0, 100.0, 1e6)  # distances from the finite end of an unbounded range
 
 
 @record
 class Witness:
-    """A point, and the value there or the reason why there is none."""
+    """A point with its value, or with the reason why there is no value."""
 
     point: Point
     value: float | None
@@ -33,7 +33,7 @@ class Witness:
 
 
 def value_at(expression: Expression, point: Point) -> Witness:
-    """The value of an expression at a point, or what goes wrong there."""
+    """Return the value of an expression at a point, or the reason why there is none."""
     spend(_cost(expression) + len(point) // 4)
     signals = {variable.name: value for variable, value in point.items() if isinstance(variable, Signal)}
     params = {variable.name: value for variable, value in point.items() if isinstance(variable, Param)}
@@ -50,17 +50,18 @@ def value_at(expression: Expression, point: Point) -> Witness:
 
 @lru_cache(maxsize=512)
 def _cost(expression: Expression) -> int:
-    """The steps that computing a value counts as."""
+    """Return the number of steps that an evaluation counts as."""
     return 1 + sum(1 for _ in nodes(expression)) // 3
 
 
 def find_outside(
     expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
 ) -> Witness | None:
-    """A point of the box where the value is missing or clearly outside ``[low, high]``, or None.
+    """Return a point of the box where the value is undefined or clearly outside ``[low, high]``.
 
-    Simple points come first; a later point replaces an earlier one only if it is much worse.
-    ``bools`` are the variables that are 0 or 1 and nothing between.  Raises OutOfWorkError if none is found in time.
+    Returns None if there is no such point among those tried. Simple points come first; a later
+    point replaces an earlier one only if it is much worse. ``bools`` are the variables that are
+    only 0 or 1. Raises OutOfWorkError if no point is found within the step limit.
     """
 
     def excess(witness: Witness) -> float:
@@ -83,7 +84,11 @@ def find_outside(
 
 
 def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iterator[Point]:
-    """Corners and a grid as far as they are few, points where two variables are equal, scattered points."""
+    """Yield candidate points.
+
+    First corners and a grid, as far as they are few; then points where two variables are equal;
+    then scattered points.
+    """
     names = list(box)
     extra = tuple(dict.fromkeys(_constants(expression)))
     spend(_cost(expression) + len(names) * (len(extra) + 20) // 10)
@@ -99,7 +104,7 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
 
 
 def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
-    """The finest grid of at most _LARGEST_GRID points, or as many corners."""
+    """Yield the finest grid of at most _LARGEST_GRID points, or that many corners."""
     depth = 2
     while depth < 12 and prod(min(len(axis), depth + 1) for axis in axes) <= _LARGEST_GRID:
         depth += 1
@@ -107,7 +112,7 @@ def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
 
 
 def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[float, ...]:
-    """Values worth trying for one variable, the simplest first."""
+    """Return values worth trying for one variable, the simplest first."""
     low, high = side
     if is_bool:
         return low, high
@@ -121,18 +126,24 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
 
 
 def _constants(expression: Expression) -> Iterator[float]:
-    """The numbers in an expression that may be borders: the least robustness of a comparison is none."""
+    """Yield the numbers in an expression that may be borders.
+
+    LEAST is not one: it is the least robustness of a comparison.
+    """
     return (node.value for node in nodes(expression) if isinstance(node, Const) and node.value != LEAST)
 
 
 def _fraction(number: int, position: int) -> float:
-    """A number in (0, 1): term ``number`` of an additive sequence, a different one per position."""
+    """Return a number in (0, 1): term ``number`` of an additive sequence that depends on ``position``."""
     stride: float = 0.6180339887498949 ** (1 + position / 3)
     return (0.5 + number * stride) % 1.0
 
 
 def _at(side: Interval, fraction: float, is_bool: bool) -> float:
-    """The value that lies at a fraction of the way through a range, open ends drawn near."""
+    """Return the value at a fraction of a range.
+
+    An unbounded range is mapped so that most values lie near its finite end or near 0.
+    """
     low, high = side
     if is_bool:
         return low if fraction < 0.5 else high
@@ -150,19 +161,19 @@ def _at(side: Interval, fraction: float, is_bool: bool) -> float:
 def _climb(
     start: Witness, excess: Callable[[Witness], float], expression: Expression, box: Box, bools: frozenset[Variable]
 ) -> Witness:
-    """A local maximum of the excess, by steps along the axes that shrink."""
+    """Return a local maximum of the excess, by shrinking steps along the axes."""
     best = start
     steps = {v: (high - low) / 8 if isfinite(high - low) else 1.0 for v, (low, high) in box.items() if v not in bools}
     for _ in range(_CLIMBING_ROUNDS):
         for variable, step in steps.items():
             low, high = box[variable]
             old = best.point[variable]
-            found = False
+            improved = False
             for value in (min(old + step, high), max(old - step, low)):
                 here = value_at(expression, {**best.point, variable: value})
                 if excess(here) > excess(best):
-                    best, found = here, True
-            steps[variable] = step * (1.0 if found else 0.5)
+                    best, improved = here, True
+            steps[variable] = step * (1.0 if improved else 0.5)
         if best.value is None:
             break
     return best

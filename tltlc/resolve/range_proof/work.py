@@ -1,6 +1,8 @@
-"""How much the checks of predicates may do: steps are counted, so that every machine gives the same answer.
+"""Limits on the work of predicate checks. Steps are counted, so every machine gives the same
+answer.
 
-A step takes a few microseconds. What takes longer counts as several. Where nobody has set a limit, nothing is counted.
+A step takes a few microseconds. Longer operations count as several. Without a limit, nothing is
+counted.
 """
 
 from __future__ import annotations
@@ -12,11 +14,11 @@ from typing import Any
 
 
 class OutOfWorkError(Exception):
-    """A check has used all steps that it may take."""
+    """A check has used all its steps."""
 
 
 class Work:
-    """The steps that are left, and answers that need not be computed again while they last."""
+    """The remaining steps, and a cache of answers for as long as the limit is active."""
 
     __slots__ = ("left", "memo")
 
@@ -29,12 +31,12 @@ _CURRENT: ContextVar[Work | None] = ContextVar("work", default=None)
 
 
 def current() -> Work | None:
-    """What counts at present."""
+    """Return the active limit, or None."""
     return _CURRENT.get()
 
 
 def spend(steps: int = 1) -> None:
-    """Count steps; raises OutOfWorkError where none are left."""
+    """Count steps; raise OutOfWorkError if none are left."""
     work = _CURRENT.get()
     if work is not None:
         work.left -= steps
@@ -46,7 +48,8 @@ def spend(steps: int = 1) -> None:
 def limited(steps: int, *, counts_outside: bool = True) -> Iterator[Work]:
     """Limit the block to ``steps``.
 
-    If its steps count outside, too, it may take no more than are left there.
+    If ``counts_outside``, the steps also count against the enclosing limit, and the block gets no
+    more than that limit has left.
     """
     outer = _CURRENT.get() if counts_outside else None
     allowed = steps if outer is None else min(steps, max(0, outer.left))
