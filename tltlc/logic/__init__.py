@@ -1,1 +1,1 @@
-"""Formulas: what they are, what they mean, how they are rewritten and printed."""
+"""Formulas: their structure, semantics, rewrites and printed forms."""

@@ -1,7 +1,8 @@
-"""Rewrites of ``not``, ``and``, ``or``, ``implies`` and ``iff``; the laws stand in :mod:`tltlc.logic.rewrite`.
+"""Rewrites of ``not``, ``and``, ``or``, ``implies`` and ``iff``.
 
-Each function takes a formula and returns an equal one that is no longer, or the very same object
-where it has nothing to say.  Operands keep their order.
+The laws are listed in :mod:`tltlc.logic.rewrite`. Each function takes a formula and returns an
+equal one that is no longer. It returns the same object if the rule does not apply. Operands keep
+their order.
 """
 
 from __future__ import annotations
@@ -14,16 +15,16 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement, syntactically_implies
 
 _MOST_OPERANDS: Final = 40
-"""Rules that compare each operand with each other look at no longer ``and`` or ``or``."""
+"""Rules that compare operands pairwise skip an ``and`` or ``or`` with more operands than this."""
 
 
 def join(op: str, operands: Iterable[Formula]) -> Formula:
-    """``and`` or ``or`` of the operands."""
+    """Return the ``and`` or ``or`` of the operands."""
     return build.and_(*operands) if op == "and" else build.or_(*operands)
 
 
 def constants(node: Formula) -> Formula:
-    """Take ``true`` and ``false`` out of ``and`` and ``or``."""
+    """Remove ``true`` and ``false`` from ``and`` and ``or``."""
     neutral, zero = (TRUE, FALSE) if node.op == "and" else (FALSE, TRUE)
     if zero in node.args:
         return zero
@@ -31,13 +32,13 @@ def constants(node: Formula) -> Formula:
 
 
 def repeated(node: Formula) -> Formula:
-    """Keep the first of equal operands."""
+    """Keep only the first of equal operands."""
     distinct = dict.fromkeys(node.args)
     return node if len(distinct) == len(node.args) else join(node.op, distinct)
 
 
 def complementary(node: Formula) -> Formula:
-    """Find an operand beside its negation."""
+    """Return the constant if an operand stands beside its negation."""
     operands = set(node.args)
     if any(complement(part) in operands for part in node.args):
         return FALSE if node.op == "and" else TRUE
@@ -45,32 +46,36 @@ def complementary(node: Formula) -> Formula:
 
 
 def absorbed(node: Formula) -> Formula:
-    """Drop from ``and`` what another operand implies, from ``or`` what implies another; of two equal ones the later."""
+    """Drop redundant operands.
+
+    From ``and``, drop those that another operand implies; from ``or``, those that imply another
+    operand. Of two equivalent operands, drop the later one.
+    """
     if len(node.args) > _MOST_OPERANDS:
         return node
-    kept = list(node.args)
+    remaining = list(node.args)
     for part in reversed(node.args):
-        others = [other for other in kept if other is not part]
-        if any(_makes_idle(node.op, other, part) for other in others):
-            kept = others
-    return node if len(kept) == len(node.args) else join(node.op, kept)
+        rest = [operand for operand in remaining if operand is not part]
+        if any(_makes_redundant(node.op, operand, part) for operand in rest):
+            remaining = rest
+    return node if len(remaining) == len(node.args) else join(node.op, remaining)
 
 
-def _makes_idle(op: str, other: Formula, part: Formula) -> bool:
+def _makes_redundant(op: str, other: Formula, part: Formula) -> bool:
     return syntactically_implies(other, part) if op == "and" else syntactically_implies(part, other)
 
 
 def resolved(node: Formula) -> Formula:
-    """Inside an operand, drop what the other operands rule out."""
+    """Inside an operand, drop the parts that the other operands rule out."""
     if len(node.args) > _MOST_OPERANDS:
         return node
     inner_op = "or" if node.op == "and" else "and"
     for index, part in enumerate(node.args):
         others = node.args[:index] + node.args[index + 1 :]
         if part.op == inner_op:
-            left = [inner for inner in part.args if not any(_ruled_out(node.op, other, inner) for other in others)]
-            if len(left) < len(part.args):
-                return join(node.op, (*node.args[:index], join(inner_op, left), *node.args[index + 1 :]))
+            remaining = [inner for inner in part.args if not any(_ruled_out(node.op, other, inner) for other in others)]
+            if len(remaining) < len(part.args):
+                return join(node.op, (*node.args[:index], join(inner_op, remaining), *node.args[index + 1 :]))
         elif part.op == "implies" and node.op == "and" and any(syntactically_implies(x, part.args[0]) for x in others):
             return join("and", (*node.args[:index], part.args[1], *node.args[index + 1 :]))
     return node
@@ -83,7 +88,7 @@ def _ruled_out(op: str, other: Formula, inner: Formula) -> bool:
 
 
 def factored(node: Formula) -> Formula:
-    """Take out of all operands what they share."""
+    """Factor out the parts that all operands share."""
     inner_op = "or" if node.op == "and" else "and"
     if any(part.op != inner_op for part in node.args):
         return node
@@ -91,13 +96,13 @@ def factored(node: Formula) -> Formula:
     if not shared:
         return node
     rests = join(node.op, [join(inner_op, (x for x in part.args if x not in shared)) for part in node.args])
-    # The rest stands where the first operand had its first part that is not shared.
+    # The combined rest takes the place of the first unshared part of the first operand.
     first = dict.fromkeys(x if x in shared else rests for x in node.args[0].args)
     return join(inner_op, first if rests in first else (*first, rests))
 
 
 def negated(node: Formula) -> Formula:
-    """Push ``not`` inwards where that is no longer."""
+    """Push ``not`` inwards if the result is no longer."""
     (inner,) = node.args
     match inner.op:
         case "true" | "false" | "not":
@@ -143,5 +148,5 @@ def equivalences(node: Formula) -> Formula:
 
 
 def _opposite(node: Formula) -> Formula:
-    """The negation, longer by one operator at most."""
+    """Return the negation, which is longer by at most one operator."""
     return node.args[0] if node.op == "not" else build.not_(node)

@@ -1,7 +1,7 @@
-"""Bounded operators, found again in the nexts that they were expanded into.
+"""Recognise bounded operators in the nexts that they were expanded into.
 
-``F[0,2] p`` is the formula ``p | X(p | X p)`` and ``G[0,2] p`` is ``p & N(p & N p)``: texts say the former,
-which stays short whatever the bound.
+``F[0,2] p`` is the formula ``p | X(p | X p)``, and ``G[0,2] p`` is ``p & N(p & N p)``. Texts print
+the bounded form, which stays short for any bound.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from tltlc.logic.formula import Formula, rebuild
 
 LEAST: Final = 2
-"""The least bound that is written as one: ``a | X a`` needs no other form."""
+"""The smallest bound that is printed in bounded form: ``a | X a`` is short enough as it is."""
 
 
 class Bounded(NamedTuple):
@@ -29,9 +29,9 @@ _shorter: WeakKeyDictionary[Formula, Formula | None] = WeakKeyDictionary()
 
 
 def bounded(node: Formula) -> Bounded | None:
-    """The bounded operator that the whole of an ``or`` or ``and`` expands, None where it is none.
+    """Return the bounded operator that an ``or`` or ``and`` expands as a whole, or None.
 
-    Answers are remembered: the labels of n states that count down a bound take n steps, not n².
+    Answers are cached: the labels of n states that count down a bound take n steps, not n².
     """
     chain: list[Formula] = []
     inner = node
@@ -39,16 +39,17 @@ def bounded(node: Formula) -> Bounded | None:
         chain.append(inner)
         inner = inner.args[-1].args[0]
     for outer in reversed(chain):
-        *given, last = outer.args
-        found = _ended_by(last, outer, given)
-        _known[outer] = found if found and len(given) == len(_operands(found.body, outer)) else None
+        *before, last = outer.args
+        operator = _ended_by(last, outer, before)
+        _known[outer] = operator if operator and len(before) == len(_operands(operator.body, outer)) else None
     return _known.get(node)
 
 
 def counted_down(node: Formula) -> Formula | None:
-    """The bound with one step less that an ``X`` or ``N`` counts down: ``X(p | X p)`` of ``X(p | X(p | X p))``.
+    """Return the bound of an ``X`` or ``N`` with one step less, or None if there is none.
 
-    Over ``or`` it implies the longer one, over ``and`` the longer one implies it.  None where there is no such.
+    For ``X(p | X(p | X p))`` this is ``X(p | X p)``. Over ``or``, the shorter formula implies the
+    longer one; over ``and``, the longer one implies the shorter.
     """
     chain: list[Formula] = []
     inner: Formula | None = node
@@ -62,7 +63,7 @@ def counted_down(node: Formula) -> Formula | None:
 
 
 def counted_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
-    """What ``node`` is counted down to, step by step, up to one that is ``known``, exclusively."""
+    """Yield the formulas that ``node`` counts down to, up to but excluding one that is ``known``."""
     shorter = counted_down(node)
     while shorter is not None and shorter not in known:
         yield shorter
@@ -70,7 +71,7 @@ def counted_down_from(node: Formula, known: Container[Formula]) -> Iterator[Form
 
 
 def _last_step(node: Formula) -> Formula | None:
-    """The ``X`` that an ``X`` over an ``or`` or ``and`` ends with, or the ``N`` of an ``N``."""
+    """Return the ``X`` that ends the ``or`` or ``and`` under an ``X``, likewise for ``N``, or None."""
     if node.op not in ("X", "N") or node.args[0].op not in ("or", "and"):
         return None
     last = node.args[0].args[-1]
@@ -78,20 +79,23 @@ def _last_step(node: Formula) -> Formula | None:
 
 
 def _is_same(body: Formula, last: Formula) -> bool:
-    """Whether ``last``, with which ``body`` ends, is over the other operands alone, or counts them down in its turn."""
-    given, inner = body.args[:-1], last.args[0]
-    if inner == (given[0] if len(given) == 1 else rebuild(body, given)):
+    """Whether ``last``, the end of ``body``, repeats the other operands of ``body``.
+
+    It repeats them alone, or followed by a further repetition.
+    """
+    operands, inner = body.args[:-1], last.args[0]
+    if inner == (operands[0] if len(operands) == 1 else rebuild(body, operands)):
         return True
-    return inner.op == body.op and inner.args[:-1] == given and _shorter[last] is not None
+    return inner.op == body.op and inner.args[:-1] == operands and _shorter[last] is not None
 
 
 def with_bounds(node: Formula) -> list[Formula]:
-    """The operands of an ``or`` or ``and``, those joined that together expand a bound of :data:`LEAST` or more."""
+    """Return the operands of an ``or`` or ``and``, with expansions of a bound >= :data:`LEAST` joined."""
     operands: list[Formula] = []
     for operand in node.args:
-        found = _ended_by(operand, node, operands) if operand.op == _step(node) else None
-        if found is not None and found.steps >= LEAST:
-            body = _operands(found.body, node)
+        operator = _ended_by(operand, node, operands) if operand.op == _step(node) else None
+        if operator is not None and operator.steps >= LEAST:
+            body = _operands(operator.body, node)
             del operands[-len(body) :]
             operand = rebuild(node, (*body, operand))
         operands.append(operand)
@@ -99,12 +103,15 @@ def with_bounds(node: Formula) -> list[Formula]:
 
 
 def _ended_by(last: Formula, node: Formula, before: Sequence[Formula]) -> Bounded | None:
-    """The operator whose expansion ends with ``last`` and begins among the operands before it."""
+    """Return the bounded operator whose expansion ends with ``last``, or None.
+
+    The expansion begins among the operands before ``last``.
+    """
     inner = last.args[0]
     rest = bounded(inner)
-    if rest is not None and inner.op == node.op and _end(before, _operands(rest.body, node)):
+    if rest is not None and inner.op == node.op and _ends_with(before, _operands(rest.body, node)):
         return Bounded(rest.op, rest.steps + 1, rest.body)
-    if _end(before, _operands(inner, node)):
+    if _ends_with(before, _operands(inner, node)):
         return Bounded("F" if node.op == "or" else "G", 1, inner)
     return None
 
@@ -114,9 +121,9 @@ def _step(node: Formula) -> str:
 
 
 def _operands(body: Formula, node: Formula) -> tuple[Formula, ...]:
-    """The operands as which ``body`` stands in an ``or`` or ``and``, which hold none of their own kind."""
+    """Return the operands that ``body`` becomes inside an ``or`` or ``and``, which are flat."""
     return body.args if body.op == node.op else (body,)
 
 
-def _end(operands: Sequence[Formula], end: tuple[Formula, ...]) -> bool:
+def _ends_with(operands: Sequence[Formula], end: tuple[Formula, ...]) -> bool:
     return tuple(operands[-len(end) :]) == end

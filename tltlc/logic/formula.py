@@ -1,8 +1,8 @@
 """Immutable, hash-consed formulas of truncated linear temporal logic.
 
-Equal formulas are one object, so ``is`` compares, and a table may be keyed by formula.  The
-constructors below keep what was written: they do not simplify (that is :mod:`tltlc.logic.rewrite`)
-and ``&`` and ``|`` keep the order of their operands.
+Equal formulas are one object, so you can compare them with ``is`` and use them as keys. The
+constructors below keep what was written: they do not simplify (see :mod:`tltlc.logic.rewrite`), and
+``&`` and ``|`` keep the order of their operands.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ BINARY_TEMPORAL: Final = ("U", "W", "R", "M")
 class Formula:
     """A node: ``op``, its ``args`` (formulas), and for an atom its ``name``.
 
-    Never constructed directly: use the functions of this module.  ``and`` and ``or`` hold two or
-    more operands, none of the same operator.
+    Do not construct it directly; use the functions of this module. ``and`` and ``or`` have two or
+    more operands, none with the same operator.
     """
 
     __slots__ = ("__weakref__", "args", "name", "op")
@@ -43,7 +43,7 @@ class Formula:
         return (_intern, (self.op, self.args, self.name))
 
     def walk(self) -> Iterator[Formula]:
-        """Every distinct subformula, this one first, left before right, without recursion."""
+        """Yield every distinct subformula, this one first, left before right, without recursion."""
         seen: set[Formula] = set()
         stack = [self]
         while stack:
@@ -54,9 +54,9 @@ class Formula:
                 stack.extend(reversed(node.args))
 
     def bottom_up(self, known: Container[Formula] = ()) -> Iterator[Formula]:
-        """Every distinct subformula, each after its operands, this one last, without recursion.
+        """Yield every distinct subformula after its operands, this one last, without recursion.
 
-        Subformulas in ``known`` are left out, and so is what stands only in them.
+        Skips subformulas in ``known``, and everything that occurs only inside them.
         """
         seen: set[Formula] = set()
         stack = [(self, False)]
@@ -70,12 +70,12 @@ class Formula:
                 stack.extend((argument, False) for argument in reversed(node.args))
 
     def atoms(self) -> tuple[str, ...]:
-        """The names of the atoms, in the order in which they stand in the formula."""
+        """Return the names of the atoms in order of appearance."""
         return tuple(node.name for node in self.walk() if node.op == "atom")
 
     @property
     def is_temporal(self) -> bool:
-        """Whether the outermost operator is a temporal one."""
+        """Whether the outermost operator is temporal."""
         return self.op in UNARY_TEMPORAL or self.op in BINARY_TEMPORAL
 
 
@@ -97,22 +97,22 @@ FALSE: Final = _intern("false")
 
 
 def atom(name: str) -> Formula:
-    """The atom of that name."""
+    """Return the atom of that name."""
     return _intern("atom", (), name)
 
 
 def not_(operand: Formula) -> Formula:
-    """Negation."""
+    """Return the negation."""
     return _intern("not", (operand,))
 
 
 def and_(*operands: Formula) -> Formula:
-    """Conjunction in the order given, nested ones flattened; of none, ``true``."""
+    """Return the conjunction in the given order, flattened; ``true`` without operands."""
     return _nary("and", operands, TRUE)
 
 
 def or_(*operands: Formula) -> Formula:
-    """Disjunction in the order given, nested ones flattened; of none, ``false``."""
+    """Return the disjunction in the given order, flattened; ``false`` without operands."""
     return _nary("or", operands, FALSE)
 
 
@@ -129,71 +129,75 @@ def _nary(op: Literal["and", "or"], operands: Iterable[Formula], neutral: Formul
 
 
 def implies(left: Formula, right: Formula) -> Formula:
-    """``left -> right``."""
+    """Return ``left -> right``."""
     return _intern("implies", (left, right))
 
 
 def iff(left: Formula, right: Formula) -> Formula:
-    """``left <-> right``."""
+    """Return ``left <-> right``."""
     return _intern("iff", (left, right))
 
 
 def next_(operand: Formula) -> Formula:
-    """Strong next ``X``: there is a next sample and the operand holds from it on."""
+    """Return the strong next ``X``: there is a next sample, and the operand holds from it on."""
     return _intern("X", (operand,))
 
 
 def weak_next(operand: Formula) -> Formula:
-    """Weak next ``N``: if there is a next sample, the operand holds from it on."""
+    """Return the weak next ``N``: if there is a next sample, the operand holds from it on."""
     return _intern("N", (operand,))
 
 
 def eventually(operand: Formula) -> Formula:
-    """``F``: now or at some later sample of the trace."""
+    """Return ``F``: now or at some later sample of the trace."""
     return _intern("F", (operand,))
 
 
 def always(operand: Formula) -> Formula:
-    """``G``: now and at every later sample of the trace."""
+    """Return ``G``: now and at every later sample of the trace."""
     return _intern("G", (operand,))
 
 
 def until(left: Formula, right: Formula) -> Formula:
-    """``left U right``: right at some sample, left at all before it."""
+    """Return ``left U right``: right holds at some sample, and left at all samples before it."""
     return _intern("U", (left, right))
 
 
 def weak_until(left: Formula, right: Formula) -> Formula:
-    """``left W right``: ``left U right`` or always left."""
+    """Return ``left W right``: ``left U right``, or left always holds."""
     return _intern("W", (left, right))
 
 
 def release(left: Formula, right: Formula) -> Formula:
-    """``left R right``: right up to and including the first sample with left, or always."""
+    """Return ``left R right``: right holds up to and including the first sample with left, or always."""
     return _intern("R", (left, right))
 
 
 def strong_release(left: Formula, right: Formula) -> Formula:
-    """``left M right``: right up to and including the first sample with left, which comes."""
+    """Return ``left M right``: right holds up to and including the first sample with left.
+
+    A sample with left must exist.
+    """
     return _intern("M", (left, right))
 
 
 def then(left: Formula, right: Formula) -> Formula:
-    """``left then right`` = ``F(left & X F right)`` (semantics, section 2); a right operand that is a ``then`` nests.
+    """Return ``left then right`` = ``F(left & X F right)`` (semantics, section 2).
 
-    ``right`` that already begins with ``F`` is not given a second one.
+    A right operand that is a ``then`` nests. If ``right`` already begins with ``F``, no second
+    ``F`` is added.
     """
     rest = right if right.op == "F" else eventually(right)
     return eventually(and_(left, next_(rest)))
 
 
 def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:
-    """The temporal operator ``op`` over its one or two operands."""
+    """Return the temporal operator ``op`` over its one or two operands."""
     return _intern(op, operands)
 
 
 def rebuild(formula: Formula, args: tuple[Formula, ...]) -> Formula:
-    """The same operator over other operands; ``and`` and ``or`` flatten again."""
+    """Return the same operator over other operands; ``and`` and ``or`` are flattened again."""
     if formula.op == "and":
         return and_(*args)
     if formula.op == "or":

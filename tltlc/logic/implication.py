@@ -1,4 +1,7 @@
-"""Cheap, sound answers about formulas on finite traces; each may say "not known" where a proof would be long."""
+"""Cheap, sound answers about formulas on finite traces.
+
+Each function may answer "not known" where a proof would be long.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, Op
 from tltlc.logic.signature import signature
 
 DUAL: Final[dict[Op, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
-"""Negation turns the one into the other and goes to the operands: ``!X a`` is ``N !a``."""
+"""The operator that replaces another when negation moves to its operands: ``!X a`` is ``N !a``."""
 
 _MOST_PAIRS: Final = 400
 _DEEPEST: Final = 40
@@ -22,16 +25,16 @@ _Shows = Callable[[Formula, Formula], bool]
 
 
 def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
-    """Whether the form of the two shows that ``conclusion`` holds wherever ``premise`` does, on every finite trace.
+    """Whether the syntax shows that ``premise`` implies ``conclusion`` on every finite trace.
 
-    False means "not shown".  Looks at no more than 400 pairs of subformulas.
+    False means "not shown". Looks at no more than 400 pairs of subformulas.
     """
     return _implies(premise, conclusion, {}, 0)
 
 
 @lru_cache(maxsize=8192)
 def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
-    """The negation, pushed inwards through at most ``depth`` operators, without double negations."""
+    """Return the negation, pushed inwards through ``depth`` operators, without double negations."""
     if formula.op == "not":
         return formula.args[0]
     if formula is TRUE or formula is FALSE:
@@ -47,7 +50,10 @@ def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
 
 
 def value_at_last(formula: Formula, depth: int = _LAST_DEPTH) -> bool | None:
-    """The truth of the formula at the last sample of any trace, or None where it depends on atoms or is not known."""
+    """Return the truth of the formula at the last sample of any trace.
+
+    Returns None if it depends on atoms or is not known.
+    """
     op = formula.op
     if op in ("true", "N"):
         return True
@@ -90,17 +96,17 @@ def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool],
         return True
     if signature(p) & ~signature(q):
         return False
-    found = known.get((p, q))
-    if found is None:
+    result = known.get((p, q))
+    if result is None:
         if depth > _DEEPEST or len(known) > _MOST_PAIRS:
             return False
-        known[p, q] = False  # what leads back here is not shown
-        found = known[p, q] = _shown(p, q, known, depth + 1)
-    return found
+        known[p, q] = False  # a proof may not use its own conclusion
+        result = known[p, q] = _shown(p, q, known, depth + 1)
+    return result
 
 
 def _shown(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
-    """One step of a proof; each line is a law of finite traces."""
+    """Whether one proof step shows the implication; each line is a law of finite traces."""
 
     def shows(premise: Formula, conclusion: Formula) -> bool:
         return _implies(premise, conclusion, known, depth)
@@ -124,7 +130,10 @@ def _shown(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], d
 
 
 def _premise_weakened(p: Formula, q: Formula, shows: _Shows) -> bool:
-    """Proofs from something weaker than the temporal premise: ``G a`` gives ``a``, ``a U b`` gives ``a | b``, …"""
+    """Prove the conclusion from something weaker than the temporal premise.
+
+    ``G a`` gives ``a``, ``a U b`` gives ``a | b``, …
+    """
     a = p.args
     match p.op:
         case "G":
@@ -140,7 +149,10 @@ def _premise_weakened(p: Formula, q: Formula, shows: _Shows) -> bool:
 
 
 def _conclusion_strengthened(p: Formula, q: Formula, shows: _Shows) -> bool:
-    """Proofs of something stronger than the temporal conclusion: ``a`` gives ``F a``, ``b`` gives ``a U b``, …"""
+    """Prove something stronger than the temporal conclusion.
+
+    ``a`` gives ``F a``, ``b`` gives ``a U b``, …
+    """
     b = q.args
     match q.op:
         case "F":
@@ -156,7 +168,7 @@ def _conclusion_strengthened(p: Formula, q: Formula, shows: _Shows) -> bool:
 
 
 def _both_temporal(p: Formula, q: Formula, shows: _Shows) -> bool:
-    """Monotony, and ``F G a`` = ``G F a``: both say ``a`` at the last sample."""
+    """Use monotonicity, and ``F G a`` = ``G F a``: both mean ``a`` at the last sample."""
     a, b = p.args, q.args
     if (p.op, q.op) in _NOT_WEAKER and all(shows(x, y) for x, y in zip(a, b, strict=True)):
         return True

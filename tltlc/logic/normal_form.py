@@ -1,4 +1,4 @@
-"""Negation normal form: negation only before atoms, and only ``and or X N F G U W R M`` besides."""
+"""Negation normal form: negation only before atoms, plus only ``and or X N F G U W R M``."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, Op
 from tltlc.logic.implication import DUAL
 
 _Signed = tuple[Formula, bool]
-"""A formula to be taken as it stands (True) or negated (False)."""
+"""A formula, taken as it is (True) or negated (False)."""
 
 
 def negation_normal_form(formula: Formula) -> Formula:
-    """The formula over literals, ``and``, ``or`` and the temporal operators, equal on every finite trace.
+    """Return an equal formula over literals, ``and``, ``or`` and temporal operators.
 
-    ``a -> b`` becomes ``!a | b`` and ``a <-> b`` becomes ``a & b | !a & !b``; negation turns each
-    operator into its dual (``!X a`` is ``N !a``).  Operands keep source order, repeated operands of
-    one ``and`` or ``or`` are dropped.  Each subformula is visited once for each sign and without
-    recursion, so that shared subformulas stay shared.
+    The two are equal on every finite trace. ``a -> b`` becomes ``!a | b``, and ``a <-> b`` becomes
+    ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is ``N !a``). Operands
+    keep source order, and repeated operands of one ``and`` or ``or`` are dropped. Each subformula
+    is visited once per sign and without recursion, so shared subformulas stay shared.
     """
     if all(map(_is_normal, formula.walk())):
         return formula
@@ -50,7 +50,7 @@ def _is_normal(node: Formula) -> bool:
 
 
 def _strip(signed: _Signed) -> _Signed:
-    """The same without leading negations."""
+    """Return the same formula without leading negations."""
     node, positive = signed
     while node.op == "not":
         node, positive = node.args[0], not positive
@@ -58,7 +58,7 @@ def _strip(signed: _Signed) -> _Signed:
 
 
 def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
-    """The operator that stands on top once the sign is pushed inwards, and its signed operands."""
+    """Return the top operator after pushing the sign inwards, and its signed operands."""
     node, positive = signed
     op = node.op
     if op == "implies":
@@ -75,7 +75,7 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
 
 
 def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
-    """The operands with those of the same operator opened, each once, in order."""
+    """Return the operands with nested ones of the same operator flattened, each once, in order."""
     gathered: list[_Signed] = []
     seen: set[_Signed] = set()
     stack = list(reversed(operands))
@@ -95,7 +95,7 @@ def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
 def _combine(signed: _Signed, op: Op, operands: tuple[Formula, ...]) -> Formula:
     node, positive = signed
     if op in ("and", "or"):
-        # An operand may have come down to one of the same operator, as (a & b) | (a & b) does.
+        # An operand may have been reduced to the same operator, as (a & b) | (a & b) is.
         parts = (operand.args if operand.op == op else (operand,) for operand in operands)
         flat = dict.fromkeys(chain.from_iterable(parts))
         return build.and_(*flat) if op == "and" else build.or_(*flat)

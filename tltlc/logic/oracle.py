@@ -1,4 +1,4 @@
-"""What formulas mean, slowly and straight from the definitions (semantics, sections 1 and 2).
+"""The meaning of formulas, computed slowly from the definitions (semantics, sections 1 and 2).
 
 Everything faster in this package is tested against this module.
 """
@@ -14,8 +14,8 @@ from tltlc.logic.formula import Formula
 def holds(formula: Formula, trace: Sequence[Collection[str]], position: int = 0) -> bool:
     """Whether the formula holds on a finite trace from ``position`` on.
 
-    A sample of the trace is the collection of the names of the atoms that hold then.  Raises
-    ValueError where the trace is empty or has no such position.
+    A sample of the trace is the collection of the names of the atoms that hold at it. Raises
+    ValueError if the trace is empty or has no such position.
     """
     if not 0 <= position < len(trace):
         raise ValueError(f"a trace of {len(trace)} samples has no position {position}")
@@ -27,11 +27,12 @@ def holds(formula: Formula, trace: Sequence[Collection[str]], position: int = 0)
 
 
 def robustness_of_state(formula: Formula, values: Mapping[str, float]) -> float:
-    """Robustness, in [-1, 1], of a formula without temporal operators in one state.
+    """Return the robustness, in [-1, 1], of a formula without temporal operators in one state.
 
-    ``values`` gives each atom's value in [-1, 1]: true is 1, an atom its value, ``not`` the negative,
-    ``and`` the least, ``or`` the greatest (paper, section III); ``a -> b`` is read as ``!a | b`` and
-    ``a <-> b`` as ``(!a | b) & (a | !b)``.  Raises ValueError at a temporal operator.
+    ``values`` maps each atom to a value in [-1, 1]. True is 1, an atom is its value, ``not`` is the
+    negative, ``and`` the minimum, and ``or`` the maximum (paper, section III). ``a -> b`` is read
+    as ``!a | b``, and ``a <-> b`` as ``(!a | b) & (a | !b)``. Raises ValueError at a temporal
+    operator.
     """
     results: dict[Formula, float] = {}
     for node in formula.bottom_up():
@@ -41,7 +42,7 @@ def robustness_of_state(formula: Formula, values: Mapping[str, float]) -> float:
 
 
 def all_traces(atoms: Sequence[str], max_length: int) -> Iterator[tuple[frozenset[str], ...]]:
-    """Every trace over the atoms of 1 to ``max_length`` samples, shorter ones first."""
+    """Yield every trace over the atoms of 1 to ``max_length`` samples, shorter ones first."""
     samples = [
         frozenset(chosen) for chosen in chain.from_iterable(combinations(atoms, k) for k in range(len(atoms) + 1))
     ]
@@ -50,7 +51,7 @@ def all_traces(atoms: Sequence[str], max_length: int) -> Iterator[tuple[frozense
 
 
 def _holds_at(node: Formula, operands: list[list[bool]], trace: Sequence[Collection[str]], i: int) -> bool:
-    """Whether ``node`` holds at position ``i``, from the truth of its operands at every position."""
+    """Whether ``node`` holds at position ``i``, given the truth of its operands at every position."""
     n = len(trace)
     a = operands[0] if operands else []
     b = operands[1] if len(operands) > 1 else []

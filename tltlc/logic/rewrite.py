@@ -1,7 +1,7 @@
 """Named rewrites that shorten formulas over finite traces, and the simplifier that applies them.
 
-On a finite trace ``X`` is false and ``N`` true at the last sample, so ``X true`` means "not the last
-sample", and both ``F G a`` and ``G F a`` mean "``a`` at the last sample".
+On a finite trace, ``X`` is false and ``N`` is true at the last sample. So ``X true`` means "not the
+last sample", and both ``F G a`` and ``G F a`` mean "``a`` at the last sample".
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _MOST_STEPS: Final = 50
 class Rewrite:
     """A rewrite of formulas whose outermost operator is in ``ops``.
 
-    ``apply`` returns an equal formula, with no more atoms, constants and operators than before, or
-    the same object where the law does not match.  ``law`` holds equations ``left = right`` between
-    ``;``: instances of what it does.
+    ``apply`` returns an equal formula with no more atoms, constants and operators than before, or
+    the same object if the law does not match. ``law`` holds equations ``left = right``, separated
+    by ``;``, that are instances of the rewrite.
     """
 
     name: str
@@ -146,10 +146,11 @@ _BY_OP: Final[dict[str, tuple[Rewrite, ...]]] = {
 
 
 def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
-    """A formula that is equal on every finite trace and no longer (see :func:`size`), operands in the same order.
+    """Return a formula that is equal on every finite trace and no longer (see :func:`size`).
 
-    Passes from the leaves to the root are repeated until nothing changes, 12 times at most.  ``known``
-    remembers what a pass made of each part, for further calls with formulas that share parts.
+    Operands keep their order. Passes from the leaves to the root repeat until nothing changes, at
+    most 12 times. ``known`` caches the result of a pass for each subformula, for further calls with
+    formulas that share subformulas.
     """
     known = {} if known is None else known
     for _ in range(_MOST_PASSES):
@@ -161,7 +162,10 @@ def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> F
 
 
 def size(formula: Formula) -> int:
-    """How many atoms, constants and operators are printed for the formula; ``a & b & c`` counts five."""
+    """Return the number of atoms, constants and operators in the printed formula.
+
+    ``a & b & c`` counts five.
+    """
     sizes: dict[Formula, int] = {}
     for node in formula.bottom_up():
         operators = len(node.args) - 1 if node.op in _AND_OR else 1

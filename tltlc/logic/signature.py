@@ -1,6 +1,6 @@
-"""The truth of a formula on a few fixed traces: a quick proof that one formula does not imply another.
+"""The truth of a formula on a few fixed traces, to prove quickly that one does not imply another.
 
-The traces are 64 pseudo-random ones of three samples, and their ends of two and one samples.
+The traces are 64 pseudo-random ones of three samples, and their suffixes of two and one samples.
 """
 
 from __future__ import annotations
@@ -22,13 +22,14 @@ _known: WeakKeyDictionary[Formula, int] = WeakKeyDictionary()
 
 
 def signature(formula: Formula) -> int:
-    """Truth at the three positions of the 64 traces, the first position in the lowest 64 bits.
+    """Return the truth at the three positions of the 64 traces.
 
-    If ``a`` implies ``b`` on every finite trace, ``signature(a) & ~signature(b)`` is 0.
+    The first position is in the lowest 64 bits. If ``a`` implies ``b`` on every finite trace, then
+    ``signature(a) & ~signature(b)`` is 0.
     """
-    found = _known.get(formula)
-    if found is not None:
-        return found
+    bits = _known.get(formula)
+    if bits is not None:
+        return bits
     stack = [formula]
     while stack:
         node = stack[-1]
@@ -84,7 +85,7 @@ def _weak_next(bits: int) -> int:
 
 
 def _random_bits(name: str) -> int:
-    """192 bits that depend on the name alone (splitmix64, Steele et al. 2014)."""
+    """Return 192 bits that depend on the name alone (splitmix64, Steele et al. 2014)."""
     state, bits = crc32(name.encode()), 0
     for _ in range(3):
         state = (state + 0x9E3779B97F4A7C15) & _WORD

@@ -1,7 +1,7 @@
-"""Rewrites of the temporal operators over finite traces; the laws stand in :mod:`tltlc.logic.rewrite`.
+"""Rewrites of the temporal operators over finite traces.
 
-Each function takes a formula and returns an equal one that is no longer, or the very same object
-where it has nothing to say.
+The laws are listed in :mod:`tltlc.logic.rewrite`. Each function takes a formula and returns an
+equal one that is no longer. It returns the same object if the rule does not apply.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tltlc.logic.implication import DUAL, complement, syntactically_implies, val
 
 
 def negated(node: Formula) -> Formula:
-    """Push ``not`` through a temporal operator where that is no longer."""
+    """Push ``not`` through a temporal operator if the result is no longer."""
     (inner,) = node.args
     if not inner.is_temporal or (len(inner.args) == 2 and all(part.op != "not" for part in inner.args)):
         return node
@@ -24,14 +24,17 @@ def negated(node: Formula) -> Formula:
 
 
 def constant_operand(node: Formula) -> Formula:
-    """``X F G N`` of a constant; ``X true`` and ``N false`` stay, they speak of the trace's end."""
+    """Evaluate ``X F G N`` of a constant.
+
+    ``X true`` and ``N false`` stay, because they are about the end of the trace.
+    """
     (inner,) = node.args
-    kept = {"X": FALSE, "N": TRUE}.get(node.op, inner)
-    return inner if inner is kept and inner in (TRUE, FALSE) else node
+    reducible = {"X": FALSE, "N": TRUE}.get(node.op, inner)
+    return inner if inner is reducible and inner in (TRUE, FALSE) else node
 
 
 def decided_at_last(node: Formula) -> Formula:
-    """``F`` of what is true, ``G`` of what is false at the last sample of any trace."""
+    """Evaluate ``F`` of an operand that is true, or ``G`` of one that is false, at every last sample."""
     value = value_at_last(node.args[0])
     if value is None or value != (node.op == "F"):
         return node
@@ -39,7 +42,7 @@ def decided_at_last(node: Formula) -> Formula:
 
 
 def nested(node: Formula) -> Formula:
-    """``F`` and ``G`` over temporal operators that say less below them."""
+    """Simplify ``F`` and ``G`` over temporal operators that are partly redundant below them."""
     (inner,) = node.args
     until, strong = ("U", "M") if node.op == "F" else ("R", "W")
     if inner.op == node.op:
@@ -59,7 +62,7 @@ def nested(node: Formula) -> Formula:
 
 
 def untils(node: Formula) -> Formula:
-    """``U W``: constants, and operands of which one implies the other or its negation."""
+    """Simplify ``U W`` with constants, or where one operand implies the other or its negation."""
     left, right = node.args
     strong = node.op == "U"
     if syntactically_implies(left, right) or right is TRUE:
@@ -76,7 +79,7 @@ def untils(node: Formula) -> Formula:
 
 
 def releases(node: Formula) -> Formula:
-    """``R M``: constants, and operands of which one implies the other or its negation."""
+    """Simplify ``R M`` with constants, or where one operand implies the other or its negation."""
     left, right = node.args
     weak = node.op == "R"
     if syntactically_implies(right, left) or right is FALSE:
@@ -93,33 +96,36 @@ def releases(node: Formula) -> Formula:
 
 
 def merged(node: Formula) -> Formula:
-    """Gather operands that begin with the same temporal operator; ``X a & N b`` is an ``X``, ``X a | N b`` an ``N``."""
+    """Merge operands that begin with the same temporal operator.
+
+    ``X a & N b`` becomes an ``X``, and ``X a | N b`` an ``N``.
+    """
     distributes: Op
     decides: Op
     distributes, decides = ("G", "X") if node.op == "and" else ("F", "N")
     for ops in (("X", "N"), (distributes,)):
-        found = [index for index, part in enumerate(node.args) if part.op in ops]
-        if len(found) < 2:
+        positions = [index for index, part in enumerate(node.args) if part.op in ops]
+        if len(positions) < 2:
             continue
-        parts = [node.args[index] for index in found]
+        parts = [node.args[index] for index in positions]
         op = decides if any(part.op == decides for part in parts) else parts[0].op
-        together = build.temporal(op, (join(node.op, (part.args[0] for part in parts)),))
-        return _replaced(node, found, together)
+        combined = build.temporal(op, (join(node.op, (part.args[0] for part in parts)),))
+        return _replaced(node, positions, combined)
     return node
 
 
 def merged_at_last(node: Formula) -> Formula:
-    """Gather operands that speak of the last sample only."""
-    found = [i for i, part in enumerate(node.args) if part.op in ("F", "G") and part.args[0].op == DUAL[part.op]]
-    if len(found) < 2:
+    """Merge operands that are only about the last sample."""
+    positions = [i for i, part in enumerate(node.args) if part.op in ("F", "G") and part.args[0].op == DUAL[part.op]]
+    if len(positions) < 2:
         return node
-    first = node.args[found[0]]
-    body = join(node.op, (node.args[index].args[0].args[0] for index in found))
-    return _replaced(node, found, build.temporal(first.op, (build.temporal(first.args[0].op, (body,)),)))
+    first = node.args[positions[0]]
+    body = join(node.op, (node.args[index].args[0].args[0] for index in positions))
+    return _replaced(node, positions, build.temporal(first.op, (build.temporal(first.args[0].op, (body,)),)))
 
 
 def folded(node: Formula) -> Formula:
-    """Put back together what ``F G U W R M`` say of this sample and of the rest of the trace."""
+    """Recombine ``F G U W R M`` from their expansions: one part for this sample, one for the rest."""
     inner_op = "or" if node.op == "and" else "and"
     for index, part in enumerate(node.args):
         if part.op in ("X", "N"):
@@ -131,9 +137,9 @@ def folded(node: Formula) -> Formula:
             continue
         if now is None:
             continue
-        found = _positions(node, now)
-        if found is not None:
-            return _replaced(node, sorted({*found, index}), whole)
+        positions = _positions(node, now)
+        if positions is not None:
+            return _replaced(node, sorted({*positions, index}), whole)
     return node
 
 
@@ -141,7 +147,10 @@ _EXPANDED = {("or", "X"): "U", ("or", "N"): "W", ("and", "X"): "M", ("and", "N")
 
 
 def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
-    """For ``a & X(a U b)`` in an ``or``, and its kin: ``a U b`` and ``b``; the second is None where there is none."""
+    """Return ``a U b`` and ``b`` for ``a & X(a U b)`` in an ``or``, and likewise for W, M and R.
+
+    The second is None if the part is not such an expansion.
+    """
     for index, step in enumerate(part.args):
         if step.op in ("X", "N") and step.args[0].op == _EXPANDED[op, step.op]:
             whole = step.args[0]
@@ -151,24 +160,27 @@ def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
 
 
 def strengthened(node: Formula) -> Formula:
-    """Make one operator of ``a U b | G a`` and its kin."""
+    """Merge ``a U b | G a`` and related pairs into one operator."""
     weak = node.op == "or"
-    kin: dict[str, tuple[str, int, Callable[[Formula, Formula], Formula]]] = (
+    pairs: dict[str, tuple[str, int, Callable[[Formula, Formula], Formula]]] = (
         {"U": ("G", 0, build.weak_until), "M": ("G", 1, build.release)}
         if weak
         else {"W": ("F", 1, build.until), "R": ("F", 0, build.strong_release)}
     )
     for index, part in enumerate(node.args):
-        if part.op in kin:
-            companion, operand, make = kin[part.op]
-            beside = build.temporal("G" if companion == "G" else "F", (part.args[operand],))
-            if beside in node.args:
-                return _replaced(node, sorted((index, node.args.index(beside))), make(*part.args))
+        if part.op in pairs:
+            companion, operand, make = pairs[part.op]
+            partner = build.temporal("G" if companion == "G" else "F", (part.args[operand],))
+            if partner in node.args:
+                return _replaced(node, sorted((index, node.args.index(partner))), make(*part.args))
     return node
 
 
 def _positions(node: Formula, part: Formula) -> list[int] | None:
-    """Where ``part``, or each operand of it, stands among the operands; None where it does not."""
+    """Return the positions of ``part``, or of each of its operands, among the operands.
+
+    Returns None if any is missing.
+    """
     if part in node.args:
         return [node.args.index(part)]
     if part.op == node.op and all(inner in node.args for inner in part.args):
@@ -177,7 +189,7 @@ def _positions(node: Formula, part: Formula) -> list[int] | None:
 
 
 def _replaced(node: Formula, positions: Collection[int], new: Formula) -> Formula:
-    """The operands with ``new`` at the first of the positions and nothing at the others."""
+    """Return the node with ``new`` at the first of the positions and the others removed."""
     first = min(positions)
     parts = (new if i == first else part for i, part in enumerate(node.args) if i == first or i not in positions)
     return join(node.op, parts)

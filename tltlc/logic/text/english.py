@@ -1,4 +1,4 @@
-"""A formula as one English sentence: what the player or the agent has to do, in the imperative."""
+"""Print a formula as one English sentence in the imperative: the task of the player or agent."""
 
 from __future__ import annotations
 
@@ -14,16 +14,18 @@ from tltlc.logic.text.notation import ASCII, write
 from tltlc.logic.text.phrases import bracketed, imperative, is_literal, is_state, object_phrase, phrase
 
 _PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
-"""How far a clause may be misread: not at all; beside others, as it has inner commas; beside any; even as the last."""
+"""Where a clause may be misread: nowhere; in a list, because it has inner commas; beside any other
+clause; even in last place.
+"""
 
 _DEEPEST: Final = 5
-"""Clauses nested deeper than this are given as formulas: no sentence of that depth helps a reader."""
+"""Clauses nested deeper than this are printed as formulas, because such a sentence is unreadable."""
 
 _Clause = tuple[str, int]
 
 
 class _How(NamedTuple):
-    """How many clauses deep may still be said, and whether each step has another one after it."""
+    """How many levels of clauses are still allowed, and whether every step has a next one."""
 
     depth: int
     endless: bool
@@ -33,14 +35,15 @@ class _How(NamedTuple):
 
 
 def english_text(formula: Formula, *, endless: bool = False) -> str:
-    """The formula as one sentence, from a capital letter to a full stop; atoms stand in it by name.
+    """Return the formula as one sentence, from a capital letter to a full stop.
 
-    ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then near(exit), and keep alive throughout."
-    "Reach" means now or later, "then" strictly later, "throughout" from now to the end.  Sentences
-    that are equal belong to formulas that are equal on all traces.  A formula with a constant that does
-    not speak of the trace's end (``true U a``) is simplified first.
+    Atoms appear by name. ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then
+    near(exit), and keep alive throughout." "Reach" means now or later, "then" strictly later,
+    "throughout" from now to the end. Formulas with equal sentences are equal on all traces. A
+    formula with a constant that is not about the end of the trace (``true U a``) is simplified
+    first.
 
-    ``endless``: the sentence is about traces that never end, of a formula with no constants in it.
+    ``endless``: the sentence is about traces that never end, and the formula has no constants.
     """
     formula = formula if endless else without_constants(formula)
     if formula is TRUE:
@@ -52,31 +55,36 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
 
 
 def clause_text(formula: Formula, *, endless: bool = False) -> str:
-    """The formula, which is no constant, as a clause of such a sentence: ``keep alive throughout``."""
+    """Return a non-constant formula as a clause of such a sentence: ``keep alive throughout``."""
     return _clause(formula, "now", _How(_DEEPEST, endless))[0]
 
 
 def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
-    """The goals of an ``F``, each with what links it to the one before: ``then``, of the first nothing."""
+    """Return the goals of an ``F``, each with its link to the previous goal.
+
+    The link is ``then`` or ``then or at the same time``, and empty for the first goal.
+    """
     return tuple(_linked_goals(reach.args[0], _How(_DEEPEST, endless)))
 
 
 def without_constants(formula: Formula) -> Formula:
-    """An equal formula with constants only in ``X true`` and ``N false``, or alone."""
-    idle = any((TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk())
-    return simplify(formula) if idle else formula
+    """Return an equal formula with constants only in ``X true`` and ``N false``, or alone."""
+    has_constants = any(
+        (TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk()
+    )
+    return simplify(formula) if has_constants else formula
 
 
 def _clause(node: Formula, when: str, how: _How) -> _Clause:
-    """What to do so that ``node`` holds at the moment that ``when`` names."""
+    """Return the instruction that makes ``node`` hold at the moment ``when``."""
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _of_state(node)
     if how.depth == 0:
         return f"satisfy {write(node, ASCII)}", _SCOPED
     if node.op in ("and", "or"):
-        found = bounded(node)
-        if found is not None:
-            return _bounded(found, how)
+        operator = bounded(node)
+        if operator is not None:
+            return _bounded(operator, how)
     match node.op:
         case "not":
             return _clause(_without_negation(node), when, how)
@@ -102,21 +110,21 @@ def _clause(node: Formula, when: str, how: _How) -> _Clause:
 
 
 def _parts(node: Formula) -> list[Formula]:
-    """The operands, with those without temporal operators gathered where the first of them stands."""
+    """Return the operands, with the non-temporal ones joined at the place of the first of them."""
     make = build.and_ if node.op == "and" else build.or_
     operands = with_bounds(node)
-    together = [part for part in operands if is_state(part)]
+    states = [part for part in operands if is_state(part)]
     parts: list[Formula] = []
     for part in operands:
         if not is_state(part):
             parts.append(part)
-        elif part is together[0]:
-            parts.append(make(*together))
+        elif part is states[0]:
+            parts.append(make(*states))
     return list(dict.fromkeys(parts))
 
 
 def _together(clauses: Sequence[_Clause]) -> _Clause:
-    """The clauses as one list."""
+    """Join the clauses into one list."""
     texts = [text for text, _ in clauses]
     if len(texts) == 1:
         return clauses[0]
@@ -125,7 +133,7 @@ def _together(clauses: Sequence[_Clause]) -> _Clause:
 
 
 def _reach(node: Formula, when: str, how: _How) -> _Clause:
-    """``F``: a goal, or a sequence of goals."""
+    """Return the clause of ``F``: a goal, or a sequence of goals."""
     (body,) = node.args
     if _without_negation(body).op == "G":
         return f"from some step on {_inner(body, how)}", _LIST
@@ -135,12 +143,12 @@ def _reach(node: Formula, when: str, how: _How) -> _Clause:
 
 
 def _goals(body: Formula, how: _How) -> str:
-    """What ``F body`` reaches, one goal after the other."""
+    """Return the goals of ``F body``, one after another."""
     return "".join(f", {link} {goal}" if link else goal for link, goal in _linked_goals(body, how))
 
 
 def _linked_goals(body: Formula, how: _How) -> Iterator[tuple[str, str]]:
-    """What ``F body`` reaches, one goal after the other, each with what links it to the one before."""
+    """Yield the goals of ``F body`` in order, each with the word that links it to the previous one."""
     link = ""
     while True:
         following, rest = _next_goal(body)
@@ -152,7 +160,10 @@ def _linked_goals(body: Formula, how: _How) -> Iterator[tuple[str, str]]:
 
 
 def _next_goal(body: Formula) -> tuple[str, Formula | None]:
-    """How ``p & X F q`` or ``p & F q`` goes on to its next goal, and that goal's ``F``; None where none follows."""
+    """Return the link and the ``F`` of the next goal in ``p & X F q`` or ``p & F q``.
+
+    The ``F`` is None if no goal follows.
+    """
     if body.op != "and":
         return "", None
     temporal = [part for part in body.args if not is_state(part)]
@@ -165,17 +176,20 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
 
 
 def _goal(body: Formula, how: _How) -> str:
-    """The last goal of a sequence: a choice, or what holds there with what it asks for from there on."""
+    """Return the last goal of a sequence.
+
+    It is a choice, or a state together with what must hold from that step on.
+    """
     if is_state(body):
         return phrase(body)
     if how.depth > 1 and body.op == "or":
-        ways = (phrase(part) if is_literal(part) else f"({_goals(part, how.deeper())})" for part in _parts(body))
-        return "either " + " or ".join(ways)
+        options = (phrase(part) if is_literal(part) else f"({_goals(part, how.deeper())})" for part in _parts(body))
+        return "either " + " or ".join(options)
     if body.op == "and":
         states = [part for part in body.args if is_state(part)]
-        others = [part for part in body.args if not is_state(part)]
+        temporal = [part for part in body.args if not is_state(part)]
         if states:
-            goal, rest = bracketed(build.and_(*states)), build.and_(*others)
+            goal, rest = bracketed(build.and_(*states)), build.and_(*temporal)
             if _is_about_end(rest):
                 return f"{goal} at a {_step(rest, how)}"
             return f"{goal} and from that step on {_inner(rest, how)}"
@@ -183,9 +197,9 @@ def _goal(body: Formula, how: _How) -> str:
 
 
 def _throughout(body: Formula, how: _How) -> _Clause:
-    """``G``: what to keep, what to avoid, what to do whenever something holds."""
+    """Return the clause of ``G``: what to keep, what to avoid, or what to do whenever something holds."""
     if body.op == "and" and not all(part.op == "atom" for part in body.args):
-        return _together([_throughout(part, how) for part in _kept(body)])
+        return _together([_throughout(part, how) for part in _parts_throughout(body)])
     if body.op == "implies" and is_state(body):
         return f"whenever {phrase(body.args[0])}, {_last(body.args[1], how)}", _CLAUSE
     if is_state(body):
@@ -201,16 +215,22 @@ def _throughout(body: Formula, how: _How) -> _Clause:
     return f"at every step, {_last(body, how)}", _CLAUSE
 
 
-def _kept(body: Formula) -> list[Formula]:
-    """The operands of an ``and`` that is to hold throughout, its atoms gathered where the first of them stands."""
+def _parts_throughout(body: Formula) -> list[Formula]:
+    """Return the operands of an ``and`` that must hold throughout.
+
+    The atoms are joined at the place of the first of them.
+    """
     atoms = [part for part in body.args if part.op == "atom"]
-    together = build.and_(*atoms)
-    parts = [together if part.op == "atom" else part for part in body.args]
+    joined = build.and_(*atoms)
+    parts = [joined if part.op == "atom" else part for part in body.args]
     return list(dict.fromkeys(parts))
 
 
 def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
-    """``body`` as "if the first, which is not temporal, then the second"; None where it has no such form."""
+    """Return ``body`` as a non-temporal condition and its consequence.
+
+    Both are None if ``body`` does not have this form.
+    """
     if body.op == "implies" and is_state(body.args[0]):
         return body.args[0], body.args[1]
     if body.op == "or":
@@ -221,7 +241,7 @@ def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
 
 
 def _until(node: Formula, how: _How) -> _Clause:
-    """``U W R M``."""
+    """Return the clause of ``U W R M``."""
     left, right = node.args
     if node.op in ("U", "M"):
         goal, held = (right, left) if node.op == "U" else (left, right)
@@ -237,7 +257,7 @@ def _until(node: Formula, how: _How) -> _Clause:
 
 
 def _next(node: Formula, how: _How) -> _Clause:
-    """``X`` and ``N``, alone or several in a row."""
+    """Return the clause of ``X`` and ``N``, single or several in a row."""
     ops = ("X", "N") if how.endless else (node.op,)
     count, body = 0, node
     while body.op in ops:
@@ -254,10 +274,13 @@ def _next(node: Formula, how: _How) -> _Clause:
     return f"{moment}, {_last(body, how)}", _CLAUSE
 
 
-def _bounded(found: Bounded, how: _How) -> _Clause:
-    """``p | X(p | X p)`` and ``p & N(p & N p)``, the expansions of bounded operators."""
-    steps, body = found.steps, found.body
-    if found.op == "F":
+def _bounded(operator: Bounded, how: _How) -> _Clause:
+    """Return the clause of a bounded operator.
+
+    These are the expansions ``p | X(p | X p)`` and ``p & N(p & N p)``.
+    """
+    steps, body = operator.steps, operator.body
+    if operator.op == "F":
         within = f"within {steps} step{'s' * (steps > 1)}"
         if is_state(body):
             return f"reach {object_phrase(body)} {within}", _of_state(body)
@@ -268,31 +291,31 @@ def _bounded(found: Bounded, how: _How) -> _Clause:
 
 
 def _step(node: Formula, how: _How) -> str:
-    """A noun for a moment at which ``node`` holds."""
+    """Return a noun for a moment at which ``node`` holds."""
     if _is_about_end(node):
         return f"step that is {'not ' if node.op == 'X' else ''}the last"
     return f"step with {bracketed(node)}" if is_state(node) else f"step from which on to {_inner(node, how)}"
 
 
 def _inner(node: Formula, how: _How, when: str = "at that step") -> str:
-    """The clause as part of another, in brackets unless it is plain."""
+    """Return the clause as part of another one, in brackets unless it is plain."""
     text, rank = _clause(node, when, how.deeper())
     return text if rank == _PLAIN else f"({text})"
 
 
 def _last(node: Formula, how: _How, when: str = "at that step") -> str:
-    """The clause as the last part of another, in brackets where it is several."""
+    """Return the clause as the last part of another one, in brackets if it is a list."""
     text, rank = _clause(node, when, how.deeper())
     return f"({text})" if rank == _SCOPED else text
 
 
 def _of_state(state: Formula) -> int:
-    """The rank of a clause about a state, which may have an `and` or an `or`."""
+    """Return the rank of a clause about a state, which may contain an `and` or an `or`."""
     return _PLAIN if is_literal(state) else _LIST
 
 
 def _without_negation(node: Formula) -> Formula:
-    """A formula that does not begin with ``not``, for one that does and is temporal."""
+    """Return a temporal formula without its leading ``not``."""
     negations = 0
     while node.op == "not":
         node, negations = node.args[0], negations + 1
@@ -300,7 +323,7 @@ def _without_negation(node: Formula) -> Formula:
 
 
 def _negated(node: Formula) -> Formula:
-    """The negation, pushed through the outermost operator."""
+    """Return the negation, pushed through the outermost operator."""
     if node.op == "iff":
         return build.iff(node.args[0], complement(node.args[1]))
     return complement(node, depth=1)

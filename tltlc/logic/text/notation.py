@@ -1,4 +1,4 @@
-"""How a formula becomes text: operators, spaces and brackets by a table of spellings."""
+"""Print formulas: a table of spellings gives the operators, spaces and brackets."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tltlc.logic.bounded import LEAST, Bounded, bounded, with_bounds
 from tltlc.logic.formula import Formula, Op
 
 OPERAND: Final = 6
-"""What an operator needs at least to stand behind a unary operator without brackets."""
+"""The least strength that an operator needs after a unary operator without brackets."""
 
 _STRENGTH: Final[Mapping[Op, int]] = {
     "iff": 1,
@@ -23,12 +23,12 @@ _STRENGTH: Final[Mapping[Op, int]] = {
 
 
 class Notation(NamedTuple):
-    """How operators and constants are written: ``prefix`` before an operand, ``infix`` between two.
+    """The spelling of operators and constants: ``prefix`` before an operand, ``infix`` between two.
 
-    ``brackets_between_infix`` asks for brackets wherever one infix operator stands in another, and
-    ``brackets_around_comparisons`` around those that are operands.
-    ``within`` and ``during`` are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{last}`` for n and
-    ``{count}`` for the n + 1 samples.
+    ``brackets_between_infix`` puts brackets around every infix operator inside another one, and
+    ``brackets_around_comparisons`` around comparisons that are operands. ``within`` and ``during``
+    are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{last}`` for n and ``{count}`` for the n +
+    1 samples.
     """
 
     prefix: Mapping[Op, str]
@@ -79,13 +79,14 @@ WORDS: Final = Notation(
 
 
 _Item = str | tuple[Formula, int]
-"""A text, or what is to be written and the least strength at which it needs no brackets."""
+"""A text, or a formula to write and the least strength at which it needs no brackets."""
 
 
 def write(formula: Formula, notation: Notation, least: int = 0) -> str:
-    """The formula in a notation, with only the brackets that it needs; works on an explicit stack.
+    """Return the formula in a notation, with only the brackets that it needs.
 
-    Where it is an operand, ``least`` is the least strength at which it stands there without brackets.
+    If the formula is an operand, ``least`` is the least strength at which it needs no brackets.
+    Works on an explicit stack.
     """
     pieces: list[str] = []
     stack: list[_Item] = [(formula, least)]
@@ -113,9 +114,9 @@ def write(formula: Formula, notation: Notation, least: int = 0) -> str:
 
 
 def _bound(node: Formula) -> Bounded | None:
-    """The bounded operator that a node expands, where it is long enough to be written so."""
-    found = bounded(node) if node.op in ("or", "and") else None
-    return found if found is not None and found.steps >= LEAST else None
+    """Return the bounded operator that a node expands, if it is long enough to be printed that way."""
+    operator = bounded(node) if node.op in ("or", "and") else None
+    return operator if operator is not None and operator.steps >= LEAST else None
 
 
 def _push_operand(stack: list[_Item], prefix: str, operand: Formula, notation: Notation) -> None:
@@ -127,7 +128,7 @@ def _push_infix(stack: list[_Item], node: Formula, notation: Notation) -> None:
     """Push the operands of an infix operator, the last one first, with its symbol between them."""
     strength, inner = _STRENGTH[node.op], OPERAND if notation.brackets_between_infix else 0
     operands = with_bounds(node) if node.op in ("or", "and") else node.args
-    # All infix operators but <-> group to the right, and operands of & and | are never of the same operator.
+    # All infix operators except <-> group to the right, and operands of & and | never have the same operator.
     last = strength + 1 if node.op == "iff" else strength
     for index in range(len(operands) - 1, -1, -1):
         is_last = index == len(operands) - 1
@@ -139,7 +140,7 @@ def _push_infix(stack: list[_Item], node: Formula, notation: Notation) -> None:
 def _needs_brackets(node: Formula, least: int, notation: Notation) -> bool:
     """Whether a node needs brackets where its operator must bind at least as tightly as ``least``."""
     if notation.brackets_around_comparisons and node.op == "atom" and least and ("<" in node.name or ">" in node.name):
-        return True  # a comparison: the grammar reads F a > 0 as F(a > 0), a person might not
+        return True  # a comparison: the grammar reads F a > 0 as F(a > 0), but a person might not
     if _STRENGTH[node.op] >= least:
         return False
     return _bound(node) is None

@@ -1,4 +1,4 @@
-"""What a formula asks for, sorted: goals in order, what holds throughout, what comes again and again."""
+"""Sort the requirements of a formula: goals in order, conditions throughout, recurring goals."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from tltlc.logic.text.phrases import is_state
 
 @record
 class Goal:
-    """One of a row of goals; ``together`` says that it may be reached with the one before, at the same step."""
+    """One goal in a sequence.
+
+    ``together`` says that it may be reached at the same step as the previous goal.
+    """
 
     text: str
     together: bool = False
@@ -21,8 +24,9 @@ class Goal:
 class Outline:
     """The conjuncts of a formula as English clauses, in order.
 
-    ``goals`` are rows, each to be reached in order, and the rows beside each other; ``recurring`` is what infinite
-    traces do again and again, ``others`` what is none of these.
+    ``goals`` are sequences: the goals of one sequence must be reached in order, and the sequences
+    are independent. ``recurring`` are the things that infinite traces do again and again.
+    ``others`` are the remaining conjuncts.
     """
 
     goals: tuple[tuple[Goal, ...], ...] = ()
@@ -32,7 +36,10 @@ class Outline:
 
 
 def outline(formula: Formula, *, endless: bool = False) -> Outline:
-    """The outline of a formula; ``endless``: it is about traces that never end, and is constant or has no constants."""
+    """Return the outline of a formula.
+
+    ``endless``: the formula is about traces that never end, and is a constant or has no constants.
+    """
     formula = formula if endless else without_constants(formula)
     goals: list[tuple[Goal, ...]] = []
     throughout: list[str] = []
@@ -56,8 +63,11 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
 
 
 def _conjuncts(formula: Formula) -> list[Formula]:
-    """The operands of the outermost ``and``, also of one under ``G``; bounds stay whole."""
-    found: list[Formula] = []
+    """Return the operands of the outermost ``and``, also of an ``and`` under ``G``.
+
+    Bounded operators stay whole.
+    """
+    conjuncts: list[Formula] = []
     stack = [formula]
     while stack:
         node = stack.pop()
@@ -66,12 +76,12 @@ def _conjuncts(formula: Formula) -> list[Formula]:
         elif node.op == "G" and node.args[0].op == "and" and bounded(node.args[0]) is None:
             stack += [always(part) for part in reversed(with_bounds(node.args[0]))]
         else:
-            found.append(node)
-    return list(dict.fromkeys(found))
+            conjuncts.append(node)
+    return list(dict.fromkeys(conjuncts))
 
 
 def _core(node: Formula) -> Formula:
-    """The formula without brackets of double negations."""
+    """Return the formula without leading double negations."""
     while node.op == "not" and node.args[0].op == "not":
         node = node.args[0].args[0]
     return node

@@ -21,7 +21,10 @@ _OPPOSITE: Final = {"<": ">=", ">": "<="}
 
 
 def phrase(state: Formula) -> str:
-    """The formula in words: ``near(exit) and not seen``; ``fuel <= 5`` where ``fuel > 5`` does not hold."""
+    """Return the formula in words: ``near(exit) and not seen``.
+
+    The negation of ``fuel > 5`` is ``fuel <= 5``.
+    """
     done: dict[Formula, Formula] = {}
     for node in state.bottom_up():
         done[node] = _opposite(node) or rebuild(node, tuple(done[argument] for argument in node.args))
@@ -29,28 +32,31 @@ def phrase(state: Formula) -> str:
 
 
 def _opposite(node: Formula) -> Formula | None:
-    """The negation of a comparison as a comparison."""
-    found = _COMPARISON.fullmatch(node.args[0].name) if node.op == "not" and node.args[0].op == "atom" else None
-    return found and atom(f"{found[1]} {_OPPOSITE[found[2]]} {found[3]}")
+    """Return the negation of a comparison as a comparison, or None."""
+    comparison = _COMPARISON.fullmatch(node.args[0].name) if node.op == "not" and node.args[0].op == "atom" else None
+    return comparison and atom(f"{comparison[1]} {_OPPOSITE[comparison[2]]} {comparison[3]}")
 
 
 def bracketed(state: Formula) -> str:
-    """The formula as a phrase that reads as one thing."""
+    """Return the formula as a phrase that reads as one unit."""
     return phrase(state) if is_literal(state) else f"({phrase(state)})"
 
 
 def object_phrase(state: Formula) -> str:
-    """The formula as a phrase behind a verb: literals joined by one `and` or `or` need no brackets there."""
+    """Return the formula as the object of a verb.
+
+    Literals joined by one `and` or `or` need no brackets there.
+    """
     is_row = state.op in ("and", "or") and all(map(is_literal, state.args))
     return phrase(state) if is_row else bracketed(state)
 
 
 def imperative(state: Formula, keep: str, avoid: str) -> str:
-    """What to do about it, with one verb for what is to hold and another one for what is not to."""
+    """Return an instruction: ``keep`` is the verb for a positive formula, ``avoid`` for a negated one."""
     if state.op != "not":
         return f"{keep} {object_phrase(state)}"
     (avoided,) = state.args
-    # "Avoid a and b" would be said of each of them.
+    # "Avoid a and b" would mean to avoid each of them.
     return f"{avoid} {bracketed(avoided) if avoided.op == 'and' else object_phrase(avoided)}"
 
 

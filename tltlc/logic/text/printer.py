@@ -10,20 +10,26 @@ __all__ = ["ascii_text", "english_text", "operand_text", "unicode_text", "words_
 
 
 def ascii_text(formula: Formula) -> str:
-    """The formula in letters and ASCII symbols, ``F(a & X F b) & G !c``, with only the brackets that it needs."""
+    """Return the formula in letters and ASCII symbols, ``F(a & X F b) & G !c``.
+
+    Only the necessary brackets are printed.
+    """
     return write(formula, ASCII)
 
 
 def operand_text(formula: Formula) -> str:
-    """The formula in the notation of :func:`ascii_text`, as it stands behind ``!`` or beside ``&`` and ``|``."""
+    """Return the formula like :func:`ascii_text`, but as an operand of ``!``, ``&`` or ``|``."""
     return write(formula, ASCII, OPERAND)
 
 
 def unicode_text(formula: Formula) -> str:
-    """The formula in symbols, ``◇(a ∧ ○◇b) ∧ □¬c``; ``N W R M`` have no symbol and stay letters."""
+    """Return the formula in symbols, ``◇(a ∧ ○◇b) ∧ □¬c``.
+
+    ``N W R M`` have no symbols and stay letters.
+    """
     return write(formula, UNICODE)
 
 
 def words_text(formula: Formula) -> str:
-    """The formula in words, ``eventually (a and next eventually b) and always not c``."""
+    """Return the formula in words, ``eventually (a and next eventually b) and always not c``."""
     return write(formula, WORDS)
