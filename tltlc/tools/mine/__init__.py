@@ -1,1 +1,4 @@
-"""Specs proposed from recorded traces: templates and sequences, counted by bit masks, confirmed by automata."""
+"""Propose specs from recorded traces.
+
+Templates and sequences are counted with bit masks and confirmed by automata.
+"""

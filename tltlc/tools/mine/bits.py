@@ -1,8 +1,9 @@
-"""Many traces at once, as whole numbers: a bit per sample, all traces of the evidence behind each other.
+"""All traces at once, as one integer: a bit per sample, with the traces of the evidence in a row.
 
-Each trace has a segment of the same whole number of bytes; its samples are the lowest bits, the first sample
-lowest, and the highest bit is spare: carries and borrows of additions end there.  So a question about every
-trace, such as "where does `a` hold for the first time?", takes a handful of operations on one number.
+Each trace has a segment of the same number of whole bytes. Its samples are the lowest bits, the
+first sample lowest. The highest bit is spare: carries and borrows of additions end there. So a
+question about every trace, such as "where does `a` hold for the first time?", takes a few
+operations on one number.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from tltlc.tools.mine.evidence import Evidence, Recorded
 Samples = int
 """A set of samples of all traces."""
 Verdicts = int
-"""A set of traces: a byte each, 0x80 where it is in the set."""
+"""A set of traces: one byte per trace, 0x80 if it is in the set."""
 
 
 class Bits:
-    """The evidence as masks.  ``backwards`` has the samples of each trace in the opposite order."""
+    """The evidence as masks. ``backwards`` reverses the order of samples in each trace."""
 
     def __init__(self, evidence: Evidence, *, backwards: bool = False) -> None:
         traces = evidence.all
@@ -37,55 +38,55 @@ class Bits:
         self.everything: Verdicts = self.traces | self.counterexamples
 
     def _mask(self, traces: Sequence[Recorded], name: str | None, backwards: bool) -> Samples:
-        """The samples at which an atom holds, or for None all that there are."""
+        """Return the samples at which an atom holds, or all samples for None."""
         pieces = []
         for trace in traces:
             letters = reversed(trace.letters) if backwards else trace.letters
-            # The digits of a number begin with the highest one.
+            # The first digit of a number is the highest one.
             digits = "".join("1" if name is None or name in letter else "0" for letter in letters)[::-1]
             pieces.append(int(digits, 2).to_bytes(self._bytes, "little"))
         return int.from_bytes(b"".join(pieces), "little")
 
     def some(self, samples: Samples) -> Verdicts:
-        """The traces with some of the samples."""
+        """Return the traces that contain some of the samples."""
         tops = (samples + self._carry) & self._top
         return int.from_bytes(
             tops.to_bytes(self._bytes * self._length, "little")[self._bytes - 1 :: self._bytes], "little"
         )
 
     def none(self, samples: Samples) -> Verdicts:
-        """The traces with none of the samples."""
+        """Return the traces that contain none of the samples."""
         return self.everything & ~self.some(samples)
 
     def complement(self, samples: Samples) -> Samples:
-        """All other samples."""
+        """Return all other samples."""
         return self.all & ~samples
 
     def after_first(self, samples: Samples) -> Samples:
-        """The samples strictly after the first of the given ones; none where a trace has none of them."""
+        """Return the samples strictly after the first given one; none in a trace without a given one."""
         return self.all & ~self._up_to_first(samples)
 
     def before_first(self, samples: Samples) -> Samples:
-        """The samples strictly before the first of the given ones; all where a trace has none of them."""
+        """Return the samples strictly before the first given one; all in a trace without a given one."""
         return self.all & self._up_to_first(samples) & ~samples
 
     def within(self, samples: Samples, steps: int) -> Samples:
-        """The samples from which one of the given ones is at most so many steps away."""
-        found = samples
+        """Return the samples that are at most ``steps`` before one of the given samples, or equal to one."""
+        result = samples
         reached = 0
         while reached < steps:
-            further = min(reached + 1, steps - reached)
-            found |= self._earlier(found, further)
-            reached += further
-        return found
+            shift = min(reached + 1, steps - reached)
+            result |= self._earlier(result, shift)
+            reached += shift
+        return result
 
     def _earlier(self, samples: Samples, steps: int) -> Samples:
-        """The samples that are so many steps earlier than the given ones."""
+        """Return the samples that are ``steps`` before the given ones."""
         start = self._start(steps)
         return (samples & ~start) >> steps
 
     def _start(self, steps: int) -> Samples:
-        """The first so many samples of each trace."""
+        """Return the first ``steps`` samples of each trace."""
         width = 8 * self._bytes
         return self._low * ((1 << min(steps, width)) - 1)
 
@@ -95,7 +96,7 @@ class Bits:
 
 
 def count(verdicts: Verdicts) -> int:
-    """How many traces a set has."""
+    """Return the number of traces in a set."""
     return verdicts.bit_count()
 
 

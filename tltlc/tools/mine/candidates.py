@@ -1,4 +1,4 @@
-"""The candidates that a search keeps: of those that accept the same traces, a few of the shortest."""
+"""The candidates that a search keeps: a few of the shortest for each set of accepted traces."""
 
 from __future__ import annotations
 
@@ -12,17 +12,16 @@ from tltlc.tools.mine.clause import Conjunction, atoms_of
 from tltlc.tools.mine.measure import figures
 
 ALIKE: Final = 3
-"""How many candidates of one length that accept the same traces are kept."""
+"""The most candidates of one length that are kept for one set of accepted traces."""
 _MOST: Final = WORK["mined candidates"]
 
 
 class Candidates:
     """Conjunctions with the traces that they accept.
 
-    It holds what :func:`~tltlc.tools.mine.conjunctions.best` would choose from all that were added, so its size
-    depends on
-    how many different sets of traces they accept.  Where these are too many, it keeps those with the best scores, and
-    ``is_cut`` becomes true.
+    Keeps the conjunctions that :func:`~tltlc.tools.mine.conjunctions.best` would choose from all
+    that were added, so the size depends on the number of different sets of accepted traces. If
+    there are too many sets, it keeps those with the best scores and sets ``is_cut``.
     """
 
     def __init__(self, bits: Bits) -> None:
@@ -31,7 +30,10 @@ class Candidates:
         self.is_cut = False
 
     def add(self, conjunction: Conjunction, accepts: Verdicts) -> None:
-        """Keep a conjunction, unless shorter ones accept the same traces, or enough that are as short."""
+        """Keep a conjunction if it is among the shortest that accept these traces.
+
+        At most ALIKE conjunctions are kept for one set of traces.
+        """
         alike = self._groups.setdefault(accepts, [])
         if alike:
             size, shortest = atoms_of(conjunction), atoms_of(alike[0])
@@ -45,8 +47,8 @@ class Candidates:
             self._cut()
 
     def items(self) -> Iterator[tuple[Conjunction, Verdicts]]:
-        """The conjunctions, each with the traces that it accepts."""
-        return ((each, accepts) for accepts, alike in self._groups.items() for each in alike)
+        """Yield the conjunctions, each with the traces that it accepts."""
+        return ((conjunction, accepts) for accepts, alike in self._groups.items() for conjunction in alike)
 
     def _cut(self) -> None:
         """Keep the groups with the best scores."""
@@ -60,6 +62,9 @@ class Candidates:
 
 
 def length(conjunction: Conjunction) -> tuple[int, int, list[int], list[tuple[int, str]]]:
-    """The order among conjunctions that accept the same traces: the shortest first, then by template and text."""
-    ranks, texts = [each.rank for each in conjunction], [(each.atoms, each.text) for each in conjunction]
+    """Return the sort key for conjunctions that accept the same traces.
+
+    The shortest come first, then the order is by template and text.
+    """
+    ranks, texts = [clause.rank for clause in conjunction], [(clause.atoms, clause.text) for clause in conjunction]
     return (atoms_of(conjunction), len(conjunction), ranks, texts)

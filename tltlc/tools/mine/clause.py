@@ -1,4 +1,4 @@
-"""Candidates: clauses of a spec, each with the traces that satisfy it."""
+"""Clauses of a spec as candidates, each with the traces that satisfy it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from tltlc.tools.mine.bits import Bits, Verdicts
 
 @record
 class Clause:
-    """One clause: its ``text`` in the language, how many ``atoms`` it names, and the traces that it ``accepts``.
+    """One clause: its ``text``, its number of ``atoms``, and the traces that it ``accepts``.
 
-    ``asked`` are the traces in which the question arises at all: those in which the trigger of a response occurs.
-    ``kind`` is the name of its template, ``rank`` the place of that in the order in which ties are broken.
+    ``asked`` are the traces in which the clause is not vacuous, e.g. those in which the trigger of
+    a response occurs. ``kind`` is the name of its template, and ``rank`` the place of the template
+    in the order that breaks ties.
     """
 
     kind: str
@@ -25,17 +26,17 @@ class Clause:
 
 
 Conjunction = tuple[Clause, ...]
-"""Clauses of one spec, in the order in which it says them."""
+"""Clauses of one spec, in the order in which they are written."""
 
 
 def atoms_of(clauses: Sequence[Clause]) -> int:
-    """How many atoms the clauses name together."""
+    """Return how many atoms the clauses name together."""
     return sum(clause.atoms for clause in clauses)
 
 
 def accepted_by(clauses: Iterable[Clause], bits: Bits) -> Verdicts:
-    """The traces that satisfy all of the clauses."""
-    found = bits.everything
-    for each in clauses:
-        found &= each.accepts
-    return found
+    """Return the traces that satisfy all of the clauses."""
+    accepted = bits.everything
+    for clause in clauses:
+        accepted &= clause.accepts
+    return accepted

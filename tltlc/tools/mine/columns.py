@@ -1,4 +1,4 @@
-"""Which columns traces have, seen before it is known which of them matter."""
+"""Find the columns of traces before it is known which of them are needed."""
 
 from __future__ import annotations
 
@@ -11,34 +11,37 @@ Row = Sequence[tuple[str, bool]]
 
 
 def columns(data: bytes, name: str) -> dict[str, bool]:
-    """The columns of a trace in order, each with whether all its values are true or false.
+    """Return the columns of a trace in order, each with whether all its values are true or false.
 
-    ``name`` is what messages call the trace.
+    ``name`` is the name of the trace in messages.
 
     Raises:
         TltlError: TLT0622, a line cannot be read.
     """
-    found: dict[str, bool] = {}
+    truths: dict[str, bool] = {}
     count = 0
     seen: dict[str, int] = {}
     for row in _rows(Lines(io.BytesIO(data), name)):
         count += 1
         for column, is_truth in row:
-            found[column] = found.get(column, True) and is_truth
-        # A column that stands twice is an error only where a signal is read from it.
+            truths[column] = truths.get(column, True) and is_truth
+        # A repeated column is an error only if a signal is read from it.
         for column in {column for column, _ in row}:
             seen[column] = seen.get(column, 0) + 1
-    # A line of JSON may leave a signal out: then it is no column of the trace.
-    return {column: is_truth for column, is_truth in found.items() if seen[column] == count}
+    # A line of JSON may leave a signal out. Then the signal is not a column of the trace.
+    return {column: is_truth for column, is_truth in truths.items() if seen[column] == count}
 
 
 def shared(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
-    """The columns that all traces have, in the order of the first one; truths where they are so in all."""
-    first, *others = all_columns
+    """Return the columns that all traces have, in the order of the first trace.
+
+    The value is true if the column holds only truths in all traces.
+    """
+    first, *rest = all_columns
     return {
-        name: is_truth and all(other[name] for other in others)
+        name: is_truth and all(columns[name] for columns in rest)
         for name, is_truth in first.items()
-        if all(name in other for other in others)
+        if all(name in columns for columns in rest)
     }
 
 
@@ -48,5 +51,5 @@ def _rows(lines: Lines) -> Iterator[Row]:
         for cells in trace.rows:
             yield [(name, cell_number(cell) in (0, 1)) for name, cell in zip(trace.header, cells, strict=True)]
     elif trace is not None:
-        for found in trace.rows:
-            yield [(name, isinstance(value, (int, float)) and value in (0, 1)) for name, value in found.items()]
+        for values in trace.rows:
+            yield [(name, isinstance(value, (int, float)) and value in (0, 1)) for name, value in values.items()]

@@ -1,4 +1,4 @@
-"""Proposals as the compiler has them: each is compiled, and its automaton judges every trace."""
+"""Compile proposals and let their automata judge every trace."""
 
 from __future__ import annotations
 
@@ -20,12 +20,15 @@ from tltlc.tools.mine.vocabulary import Words
 from tltlc.tools.witness.blocks import values
 
 _NAME: Final = "mined_candidate_"
-"""Of specs that are only compiled."""
+"""The name prefix of specs that are only compiled."""
 
 
 @record
 class Judgement:
-    """What an automaton says of a trace: whether it accepts it, and the sample, from 1, at which it was violated."""
+    """The verdict of an automaton on a trace.
+
+    It says whether the automaton accepts the trace, and at which sample (from 1) it was violated.
+    """
 
     trace: Recorded
     accepted: bool
@@ -34,7 +37,7 @@ class Judgement:
 
 @record
 class Proposal:
-    """A spec with its automaton and what that says of the traces and the counterexamples, in order."""
+    """A spec with its automaton and the judgements on traces and counterexamples, in order."""
 
     clauses: Conjunction
     fspa: Fspa
@@ -43,11 +46,11 @@ class Proposal:
 
     @property
     def figures(self) -> Figures:
-        """Its figures, by the automaton."""
+        """Its figures according to the automaton."""
         return Figures(
-            sum(each.accepted for each in self.traces),
+            sum(judgement.accepted for judgement in self.traces),
             len(self.traces),
-            sum(not each.accepted for each in self.counterexamples),
+            sum(not judgement.accepted for judgement in self.counterexamples),
             len(self.counterexamples),
         )
 
@@ -55,29 +58,30 @@ class Proposal:
 def confirmed(
     ranked: Sequence[Conjunction], evidence: Evidence, words: Words, options: CompileOptions, top: int
 ) -> tuple[Proposal, ...]:
-    """The first ``top`` of the ranked conjunctions that say different things, judged by their automata.
+    """Return the first ``top`` conjunctions that differ in meaning, judged by their automata.
 
-    One that accepts the same traces of the world, not only of the evidence, as an earlier one is left out.
+    A conjunction is left out if it accepts the same traces as an earlier one, considering all
+    possible traces and not only the evidence.
 
     Raises:
-        TltlError: an automaton is too large; what is wrong with the library.
+        TltlError: an automaton is too large, or the library has an error.
     """
-    found: list[Proposal] = []
+    proposals: list[Proposal] = []
     for first in range(0, len(ranked), 2 * top):
-        several = ranked[first : first + 2 * top]
-        for clauses, fspa in zip(several, _compiled(several, words, options), strict=True):
-            if len(found) == top:
-                return tuple(found)
-            if not any(_same(fspa, other.fspa) for other in found):
+        batch = ranked[first : first + 2 * top]
+        for clauses, fspa in zip(batch, _compiled(batch, words, options), strict=True):
+            if len(proposals) == top:
+                return tuple(proposals)
+            if not any(_same(fspa, proposal.fspa) for proposal in proposals):
                 good, bad = (
                     tuple(judge(fspa, trace) for trace in part) for part in (evidence.traces, evidence.counterexamples)
                 )
-                found.append(Proposal(clauses, fspa, good, bad))
-    return tuple(found)
+                proposals.append(Proposal(clauses, fspa, good, bad))
+    return tuple(proposals)
 
 
 def judge(fspa: Fspa, trace: Recorded) -> Judgement:
-    """What the automaton says of a trace in atoms."""
+    """Return the judgement of the automaton on a trace of atoms."""
     run = _Run(fspa)
     violated_at = None
     for number, letter in enumerate(trace.letters, start=1):
@@ -88,7 +92,7 @@ def judge(fspa: Fspa, trace: Recorded) -> Judgement:
 
 
 class _Run:
-    """An automaton on letters; what it did on one it does again without a look at the guards."""
+    """A run of an automaton on letters. It caches transitions, so each guard is evaluated once per letter."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
@@ -100,24 +104,24 @@ class _Run:
         key = (self.state.id, letter)
         target = self._known.get(key)
         if target is None:
-            given = values(self._fspa, letter)
-            taken: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, given))
+            truth = values(self._fspa, letter)
+            taken: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, truth))
             target = self._known[key] = taken.target
         self.state = self._fspa.states[target]
 
 
-def _compiled(several: Sequence[Conjunction], words: Words, options: CompileOptions) -> tuple[Fspa, ...]:
+def _compiled(batch: Sequence[Conjunction], words: Words, options: CompileOptions) -> tuple[Fspa, ...]:
     text = words.library.text + "".join(
         f"\nspec {_NAME}{number} {{\n" + "".join(f"    {clause.text}\n" for clause in clauses) + "}\n"
-        for number, clauses in enumerate(several)
+        for number, clauses in enumerate(batch)
     )
     source = SourceFile(words.library.name, text)
-    names = tuple(f"{_NAME}{number}" for number in range(len(several)))
+    names = tuple(f"{_NAME}{number}" for number in range(len(batch)))
     return compile_source(source, replace(options, specs=names)).automata
 
 
 def _same(one: Fspa, other: Fspa) -> bool:
-    """Whether two automata accept the same traces; where that takes too long, as if not."""
+    """Whether two automata accept the same traces; False if the comparison takes too long."""
     if one.spec_size != other.spec_size or len(one.states) != len(other.states):
         return False
     try:

@@ -1,4 +1,4 @@
-"""Conjunctions of the best clauses: each clause rejects counterexamples that the others let pass."""
+"""Conjunctions of the best clauses: each clause rejects counterexamples that the others accept."""
 
 from __future__ import annotations
 
@@ -12,51 +12,54 @@ from tltlc.tools.mine.measure import figures
 from tltlc.tools.mine.templates import BOUNDED
 
 BEAM: Final = 60
-"""Conjunctions of one length that are extended."""
+"""The most conjunctions of one length that are extended."""
 MOST_CLAUSES: Final = 4
 POOL: Final = 60
-"""Clauses of each template of which they are made."""
+"""The most clauses of each template that conjunctions are built from."""
 
 
 def conjunctions(clauses: Sequence[Clause], bits: Bits, least: int, most_atoms: int) -> Iterator[list[Conjunction]]:
-    """Conjunctions of two clauses and more, in portions, of which many are empty; each takes a short time.
+    """Yield conjunctions of two or more clauses, in portions; each portion takes a short time.
 
-    ``least`` and ``most_atoms`` are as for sequences.
+    Many portions are empty. ``least`` and ``most_atoms`` are as for sequences.
     """
     pool = _pool(clauses)
-    beam: list[tuple[Conjunction, Verdicts]] = [((each,), each.accepts) for each in pool]
+    beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]
     for _ in range(1, MOST_CLAUSES):
-        found: dict[Conjunction, Verdicts] = {}
+        accepted_by_longer: dict[Conjunction, Verdicts] = {}
         for conjunction, accepts in beam[:BEAM]:
             room = most_atoms - atoms_of(conjunction)
-            for each in pool:
-                both = accepts & each.accepts
-                if each.atoms > room or both == accepts or count(both & bits.traces) < least:
+            for addition in pool:
+                both = accepts & addition.accepts
+                if addition.atoms > room or both == accepts or count(both & bits.traces) < least:
                     continue
-                # The states that count one bound would be multiplied by those that count another.
-                if each.kind == BOUNDED and each.kind in {clause.kind for clause in conjunction}:
+                # Two bounds would multiply the numbers of states that count them.
+                if addition.kind == BOUNDED and addition.kind in {clause.kind for clause in conjunction}:
                     continue
-                longer = tuple(sorted((*conjunction, each), key=lambda clause: (clause.rank, clause.text)))
-                if longer not in found and _all_needed(longer, both, bits):
-                    found[longer] = both
+                longer = tuple(sorted((*conjunction, addition), key=lambda clause: (clause.rank, clause.text)))
+                if longer not in accepted_by_longer and _all_needed(longer, both, bits):
+                    accepted_by_longer[longer] = both
             yield []
-        beam = best(found.items(), bits)
+        beam = best(accepted_by_longer.items(), bits)
         yield [conjunction for conjunction, _ in beam]
 
 
 def _pool(clauses: Sequence[Clause]) -> list[Clause]:
-    """The first clauses of each template, in their order: many good ones of one must not crowd out the others."""
+    """Return the first clauses of each template, in order.
+
+    The limit per template keeps many good clauses of one template from crowding out the others.
+    """
     taken: dict[str, int] = {}
-    found = []
-    for each in clauses:
-        taken[each.kind] = taken.get(each.kind, 0) + 1
-        if taken[each.kind] <= POOL:
-            found.append(each)
-    return found
+    pool = []
+    for clause in clauses:
+        taken[clause.kind] = taken.get(clause.kind, 0) + 1
+        if taken[clause.kind] <= POOL:
+            pool.append(clause)
+    return pool
 
 
 def best(candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits) -> list[tuple[Conjunction, Verdicts]]:
-    """The candidates by their score; of those that accept the same traces a few of the shortest."""
+    """Return the candidates by score, with a few of the shortest for each set of accepted traces."""
 
     def worth(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
         conjunction, accepts = item
@@ -65,18 +68,20 @@ def best(candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits) -> list
 
     shortest: dict[Verdicts, int] = {}
     alike: dict[Verdicts, int] = {}
-    kept = []
+    chosen = []
     for conjunction, accepts in sorted(candidates, key=worth):
         size = atoms_of(conjunction)
-        # In order of score those of the same traces come shortest first.
+        # Among candidates with the same traces, the shortest have the best score and come first.
         if shortest.setdefault(accepts, size) == size:
             alike[accepts] = alike.get(accepts, 0) + 1
             if alike[accepts] <= ALIKE:
-                kept.append((conjunction, accepts))
-    return kept
+                chosen.append((conjunction, accepts))
+    return chosen
 
 
 def _all_needed(conjunction: Conjunction, accepts: Verdicts, bits: Bits) -> bool:
-    """Whether no clause can go without a counterexample more being accepted."""
-    others = (accepted_by((each for each in conjunction if each is not out), bits) for out in conjunction)
-    return all(each & ~accepts & bits.counterexamples for each in others)
+    """Whether dropping any clause would accept a further counterexample."""
+    without_one = (
+        accepted_by((clause for clause in conjunction if clause is not dropped), bits) for dropped in conjunction
+    )
+    return all(accepted & ~accepts & bits.counterexamples for accepted in without_one)

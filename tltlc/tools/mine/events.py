@@ -1,4 +1,4 @@
-"""Which atoms are worth relating to others, where there are too many to relate all of them."""
+"""Choose the atoms to relate to each other if there are too many to relate all of them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from tltlc.io.limits import WORK
 from tltlc.tools.mine.evidence import Evidence, Recorded
 
 MOST_EVENTS: Final = isqrt(WORK["mined pairs"])
-"""Atoms that are related to each other: every ordered pair is tried."""
+"""The most atoms that are related to each other: every ordered pair is tried."""
 
 
 def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVENTS) -> list[str]:
-    """At most ``most`` of the events, in their order: those that tell traces from counterexamples best by themselves.
+    """Return at most ``most`` of the events, in their order: those that best separate the evidence.
 
-    An event tells them apart by the sample at which it holds for the first time, or whether it holds at every sample.
+    An event separates traces from counterexamples by the sample at which it first holds, or by
+    whether it holds at every sample.
     """
     if len(events) <= most:
         return list(events)
@@ -26,8 +27,8 @@ def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVEN
     good = len(evidence.traces)
 
     def worth(name: str) -> tuple[float, str]:
-        first = _separation([each.get(name, inf) for each in firsts], good)
-        throughout = _separation([float(name in each) for each in always], good)
+        first = _separation([samples.get(name, inf) for samples in firsts], good)
+        throughout = _separation([float(name in names) for names in always], good)
         return (-max(first, throughout), name)
 
     chosen = set(sorted(events, key=worth)[:most])
@@ -35,20 +36,23 @@ def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVEN
 
 
 def _first_samples(trace: Recorded) -> dict[str, float]:
-    """The sample at which each atom holds for the first time, from 0."""
-    found: dict[str, float] = {}
+    """Return the sample (from 0) at which each atom first holds."""
+    firsts: dict[str, float] = {}
     for number, letter in enumerate(trace.letters):
         for name in letter:
-            found.setdefault(name, number)
-    return found
+            firsts.setdefault(name, number)
+    return firsts
 
 
 def _separation(values: Sequence[float], good: int) -> float:
-    """How well a threshold separates the first ``good`` values from the others, in [0, 1]: Youden's index."""
+    """Return how well a threshold separates the first ``good`` values from the others, in [0, 1].
+
+    This is Youden's index.
+    """
     bad = len(values) - good
     if not bad:
         return 0.0
     steps: dict[float, float] = {}
     for number, value in enumerate(values):
         steps[value] = steps.get(value, 0.0) + (1 / good if number < good else -1 / bad)
-    return round(max(abs(each) for each in accumulate(steps[value] for value in sorted(steps))), 9)
+    return round(max(abs(total) for total in accumulate(steps[value] for value in sorted(steps))), 9)

@@ -1,4 +1,4 @@
-"""What specs are proposed from: traces that are to satisfy them, and counterexamples that are not to."""
+"""The evidence for proposals: traces that must satisfy them, and counterexamples that must not."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from tltlc.core.record import record
 
 @record
 class Recorded:
-    """A trace: what it is called, and of each sample the atoms that hold; there is at least one sample."""
+    """A trace: its name, and the set of atoms that hold at each sample.
+
+    There is at least one sample.
+    """
 
     name: str
     letters: tuple[Letter, ...]
@@ -16,9 +19,10 @@ class Recorded:
 
 @record
 class Evidence:
-    """The traces to satisfy, at least one, and those to violate.
+    """The traces to satisfy, at least one, and the counterexamples to violate.
 
-    ``made_up``: the counterexamples are no recordings, but made from the traces (:mod:`tltlc.tools.mine.mutants`).
+    ``made_up``: the counterexamples are not recordings, but generated from the traces
+    (:mod:`tltlc.tools.mine.mutants`).
     """
 
     traces: tuple[Recorded, ...]
@@ -31,5 +35,5 @@ class Evidence:
         return (*self.traces, *self.counterexamples)
 
     def atoms(self) -> tuple[str, ...]:
-        """The atoms that hold somewhere, by name."""
+        """Return the atoms that hold somewhere, sorted by name."""
         return tuple(sorted({name for trace in self.all for letter in trace.letters for name in letter}))

@@ -1,4 +1,4 @@
-"""From the bytes of traces to the evidence: what the atoms are, where they hold, and what contradicts itself."""
+"""Read trace files into evidence: the atoms, where they hold, and which traces contradict each other."""
 
 from __future__ import annotations
 
@@ -23,12 +23,14 @@ def gathered(
     options: ResolveOptions,
     tell: Tell = silent,
 ) -> tuple[Words, Evidence, tuple[Diagnostic, ...]]:
-    """The atoms, the evidence in them, and warnings; without ``bad`` traces counterexamples are made up.
+    """Return the atoms, the evidence in these atoms, and warnings.
+
+    Without ``bad`` traces, counterexamples are generated.
 
     Raises:
-        TltlError: what :func:`~tltlc.tools.mine.vocabulary.of_library`,
-        :func:`~tltlc.tools.mine.vocabulary.of_columns` and
-            :func:`~tltlc.tools.mine.reading.read` raise; of a trace without columns the reason.
+        TltlError: the errors of :func:`~tltlc.tools.mine.vocabulary.of_library`,
+            :func:`~tltlc.tools.mine.vocabulary.of_columns` and
+            :func:`~tltlc.tools.mine.reading.read`; for a trace without columns, the reason.
     """
     seen = []
     for file in (*good, *bad):
@@ -36,43 +38,43 @@ def gathered(
         seen.append(Columns(file.name, columns(file.data, file.name)))
         if not seen[-1].columns:
             check(file)
-    there = shared([each.columns for each in seen])
+    common = shared([trace.columns for trace in seen])
     odd = uneven(seen, truths=library is None)
-    warnings = tuple(each.warning() for each in odd)
+    warnings = tuple(group.warning() for group in odd)
     try:
-        words = of_columns(there) if library is None else of_library(library, there, options)
+        words = of_columns(common) if library is None else of_library(library, common, options)
     except TltlError as error:
-        # That a trace is unlike the others is the reason, most likely.
+        # The warnings come first, because a trace that differs from the others is the most likely cause.
         raise TltlError((*warnings, *error.diagnostics)) from None
-    said = {name for each in odd for name in each.names}
-    rare = dict.fromkeys(name for each in seen for name in each.columns if name not in there)
-    words = replace(words, left_out=tuple(name for name in (*words.left_out, *rare) if name not in said))
+    reported = {name for group in odd for name in group.names}
+    rare = dict.fromkeys(name for trace in seen for name in trace.columns if name not in common)
+    words = replace(words, left_out=tuple(name for name in (*words.left_out, *rare) if name not in reported))
     traces, notices = read(good, words, tell)
     if not bad:
         return words, with_mutants(traces), (*warnings, *notices)
-    counterexamples, more = read(bad, words, tell)
+    counterexamples, bad_notices = read(bad, words, tell)
     contradictions = _contradictions(traces, counterexamples)
-    return words, Evidence(traces, counterexamples), (*warnings, *notices, *more, *contradictions)
+    return words, Evidence(traces, counterexamples), (*warnings, *notices, *bad_notices, *contradictions)
 
 
 def _contradictions(traces: Sequence[Recorded], counterexamples: Sequence[Recorded]) -> tuple[Diagnostic, ...]:
-    """A warning where traces and counterexamples are the same in atoms, with the first of them."""
+    """Return a warning that names the first trace that equals a counterexample in atoms, if any."""
     known = {trace.letters: trace.name for trace in traces}
-    own = {trace.name for trace in traces}
-    alike = [each for each in counterexamples if each.letters in known]
-    if not alike:
+    trace_names = {trace.name for trace in traces}
+    contradicting = [trace for trace in counterexamples if trace.letters in known]
+    if not contradicting:
         return ()
-    name = alike[0].name
-    other = name if name in own else known[alike[0].letters]
-    way_out = "move one of them to the other side, or record a signal that tells what differs"
-    if len(alike) > 1:
+    name = contradicting[0].name
+    other = name if name in trace_names else known[contradicting[0].letters]
+    suggestion = "move one of them to the other side, or record a signal that tells what differs"
+    if len(contradicting) > 1:
         first = f"`{name}`" if name == other else f"`{name}` as `{other}`"
-        title = f"{len(alike)} of {len(counterexamples)} counterexamples are the same in atoms as a trace"
+        title = f"{len(contradicting)} of {len(counterexamples)} counterexamples are the same in atoms as a trace"
         title += f" ({first}, for one), and no spec tells them apart"
     elif name == other:
         title = f"`{name}` is a trace and a counterexample, and no spec tells the two apart"
     else:
         title = f"`{name}` and `{other}` are the same in atoms, and no spec tells them apart"
     if name == other:
-        way_out = "name each trace on one side alone"
-    return (Diagnostic("TLT0762", title, help=way_out, severity="warning"),)
+        suggestion = "name each trace on one side alone"
+    return (Diagnostic("TLT0762", title, help=suggestion, severity="warning"),)

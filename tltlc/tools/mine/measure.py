@@ -1,10 +1,11 @@
-"""How good a proposal is: the measure that the search ranks by.
+"""The score by which the search ranks proposals.
 
     score = support + separation - 1 - PRICE * atoms
 
-``support`` is the share of the traces that satisfy it, ``separation`` the share of the counterexamples that violate
-it, and ``atoms`` how often it names an atom, with one more for a bound.  Without its last term this is Youden's
-index (Cancer 3, 1950): 1 for a spec that tells all apart, 0 for one that knows no more than a coin.
+``support`` is the share of the traces that satisfy the proposal. ``separation`` is the share of the
+counterexamples that violate it. ``atoms`` is the number of atoms in it, plus one for a bound. Without
+the last term this is Youden's index (Cancer 3, 1950): 1 for a spec that separates all traces from all
+counterexamples, 0 for one that is no better than chance.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from tltlc.core.record import record
 from tltlc.tools.mine.bits import Bits, Verdicts, count
 
 PRICE: Final = 0.01
-"""Of an atom: one that tells less than one trace in a hundred apart is not worth its place."""
+"""The price of an atom: an atom that separates less than one trace in a hundred is not worth it."""
 
 
 @record
 class Figures:
-    """Of a proposal: how many traces satisfy it, of how many; how many counterexamples violate it, of how many."""
+    """How many of the traces satisfy a proposal, and how many of the counterexamples violate it."""
 
     accepted: int
     traces: int
@@ -34,15 +35,15 @@ class Figures:
 
     @property
     def separation(self) -> float:
-        """The share of the counterexamples that violate it, in [0, 1]; 0 where there are none."""
+        """The share of the counterexamples that violate it, in [0, 1]; 0 without counterexamples."""
         return self.rejected / self.counterexamples if self.counterexamples else 0.0
 
     def score(self, atoms: int) -> float:
-        """The measure, at most 1; rounded, so that equal ones are equal."""
+        """Return the score, at most 1; it is rounded so that equal scores compare equal."""
         return round(self.support + self.separation - 1.0 - PRICE * atoms, 9)
 
 
 def figures(bits: Bits, accepted: Verdicts) -> Figures:
-    """The figures of what accepts these traces."""
+    """Return the figures of a proposal that accepts these traces."""
     traces, counterexamples = count(bits.traces), count(bits.counterexamples)
     return Figures(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)

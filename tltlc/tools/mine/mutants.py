@@ -1,7 +1,8 @@
-"""Counterexamples where none were recorded: traces that a mutation has made wrong, most likely.
+"""Generate counterexamples if none were recorded: mutated traces that are most likely wrong.
 
-Without something to tell apart every formula that holds is as good as another.  A spec that fits the traces because of
-what happened in them, and in that order, rejects them once they are cut short, put in another order, or broken.
+Without counterexamples, every formula that holds is as good as any other. A spec that captures what
+happened in the traces, and in which order, rejects them once they are cut short, reordered, or
+broken.
 """
 
 from __future__ import annotations
@@ -16,40 +17,40 @@ from tltlc.tools.mine.evidence import Evidence, Recorded
 
 _SEED: Final = 1
 _ROUNDS: Final = 10
-"""At least so many times a trace is mutated: few traces several times each."""
+"""The least number of mutation rounds: if there are few traces, each is mutated several times."""
 
 Run = tuple[Letter, int]
-"""A letter and at how many samples in a row it stands."""
+"""A letter and the number of samples in a row at which it holds."""
 
 
 def with_mutants(traces: Sequence[Recorded]) -> Evidence:
-    """The traces with made-up counterexamples: the same ones each time, in whatever order the traces come.
+    """Return the traces with generated counterexamples, the same ones for any order of the traces.
 
-    Of each trace: one that ends before an atom came to hold for the last time; one with its stretches of equal samples
-    in another order, and one with two of them swapped; one in which an atom never holds that did; and one in which an
-    atom that holds throughout all traces does not, once.
+    Each trace is mutated in these ways: it is cut before the last sample at which an atom becomes
+    true; its stretches of equal samples are reordered; two of them are swapped; an atom that held
+    somewhere never holds; an atom that holds throughout all traces fails once.
     """
     random = Random(_SEED)
     good = {trace.letters for trace in traces}
-    kept = _throughout(traces)
-    found: dict[tuple[Letter, ...], Recorded] = {}
+    throughout = _throughout(traces)
+    mutants: dict[tuple[Letter, ...], Recorded] = {}
     ordered = sorted(traces, key=lambda trace: ([sorted(letter) for letter in trace.letters], trace.name))
     for number in range(max(len(ordered), _ROUNDS)):
         trace = ordered[number % len(ordered)]
-        for kind, letters in _mutants(trace.letters, kept, number, random):
-            if letters and letters not in good and letters not in found:
-                found[letters] = Recorded(f"{trace.name}, {kind}", letters)
-    return Evidence(tuple(traces), tuple(found.values()), made_up=True)
+        for kind, letters in _mutants(trace.letters, throughout, number, random):
+            if letters and letters not in good and letters not in mutants:
+                mutants[letters] = Recorded(f"{trace.name}, {kind}", letters)
+    return Evidence(tuple(traces), tuple(mutants.values()), made_up=True)
 
 
 def _throughout(traces: Sequence[Recorded]) -> list[str]:
-    """The atoms that hold at every sample of every trace."""
+    """Return the atoms that hold at every sample of every trace."""
     every = frozenset.intersection(*(letter for trace in traces for letter in trace.letters))
     return sorted(every)
 
 
 def _mutants(
-    letters: tuple[Letter, ...], kept: Sequence[str], number: int, random: Random
+    letters: tuple[Letter, ...], throughout: Sequence[str], number: int, random: Random
 ) -> Iterator[tuple[str, tuple[Letter, ...]]]:
     yield "cut short", letters[: _last_rise(letters)]
     runs: list[Run] = [(letter, len(list(group))) for letter, group in groupby(letters)]
@@ -59,12 +60,12 @@ def _mutants(
         swapped = list(runs)
         swapped[one], swapped[other] = runs[other], runs[one]
         yield "with two stretches swapped", _samples(swapped)
-    passing = sorted({name for letter in letters for name in letter}.difference(kept))
+    passing = sorted({name for letter in letters for name in letter}.difference(throughout))
     if passing:
         name = passing[number % len(passing)]
         yield f"without {name}", tuple(letter - {name} for letter in letters)
-    if kept:
-        name, place = kept[number % len(kept)], random.randrange(len(letters))
+    if throughout:
+        name, place = throughout[number % len(throughout)], random.randrange(len(letters))
         broken = (*letters[:place], letters[place] - {name}, *letters[place + 1 :])
         yield f"with {name} broken", broken
 
@@ -74,6 +75,6 @@ def _samples(runs: Sequence[Run]) -> tuple[Letter, ...]:
 
 
 def _last_rise(letters: Sequence[Letter]) -> int:
-    """The last sample at which an atom holds that did not hold at the one before; 0 where there is none."""
+    """Return the last sample at which an atom becomes true; 0 if there is none."""
     rises = [place for place in range(1, len(letters)) if letters[place] - letters[place - 1]]
     return rises[-1] if rises else 0

@@ -1,4 +1,4 @@
-"""Proposals as a text for people."""
+"""Print proposals as text."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _MEASURE: Final = (
 
 
 def shown(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits) -> str:
-    """Each proposal with its rank, its figures, its clauses, its English and its reasons, and by what they are ranked.
+    """Return each proposal with its rank, figures, clauses, English sentence and reasons.
 
-    Lines are of 100 columns.
+    The text ends with an explanation of the score. Lines are at most 100 columns wide.
     """
-    parts = ["\n".join(_proposal(rank, each, evidence, bits)) for rank, each in enumerate(proposals, start=1)]
+    parts = ["\n".join(_proposal(rank, proposal, evidence, bits)) for rank, proposal in enumerate(proposals, start=1)]
     if evidence.made_up:
         parts.append("No counterexamples were given: made-up ones, cut short, reordered or broken, stand in for them.")
     parts.append(fill(_MEASURE, _WIDTH))

@@ -1,4 +1,4 @@
-"""What `tltlc mine --json` says."""
+"""The output of `tltlc mine --json`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from tltlc.tools.mine.search import Search
 
 
 def document(proposals: Sequence[Proposal], evidence: Evidence, search: Search, *, whole: bool) -> dict[str, Any]:
-    """The proposals with their figures; ``whole``: the search came to its end, and no limit left anything out."""
+    """Return the proposals with their figures.
+
+    ``whole``: the search came to its end, and no limit left anything out.
+    """
     return {
         "traces": len(evidence.traces),
         "counterexamples": len(evidence.counterexamples),
@@ -30,8 +33,8 @@ def document(proposals: Sequence[Proposal], evidence: Evidence, search: Search, 
                 "separation": proposal.figures.separation,
                 "atoms": atoms_of(proposal.clauses),
                 "reasons": list(reasons(proposal, evidence, search.bits)),
-                "not_satisfied": [each.trace.name for each in proposal.traces if not each.accepted],
-                "not_violated": [each.trace.name for each in proposal.counterexamples if each.accepted],
+                "not_satisfied": [judged.trace.name for judged in proposal.traces if not judged.accepted],
+                "not_violated": [judged.trace.name for judged in proposal.counterexamples if judged.accepted],
             }
             for rank, proposal in enumerate(proposals, start=1)
         ],

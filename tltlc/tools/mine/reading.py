@@ -1,4 +1,4 @@
-"""Recorded traces as letters: the atoms that hold at each sample."""
+"""Read recorded traces as letters: the atoms that hold at each sample."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from tltlc.tools.mine.evidence import Recorded
 from tltlc.tools.mine.vocabulary import Words
 
 Tell = Callable[[str], None]
-"""Is told what is being done, at each file or more often."""
+"""A callback for progress messages, called at least once per file."""
 
 
 def silent(_: str) -> None:
-    """Tells nobody."""
+    """Ignore a progress message."""
 
 
 @record
 class TraceFile:
-    """A trace as it was found: what messages call it, and its bytes."""
+    """A trace file: its name in messages and its bytes."""
 
     name: str
     data: bytes
@@ -34,29 +34,30 @@ class TraceFile:
 def read(
     files: Sequence[TraceFile], words: Words, tell: Tell = silent
 ) -> tuple[tuple[Recorded, ...], tuple[Diagnostic, ...]]:
-    """The traces, and warnings about values that had to be clamped, each given once.
+    """Return the traces, and warnings about values that had to be clamped, each once.
 
     Raises:
-        TltlError: what :func:`tltlc.monitor.traces.read_trace` raises, and a monitor, with the name of the trace.
+        TltlError: the errors of :func:`tltlc.monitor.traces.read_trace` and of the monitor, with the
+            name of the trace.
     """
     notices: list[Diagnostic] = []
-    said: list[Diagnostic] = []
+    warnings: list[Diagnostic] = []
     samples = Samples(words.reader, None, notices)
     known: dict[tuple[float, ...], Letter] = {}
-    found = []
+    traces = []
     for file in files:
         tell(f"reading {file.name}")
         try:
-            found.append(Recorded(file.name, tuple(_letters(file, samples, words, known))))
+            traces.append(Recorded(file.name, tuple(_letters(file, samples, words, known))))
         except MonitorError as error:
             raise MonitorError(_in_trace(file, error.diagnostics)) from None
-        said += _in_trace(file, notices)
+        warnings += _in_trace(file, notices)
         notices.clear()
-    return tuple(found), tuple(said)
+    return tuple(traces), tuple(warnings)
 
 
 def check(file: TraceFile) -> None:
-    """Read a trace for what :func:`tltlc.monitor.traces.read_trace` raises alone."""
+    """Read a trace only for the errors that :func:`tltlc.monitor.traces.read_trace` raises."""
     for _ in _rows(file, ()):
         pass
 
@@ -68,7 +69,10 @@ def _rows(file: TraceFile, signals: Sequence[Signal]) -> Iterator[Sample]:
 def _letters(
     file: TraceFile, samples: Samples, words: Words, known: dict[tuple[float, ...], Letter]
 ) -> Iterator[Letter]:
-    """The letters of a trace; ``known`` are those of samples that were seen before, of which there are many."""
+    """Yield the letters of a trace.
+
+    ``known`` caches the letters of samples seen before, because samples often repeat.
+    """
     reader = words.reader
     names = [signal.name for signal in reader.signals]
     for number, row in enumerate(_rows(file, reader.signals), start=1):
@@ -82,6 +86,6 @@ def _letters(
         yield letter
 
 
-def _in_trace(file: TraceFile, said: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """What a monitor said of a step, with the trace that it is a step of."""
-    return [replace(each, title=f"`{file.name}`, {each.title}") for each in said]
+def _in_trace(file: TraceFile, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Add the name of the trace to the diagnostics of a monitor."""
+    return [replace(diagnostic, title=f"`{file.name}`, {diagnostic.title}") for diagnostic in diagnostics]

@@ -1,4 +1,4 @@
-"""Why a spec is proposed, in words that can be checked against the traces."""
+"""Explain why a spec is proposed, in sentences that can be checked against the traces."""
 
 from __future__ import annotations
 
@@ -11,11 +11,15 @@ from tltlc.tools.mine.evidence import Evidence
 
 
 def reasons(proposal: Proposal, evidence: Evidence, bits: Bits) -> tuple[str, ...]:
-    """Sentences: how many traces satisfy it, how counterexamples break it, and what each clause adds."""
-    found = [_support(proposal)]
+    """Return the reasons as sentences.
+
+    They say how many traces satisfy the proposal, how counterexamples violate it, and what each
+    clause adds.
+    """
+    sentences = [_support(proposal)]
     if proposal.counterexamples:
-        found.append(_separation(proposal, made_up=evidence.made_up))
-    return (*found, *_shares(proposal.clauses, bits), *_unasked(proposal.clauses, bits))
+        sentences.append(_separation(proposal, made_up=evidence.made_up))
+    return (*sentences, *_shares(proposal.clauses, bits), *_unasked(proposal.clauses, bits))
 
 
 def _support(proposal: Proposal) -> str:
@@ -24,48 +28,48 @@ def _support(proposal: Proposal) -> str:
         return "the one trace satisfies it"
     if figures.accepted == figures.traces:
         return "both traces satisfy it" if figures.traces == 2 else f"all {figures.traces} traces satisfy it"
-    others = [each.trace.name for each in proposal.traces if not each.accepted]
-    listed = ", ".join(others[:3]) + (", …" if len(others) > 3 else "")
+    unsatisfied = [judgement.trace.name for judgement in proposal.traces if not judgement.accepted]
+    listed = ", ".join(unsatisfied[:3]) + (", …" if len(unsatisfied) > 3 else "")
     return f"{figures.accepted} of {figures.traces} traces satisfy it (not {listed})"
 
 
 def _separation(proposal: Proposal, *, made_up: bool) -> str:
     figures = proposal.figures
     kind = "made-up counterexample" if made_up else "counterexample"
-    at = [each.violated_at for each in proposal.counterexamples if each.violated_at is not None]
+    at = [judgement.violated_at for judgement in proposal.counterexamples if judgement.violated_at is not None]
     short = figures.rejected - len(at)
     if figures.counterexamples == 1:
         return f"the one {kind} does not: it {f'breaks it at step {at[0]}' if at else 'ends before it is met'}"
     if figures.rejected == figures.counterexamples:
-        whole = f"none of the {figures.counterexamples} {kind}s does"
+        summary = f"none of the {figures.counterexamples} {kind}s does"
     else:
         verb = "does" if figures.rejected == 1 else "do"
-        whole = f"{figures.rejected} of {figures.counterexamples} {kind}s {verb} not"
-    ways = []
+        summary = f"{figures.rejected} of {figures.counterexamples} {kind}s {verb} not"
+    violations = []
     if at:
         one = "breaks" if len(at) == 1 else "break"
         place = f"at step {at[0]}" if min(at) == max(at) else f"at steps {min(at)} to {max(at)}"
         half = f", half of them by step {median_low(at)}" if len(at) > 2 and min(at) < max(at) else ""
-        ways.append(f"{len(at)} {one} it {place}{half}")
+        violations.append(f"{len(at)} {one} it {place}{half}")
     if short:
-        ways.append(f"{short} end{'s' * (short == 1)} before it is met")
-    return f"{whole}: {'; '.join(ways)}"
+        violations.append(f"{short} end{'s' * (short == 1)} before it is met")
+    return f"{summary}: {'; '.join(violations)}"
 
 
 def _shares(clauses: Conjunction, bits: Bits) -> list[str]:
-    """Of several clauses the counterexamples that only one rejects."""
+    """For several clauses, return how many counterexamples only one of them rejects."""
     if len(clauses) == 1:
         return []
-    found = []
-    for each in clauses:
-        others = accepted_by((other for other in clauses if other is not each), bits)
-        alone = count(bits.counterexamples & others & ~each.accepts)
-        found.append(f"`{each.text}` alone rejects {alone} of them")
-    return found
+    sentences = []
+    for clause in clauses:
+        accepted_by_rest = accepted_by((other for other in clauses if other is not clause), bits)
+        alone = count(bits.counterexamples & accepted_by_rest & ~clause.accepts)
+        sentences.append(f"`{clause.text}` alone rejects {alone} of them")
+    return sentences
 
 
 def _unasked(clauses: Conjunction, bits: Bits) -> list[str]:
-    """Clauses that are met in some traces only because nothing asks for them."""
-    every = count(bits.traces)
-    unasked = [(each.text, every - count(each.asked & bits.traces)) for each in clauses]
-    return [f"`{text}`: in {number} of {every} traces nothing calls for it" for text, number in unasked if number]
+    """Return the clauses that are vacuously satisfied in some traces."""
+    total = count(bits.traces)
+    unasked = [(clause.text, total - count(clause.asked & bits.traces)) for clause in clauses]
+    return [f"`{text}`: in {number} of {total} traces nothing calls for it" for text, number in unasked if number]

@@ -1,4 +1,7 @@
-"""The search: templates, sequences, conjunctions; it can be left at any moment with what is best so far."""
+"""Search for specs: templates, sequences, conjunctions.
+
+You can stop the search at any moment and take the best results so far.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +24,10 @@ from tltlc.tools.mine.templates import clauses
 
 @record
 class Options:
-    """``min_support``: the least share of the traces that a proposal is to be satisfied by, in (0, 1].
+    """Options of a search.
 
-    ``max_length``: how many atoms a proposal may name, a bound counting as one.
+    ``min_support`` is the least share of the traces that must satisfy a proposal, in (0, 1].
+    ``max_length`` is the most atoms that a proposal may name; a bound counts as one.
     """
 
     min_support: float = 1.0
@@ -31,14 +35,15 @@ class Options:
 
 
 class Search:
-    """Looks for specs that the traces satisfy and the counterexamples violate."""
+    """Searches for specs that the traces satisfy and the counterexamples violate."""
 
     def __init__(self, evidence: Evidence, options: Options) -> None:
         self.bits = Bits(evidence)
         self._backwards = Bits(evidence, backwards=True)
-        # Atoms that come and go by chance do so in some order, which made-up counterexamples are sure to break.
+        # Atoms that change at random still have some order, which generated counterexamples always break.
+        # Sequences with repeated steps would only fit that order.
         self._again = not evidence.made_up
-        # Rounding must not ask for one trace more than the share says.
+        # Round first, so that a rounding error does not require one trace more than the share.
         self._least = max(1, ceil(round(options.min_support * len(evidence.traces), 9)))
         self._most_atoms = options.max_length
         self._found = Candidates(self.bits)
@@ -48,56 +53,62 @@ class Search:
         self.tried = 0
 
     def run(self) -> Iterator[str]:
-        """Search on; what is being done, many times a second, so that whoever asks may leave off."""
+        """Run the search; yield the name of the current phase many times a second.
+
+        The caller may stop the iteration at any time.
+        """
         events = self._chosen_events()
         for number, portion in enumerate(clauses(self.bits, self._backwards, events, self._least)):
-            self._add_all(each for each in portion if each.atoms <= self._most_atoms)
+            self._add_all(clause for clause in portion if clause.atoms <= self._most_atoms)
             if number % 20 == 0:
                 yield "templates"
         for portion in sequences(self.bits, events, self._least, self._most_atoms, again=self._again, work=self._work):
             self._add_all(portion)
             yield "sequences"
         singles = [conjunction[0] for conjunction, _ in best(self._found.items(), self.bits)]
-        for wholes in conjunctions(singles, self.bits, self._least, self._most_atoms):
-            self.tried += len(wholes)
-            for conjunction in wholes:
+        for batch in conjunctions(singles, self.bits, self._least, self._most_atoms):
+            self.tried += len(batch)
+            for conjunction in batch:
                 self._found.add(conjunction, accepted_by(conjunction, self.bits))
             yield "conjunctions"
 
     def ranked(self) -> list[Conjunction]:
-        """What was found so far, the best first: each is the best of all that are not longer.
+        """Return the conjunctions found so far, the best first.
 
-        What no counterexample violates is left out, and what is longer than something better.
+        Each one is the best of all that are not longer. A conjunction is left out if no
+        counterexample violates it, or if a shorter one is better.
         """
-        found: list[tuple[float, int, Conjunction]] = []
+        kept: list[tuple[float, int, Conjunction]] = []
         for conjunction, accepts in best(self._found.items(), self.bits):
             size = atoms_of(conjunction)
-            said = figures(self.bits, accepts)
-            place = (said.score(size), size)
-            if said.rejected and (not found or size < found[-1][1] or place == found[-1][:2]):
-                found.append((*place, conjunction))
-        return [conjunction for _, _, conjunction in found]
+            measured = figures(self.bits, accepts)
+            rank = (measured.score(size), size)
+            if measured.rejected and (not kept or size < kept[-1][1] or rank == kept[-1][:2]):
+                kept.append((*rank, conjunction))
+        return [conjunction for _, _, conjunction in kept]
 
     def left_out(self) -> list[str]:
-        """What the limits on work left out, a sentence each."""
-        said = []
+        """Return what the limits on work left out, one sentence each."""
+        sentences = []
         if self._unrelated:
-            said.append(f"only {MOST_EVENTS} atoms are related to each other, and {self._unrelated:,} others are not")
+            sentences.append(
+                f"only {MOST_EVENTS} atoms are related to each other, and {self._unrelated:,} others are not"
+            )
         if self._work.left < 0:
-            said.append(f"only sequences of {WORK['mined sequences']:,} steps together are tried, others are not")
+            sentences.append(f"only sequences of {WORK['mined sequences']:,} steps together are tried, others are not")
         if self._found.is_cut:
-            said.append(f"only the {WORK['mined candidates']:,} candidates with the best scores are kept")
-        return said
+            sentences.append(f"only the {WORK['mined candidates']:,} candidates with the best scores are kept")
+        return sentences
 
     def _chosen_events(self) -> list[str]:
-        """The events that are related to each other."""
+        """Return the events that are related to each other."""
         events = self._events()
         chosen = best_events(self._evidence, events)
         self._unrelated = len(events) - len(chosen)
         return chosen
 
     def _events(self) -> list[str]:
-        """The atoms that do not hold throughout as many traces as have to satisfy a proposal."""
+        """Return the atoms that hold throughout fewer traces than a proposal needs."""
         bits = self.bits
         return [
             name
@@ -105,11 +116,11 @@ class Search:
             if count(bits.none(bits.complement(samples)) & bits.traces) < self._least
         ]
 
-    def _add_all(self, several: Iterable[Clause]) -> None:
-        for each in several:
-            self._add(each)
+    def _add_all(self, portion: Iterable[Clause]) -> None:
+        for clause in portion:
+            self._add(clause)
 
-    def _add(self, each: Clause) -> None:
+    def _add(self, clause: Clause) -> None:
         self.tried += 1
-        if count(each.accepts & self.bits.traces) >= self._least and self.bits.counterexamples & ~each.accepts:
-            self._found.add((each,), each.accepts)
+        if count(clause.accepts & self.bits.traces) >= self._least and self.bits.counterexamples & ~clause.accepts:
+            self._found.add((clause,), clause.accepts)

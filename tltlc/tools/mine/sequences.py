@@ -1,13 +1,13 @@
-"""Sequences of goals, `reach a then b then c`, grown step by step and not enumerated.
+"""Sequences of goals, `reach a then b then c`, grown step by step instead of enumerated.
 
-Beam search: the best sequences of a length are extended by every step at every place.  A sequence is met as soon as
-can be by the first `a`, then the first `b` after that, and so on, so that all traces together cost a few operations on
-whole numbers per step.  An extension is satisfied by fewer traces, never by more: one that lacks support is not
-extended.
+This is a beam search: the best sequences of a length are extended by every step at every place. A
+sequence is met earliest by the first `a`, then the first `b` after it, and so on. So all traces
+together cost a few integer operations per step. An extension is satisfied by fewer traces, never by
+more, so a sequence that lacks support is not extended.
 
-A step is an atom, two atoms at once, or a choice between two of these, each of which lacks the support at that place:
-with a choice a sequence is met by the traces that meet it with the one or with the other.  No step follows an equal
-one, which would be met by waiting for a sample.
+A step is an atom, two atoms at once, or a choice between two of these. Each option of a choice
+lacks the support at that place; a sequence with a choice is met by the traces that meet it with
+either option. No step follows an equal one, because waiting for a sample would meet it.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from tltlc.tools.mine.templates import clause
 from tltlc.tools.witness.blocks import bracketed
 
 BEAM: Final = 60
-"""Sequences of one length that are extended, of atoms alone, and as many with other steps."""
+"""The most sequences of one length that are extended: this many of atoms alone, and this many others."""
 ALIKE: Final = 3
-"""Of those that accept the same traces, as many are kept."""
+"""The most sequences that are kept for one set of accepted traces."""
 MOST_PAIRS: Final = 60
-"""Steps of two atoms, those of the most traces."""
+"""The most steps of two atoms; those that hold in most traces are kept."""
 MOST_PARTS: Final = 16
-"""Steps among which there is a choice at one place."""
+"""The most steps that are combined into choices at one place."""
 
 
 class Step:
-    """One step of a sequence: its text, its atoms, `and` and `or` counting as one each, and where it holds."""
+    """One step of a sequence: its text, its samples, and its atoms (`and` and `or` count as one)."""
 
     __slots__ = ("atoms", "samples", "text")
 
@@ -50,39 +50,40 @@ Found = tuple[Steps, Verdicts]
 def sequences(
     bits: Bits, atoms: Collection[str], least: int, most_atoms: int, *, again: bool = True, work: Work | None = None
 ) -> Iterator[list[Clause]]:
-    """The sequences of these atoms that at least ``least`` traces satisfy, in portions as they are found.
+    """Yield the sequences of these atoms that at least ``least`` traces satisfy, in portions.
 
-    They name at most ``most_atoms`` atoms, `and` and `or` counting as one each.  ``again``: a step may come again.
-    ``work`` counts the steps of sequences that are tried; the search ends where none is left.
+    They name at most ``most_atoms`` atoms; `and` and `or` count as one each. ``again``: a step may
+    occur more than once. ``work`` counts the steps of the sequences that are tried; the search ends
+    when it is used up.
     """
     material = yield from _material(bits, atoms)
     search = _Sequences(bits, material, least, most_atoms, again=again, work=work or Work(WORK["mined sequences"]))
     beam: list[Steps] = [()]
     while beam:
-        found: dict[Steps, Verdicts] = {}
+        extensions: dict[Steps, Verdicts] = {}
         for sequence in beam:
             try:
-                portion = dict(search.extended(sequence, found))
+                portion = dict(search.extended(sequence, extensions))
             except OutOfWork:
                 return
-            found |= portion
-            yield [_clause(each, accepts, bits) for each, accepts in portion.items()]
-        beam = _beam(found, bits)
+            extensions |= portion
+            yield [_clause(longer, accepts, bits) for longer, accepts in portion.items()]
+        beam = _beam(extensions, bits)
 
 
 class _Sequences:
-    """What sequences are made of."""
+    """Builds sequences from their steps."""
 
     def __init__(
         self, bits: Bits, material: Sequence[Step], least: int, most_atoms: int, *, again: bool, work: Work
     ) -> None:
         self._bits, self._material, self._least, self._most_atoms = bits, material, least, most_atoms
         self._again, self._work = again, work
-        # Sequences are compared by their steps, so there is one of each.
+        # Sequences are compared by the identity of their steps, so each choice is created once.
         self._choices: dict[tuple[Step, Step], Step] = {}
 
     def extended(self, sequence: Steps, known: Mapping[Steps, Verdicts]) -> Iterator[Found]:
-        """The sequences with one step more, at any place, that are not known yet and have the support."""
+        """Yield the unknown sequences with one more step, at any place, that have the support."""
         bits = self._bits
         room = self._most_atoms - sum(step.atoms for step in sequence)
         left = bits.all
@@ -109,7 +110,7 @@ class _Sequences:
                 left = bits.after_first(after[0].samples & left)
 
     def _chosen(self, parts: Sequence[tuple[Step, Verdicts]], room: int) -> Iterator[tuple[Step, Verdicts]]:
-        """The choices between two of the steps that together have the support, each with what accepts it."""
+        """Yield the choices between two steps that together have the support, with their traces."""
         bits = self._bits
 
         def worth(part: tuple[Step, Verdicts]) -> tuple[float, int, str]:
@@ -124,18 +125,18 @@ class _Sequences:
     def _choice(self, one: Step, other: Step) -> Step:
         if (one.atoms, one.text) > (other.atoms, other.text):
             one, other = other, one
-        found = self._choices.get((one, other))
-        if found is None:
+        choice = self._choices.get((one, other))
+        if choice is None:
             text = f"({one.text} or {other.text})"
-            found = Step(text, one.atoms + other.atoms + 1, one.samples | other.samples)
-            self._choices[one, other] = found
-        return found
+            choice = Step(text, one.atoms + other.atoms + 1, one.samples | other.samples)
+            self._choices[one, other] = choice
+        return choice
 
 
 def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[Clause], None, list[Step]]:
-    """Those of the atoms that hold in some of the traces, then pairs of them, those of the most traces.
+    """Return the atoms that hold in some of the traces, then the pairs that hold in most traces.
 
-    It yields nothing, many times, so that whoever searches may stop.
+    Yields empty portions many times, so that the caller may stop.
     """
     single = [Step(bracketed(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.some(step.samples) & bits.traces]
@@ -154,14 +155,14 @@ def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[Clause], Non
 
 
 def _met(rest: Steps, left: Samples, bits: Bits) -> Verdicts:
-    """The traces that meet the steps one after the other, within the samples that are left."""
+    """Return the traces that meet the steps in order within the ``left`` samples."""
     for step in rest[:-1]:
         left = bits.after_first(step.samples & left)
     return bits.some(rest[-1].samples & left)
 
 
-def _beam(found: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
-    """The best of the sequences; of those that accept the same traces a few."""
+def _beam(extensions: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
+    """Return the best of the sequences, a few for each set of accepted traces."""
 
     def worth(item: Found) -> tuple[float, list[str]]:
         sequence, accepts = item
@@ -169,16 +170,16 @@ def _beam(found: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
         return (-figures(bits, accepts).score(size), [step.text for step in sequence])
 
     alike: dict[tuple[bool, Verdicts], int] = {}
-    # There are so many more sequences with choices that they would leave no room for others.
+    # Sequences with choices are far more numerous. Without a separate list they would crowd out the others.
     plain: list[Steps] = []
-    others: list[Steps] = []
-    for sequence, accepts in sorted(found.items(), key=worth):
+    compound: list[Steps] = []
+    for sequence, accepts in sorted(extensions.items(), key=worth):
         is_plain = all(step.atoms == 1 for step in sequence)
         alike[is_plain, accepts] = alike.get((is_plain, accepts), 0) + 1
-        kept = plain if is_plain else others
+        kept = plain if is_plain else compound
         if alike[is_plain, accepts] <= ALIKE and len(kept) < BEAM:
             kept.append(sequence)
-    return plain + others
+    return plain + compound
 
 
 def _clause(sequence: Steps, accepts: Verdicts, bits: Bits) -> Clause:

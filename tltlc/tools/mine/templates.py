@@ -14,38 +14,38 @@ from tltlc.tools.witness.blocks import bracketed
 
 BOUNDED: Final = "bounded response"
 KINDS: Final = ("reach", "keep", "avoid", "invariant", "precedence", "until", "response", BOUNDED)
-"""The templates, in the order in which ties are broken and in which a spec says its clauses."""
+"""The templates, in the order that breaks ties and in which a spec lists its clauses."""
 
 LONGEST_BOUND: Final = 30
-"""Steps of a bounded response: its automaton counts them."""
+"""The most steps of a bounded response, because its automaton counts them."""
 _LEAST_ASKED: Final = 3
-"""Traces in which a response has to be called for before its delay says anything."""
+"""The least number of traces in which a response must be triggered before its delay is meaningful."""
 
 
 def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[Clause]]:
-    """Every instance over the atoms, in small portions, except those that are vacuous in all traces.
+    """Yield every instance over the atoms, in small portions, except those vacuous in all traces.
 
-    Two atoms are related only if both are ``events``: what holds throughout is kept, and no cause of anything.  The
-    work grows with the square of ``events``, so the caller limits them.  Bounds are the least ones that ``least`` of
-    the traces keep to.
+    Two atoms are related only if both are ``events``: an atom that holds throughout is covered by
+    `keep` and causes nothing. The work grows with the square of ``events``, so the caller limits
+    them. A bound is the smallest one that ``least`` of the traces keep to.
     """
     for portion in _candidates(forwards, backwards, events, least):
-        # True only because nothing ever asks: says nothing of how the game is played.
-        yield [each for each in portion if each.asked & each.accepts & forwards.traces]
+        # A clause that is only vacuously true says nothing about the game.
+        yield [instance for instance in portion if instance.asked & instance.accepts & forwards.traces]
 
 
 def clause(kind: str, text: str, atoms: int, accepts: int, asked: int) -> Clause:
-    """A clause of a template."""
+    """Return a clause of a template."""
     return Clause(kind, KINDS.index(kind), text, atoms, accepts, asked)
 
 
 def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[Clause]]:
-    """The instances, in portions of one atom or one pair."""
+    """Yield the instances, in portions of one atom or one pair."""
     occurs = {name: forwards.some(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
         every = forwards.everything
-        kept = clause("keep", f"keep {name}", 1, forwards.none(forwards.complement(samples)), every)
-        yield [kept, clause("avoid", f"avoid {name}", 1, every & ~occurs[name], every)]
+        keep = clause("keep", f"keep {name}", 1, forwards.none(forwards.complement(samples)), every)
+        yield [keep, clause("avoid", f"avoid {name}", 1, every & ~occurs[name], every)]
     for first in events:
         for second in events:
             if first != second:
@@ -62,8 +62,8 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
     if first < second:
         never = forwards.none(here & there)
         yield clause("invariant", f"avoid {a} and {b}", 2, never, asked & occurs[second])
-        whole = forwards.none(forwards.complement(here | there))
-        yield clause("invariant", f"keep {a} or {b}", 2, whole, forwards.everything)
+        either = forwards.none(forwards.complement(here | there))
+        yield clause("invariant", f"keep {a} or {b}", 2, either, forwards.everything)
 
     precedes = forwards.none(there & forwards.before_first(here))
     yield clause("precedence", f"require (not {b}) weak_until {a}", 2, precedes, occurs[second])
@@ -71,14 +71,18 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
     keeps = forwards.none(forwards.before_first(there) & ~here) & occurs[second]
     yield clause("until", f"require {a} until {b}", 2, keeps, keeps & forwards.some(forwards.before_first(there)))
 
-    # Backwards in time, an answer comes before what it answers.
+    # Backwards in time, the answer comes before the trigger.
     last = backwards.before_first(backwards.holds[second])
     answered = backwards.none(backwards.holds[first] & last)
     yield clause("response", f"require always ({a} implies eventually {b})", 2, answered, asked)
 
 
 def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[Clause]:
-    """A response within as few steps as it takes in enough of the traces, unless it takes none or too many."""
+    """Yield a response within the smallest bound that enough of the traces keep to.
+
+    Yields nothing if that bound is 0 or above LONGEST_BOUND, or if too few traces trigger the
+    response.
+    """
     here, there = bits.holds[first], bits.holds[second]
 
     def answered(steps: int) -> Verdicts:

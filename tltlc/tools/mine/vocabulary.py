@@ -1,7 +1,6 @@
-"""The atoms that traces speak of: the predicates of a library over the entities of the traces, or columns that are
-true or false.
+"""The atoms of traces: predicates of a library over entities, or true/false columns.
 
-Either way there is a source text that declares them, and everything else goes through the compiler.
+In both cases a source text declares the atoms, and the compiler does the rest.
 """
 
 from __future__ import annotations
@@ -38,12 +37,13 @@ _MOST_INSTANCES: Final = WORK["mined instances"]
 
 @record
 class Words:
-    """What traces are read with and specs are written in.
+    """The vocabulary for reading traces and writing specs.
 
-    ``library`` declares everything; ``entities`` are those that it did not.  ``reader`` is an automaton that accepts
-    everything and has all atoms: their expressions, signals and params.  ``left_out`` are columns that are no atoms, of
-    which those in ``misnamed`` are true or false, and called as no atom can be.  ``unread`` counts what could be an
-    atom, but is beyond the limits on work.
+    ``library`` declares everything; ``entities`` are those that the original library did not
+    declare. ``reader`` is an automaton that accepts everything and has all atoms: their
+    expressions, signals and params. ``left_out`` are columns that are not atoms. Those of them in
+    ``misnamed`` are true or false, but have names that no atom can have. ``unread`` counts possible
+    atoms beyond the limits on work.
     """
 
     library: SourceFile
@@ -55,12 +55,12 @@ class Words:
 
 
 def of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> Words:
-    """The atoms of a library whose signals are all among the columns of the traces.
+    """Return the atoms of a library whose signals are all among the columns of the traces.
 
     These are predicates and `bool` signals of entities, and the atoms of the library's own specs.
 
     Raises:
-        TltlError: what is wrong with the library; TLT0760, none of its atoms can be read.
+        TltlError: the library has an error; TLT0760, none of its atoms can be read.
     """
     module = _parsed(library)
     names = _visible(module, options)
@@ -70,71 +70,84 @@ def of_library(library: SourceFile, columns: Collection[str], options: ResolveOp
     stop_at_errors(problems)
     used = [atom.name for spec in program.specs for atom in spec.atoms]
 
-    whole = _with_entities(library, missing)
-    plain = _parsed(whole)
+    extended = _with_entities(library, missing)
+    plain = _parsed(extended)
     plain = replace(
-        plain, declarations=tuple(each for each in plain.declarations if not isinstance(each, (SpecDecl, TestDecl)))
+        plain,
+        declarations=tuple(
+            declaration for declaration in plain.declarations if not isinstance(declaration, (SpecDecl, TestDecl))
+        ),
     )
     every = dict.fromkeys((*own, *missing))
     instances, unread = _instances(names.values(), every)
     texts = list(dict.fromkeys((*used, *instances)))
-    # The order in which atoms are found does not matter to the search.
+    # The search does not depend on the order of the atoms.
     texts, unread = texts[:_MOST], unread + len(texts[_MOST:])
-    found = _readable(plain, texts, columns, options)
-    if found is None:
+    readable = _readable(plain, texts, columns, options)
+    if readable is None:
         raise _unreadable(library, _resolved(plain, texts, options), columns)
-    return Words(whole, missing, _reader(found), unread=unread)
+    return Words(extended, missing, _reader(readable), unread=unread)
 
 
 def _unreadable(library: SourceFile, words: Vocabulary | None, columns: Collection[str]) -> TltlError:
-    """The error where none of the atoms can be computed."""
+    """Return the error for a library none of whose atoms can be computed."""
     title = f"no predicate of `{library.name.strip('<>')}` can be computed from the columns of the traces"
     missing = [signal.name for signal in words.signals if signal.name not in columns] if words else []
-    way_out = f"record what its predicates use: {listed(missing[:3])}" if missing else "declare a predicate in it"
-    return TltlError([Diagnostic("TLT0760", title, help=way_out)])
+    suggestion = f"record what its predicates use: {listed(missing[:3])}" if missing else "declare a predicate in it"
+    return TltlError([Diagnostic("TLT0760", title, help=suggestion)])
 
 
 def of_columns(columns: Mapping[str, bool]) -> Words:
-    """The columns that are true or false as atoms; ``left_out`` are the others, and those that are ``misnamed``.
+    """Return the columns that are true or false, as atoms.
+
+    ``left_out`` are the other columns, including those that are ``misnamed``.
 
     Raises:
-        TltlError: TLT0760, there is none.
+        TltlError: TLT0760, there is no such column.
     """
     truths = [name for name, is_truth in columns.items() if is_truth]
     names, unread = truths[:_MOST], frozenset(truths[_MOST:])
     simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
-    entities = list(dict.fromkeys(each for arguments in calls.values() for each in arguments))
+    entities = list(dict.fromkeys(entity for arguments in calls.values() for entity in arguments))
     signals = {name.partition("(")[0].strip(): len(arguments) for name, arguments in calls.items()}
     text = f"entity {', '.join(entities)}\n" if entities else ""
     text += "".join(_signal(name, number) for name, number in signals.items())
     text += "".join(f"signal {name}: bool\n" for name in simple)
     library = SourceFile("<traces>", text)
-    found = _readable(_parsed(library), [name for name in names if name in simple or name in calls], columns)
-    if found is None:
+    readable = _readable(_parsed(library), [name for name in names if name in simple or name in calls], columns)
+    if readable is None:
         raise _no_columns(names)
-    reader = _reader(found)
+    reader = _reader(readable)
     read = {atom.name for atom in reader.atoms}
     left_out = tuple(name for name in columns if name not in read and name not in unread)
     return Words(library, (), reader, left_out, frozenset(left_out).intersection(names), len(unread))
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:
-    """The error where no column is an atom; those that are true or false are called like none."""
+    """Return the error if no column is an atom.
+
+    ``truths`` are the columns that are true or false, but have names that no atom can have.
+    """
     title = "no column of the traces holds `true` and `false` alone"
-    way_out = "with `--predicates LIB` atoms are computed from columns of numbers"
+    suggestion = "with `--predicates LIB` atoms are computed from columns of numbers"
     if truths:
         columns = f"column {some(truths)} holds" if len(truths) == 1 else f"columns {some(truths)} hold"
         title = f"the {columns} `true` and `false` alone, but no atom can be called so"
-        way_out = "call it as atoms are, e.g. `seen` or `at(key)`: letters, digits and `_`, and no word of the language"
-    return TltlError([Diagnostic("TLT0760", title, help=way_out)])
+        suggestion = (
+            "call it as atoms are, e.g. `seen` or `at(key)`: letters, digits and `_`, and no word of the language"
+        )
+    return TltlError([Diagnostic("TLT0760", title, help=suggestion)])
 
 
 def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str, ...]]:
-    """The columns such as `near(s1)` with their entities, as far as they can all be declared beside each other."""
+    """Return the columns such as `near(s1)` with their entities.
+
+    Columns whose declarations would conflict with others are left out.
+    """
     lengths: dict[str, int] = {}
     entities: set[str] = set()
-    found: dict[str, tuple[str, ...]] = {}
+    calls: dict[str, tuple[str, ...]] = {}
     for name in names:
         call = _call(name)
         if call is None:
@@ -142,18 +155,20 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
         signal, arguments = call
         if signal in taken or signal in entities or signal in arguments:
             continue
-        if any(each in taken or each in lengths for each in arguments):
+        if any(argument in taken or argument in lengths for argument in arguments):
             continue
-        declared = "".join(f"entity {each}\n" for each in dict.fromkeys(arguments)) + _signal(signal, len(arguments))
+        declared = "".join(f"entity {argument}\n" for argument in dict.fromkeys(arguments)) + _signal(
+            signal, len(arguments)
+        )
         if lengths.get(signal, len(arguments)) == len(arguments) and _declares(declared):
             lengths[signal] = len(arguments)
             entities.update(arguments)
-            found[name] = arguments
-    return found
+            calls[name] = arguments
+    return calls
 
 
 def _reader(words: Vocabulary) -> Fspa:
-    """An automaton that accepts everything, with these atoms."""
+    """Return an automaton that accepts everything and has these atoms."""
     spec = replace(
         spec_from_formula(TRUE, "reader"),
         atoms=words.atoms,
@@ -166,13 +181,13 @@ def _reader(words: Vocabulary) -> Fspa:
 
 
 def _parsed(source: SourceFile) -> Module:
-    module, found = parse(source)
-    stop_at_errors(found)
+    module, diagnostics = parse(source)
+    stop_at_errors(diagnostics)
     return module
 
 
 def _visible(module: Module, options: ResolveOptions) -> dict[str, Binding]:
-    """The names that a module sees, its own and those of its imports."""
+    """Return the names that a module sees: its own and those of its imports."""
     log = Log()
     names = build_scopes(load(module, options, log), log)[-1].names
     stop_at_errors(log.all())
@@ -180,7 +195,7 @@ def _visible(module: Module, options: ResolveOptions) -> dict[str, Binding]:
 
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
-    """The library with more entities, declared behind its own text so that places in it stay."""
+    """Return the library with more entities, declared after its own text so that positions stay valid."""
     return SourceFile(library.name, f"{library.text}\nentity {', '.join(names)}\n") if names else library
 
 
@@ -188,61 +203,67 @@ def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
 
 
 def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[list[str], int]:
-    """The predicates and `bool` signals over all entities, as they are written, and how many more there are."""
-    found: list[str] = []
-    more = 0
+    """Return the predicates and `bool` signals over all entities, as they are written.
+
+    Also returns how many instances the limit left out.
+    """
+    instances: list[str] = []
+    left_out = 0
     for name, parameters in _predicates(bindings):
         if not parameters:
-            found.append(name)
+            instances.append(name)
             continue
         chosen = islice(product(entities, repeat=parameters), _MOST_INSTANCES)
-        found += [f"{name}({', '.join(each)})" for each in chosen]
-        more += max(0, len(entities) ** parameters - _MOST_INSTANCES)
-    return found, more
+        instances += [f"{name}({', '.join(arguments)})" for arguments in chosen]
+        left_out += max(0, len(entities) ** parameters - _MOST_INSTANCES)
+    return instances, left_out
 
 
 def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
-    """The predicates and `bool` signals that entities alone are given, and how many of them each takes."""
+    """Yield the predicates and `bool` signals whose required parameters are all entities.
+
+    Each comes with the number of these parameters.
+    """
     for binding in bindings:
         declaration = binding.declaration
         is_truth = binding.kind == "signal" and getattr(declaration, "type", None) == "bool"
         if binding.kind != "predicate" and not is_truth:
             continue
         parameters: tuple[Parameter, ...] = getattr(declaration, "parameters", ())
-        asked = [each for each in parameters if each.default is None]
-        if all(each.type == "entity" for each in asked):
-            yield binding.name, len(asked)
+        required = [parameter for parameter in parameters if parameter.default is None]
+        if all(parameter.type == "entity" for parameter in required):
+            yield binding.name, len(required)
 
 
 def _readable(
     module: Module, texts: Sequence[str], columns: Collection[str], options: ResolveOptions | None = None
 ) -> Vocabulary | None:
-    """The atoms of these texts whose signals are all columns, None where there is none."""
-    every = _resolved(module, texts, options)
-    if every is None:
+    """Return the atoms of these texts whose signals are all columns, or None if there are none."""
+    resolved = _resolved(module, texts, options)
+    if resolved is None:
         return None
     names = [
         atom.name
-        for atom in every.atoms
+        for atom in resolved.atoms
         if all(node.name in columns for node in nodes(atom.expression) if isinstance(node, Signal))
     ]
     if names == list(texts):
-        return every
+        return resolved
     return _resolved(module, names, options) if names else None
 
 
 def _resolved(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
-    """The atoms of these texts; those that are none, or stand for the same as another, are left out."""
+    """Return the atoms of these texts, leaving out texts that are not atoms or that repeat an atom."""
     written = [SourceFile("<atom>", text) for text in texts]
     while written:
-        words, _, found = resolve_atoms(module, written, options)
-        if words is not None and not any(each.severity == "error" for each in found):
+        words, _, problems = resolve_atoms(module, written, options)
+        if words is not None and not any(problem.severity == "error" for problem in problems):
             return words
-        wrong = [label.source for each in found if each.severity == "error" for label in each.labels[:1]]
-        left = [source for source in written if not any(source is each for each in wrong)]
-        if len(left) == len(written):
-            raise TltlError(found)
-        written = left
+        wrong = [label.source for problem in problems if problem.severity == "error" for label in problem.labels[:1]]
+        remaining = [source for source in written if not any(source is rejected for rejected in wrong)]
+        if len(remaining) == len(written):
+            raise TltlError(problems)
+        written = remaining
     return None
 
 
@@ -250,27 +271,27 @@ def _resolved(module: Module, texts: Sequence[str], options: ResolveOptions | No
 
 
 def _entities(columns: Iterable[str]) -> list[str]:
-    """What stands in the brackets of columns such as `distance(s1)`, in order."""
+    """Return the names in the brackets of columns such as `distance(s1)`, in order."""
     calls = [call for call in map(_call, columns) if call is not None]
     return list(dict.fromkeys(name for _, arguments in calls for name in arguments))
 
 
 def _call(column: str) -> tuple[str, tuple[str, ...]] | None:
-    """The name and the arguments of `near(s1)`; None where a column is not of that form."""
-    found = _CALL.match(column.strip())
-    if found is None:
+    """Return the name and the arguments of `near(s1)`, or None if a column does not have that form."""
+    call = _CALL.match(column.strip())
+    if call is None:
         return None
-    arguments = tuple(each.strip() for each in found[2].split(","))
-    return (found[1], arguments) if all(_WORD.match(each) for each in arguments) else None
+    arguments = tuple(argument.strip() for argument in call[2].split(","))
+    return (call[1], arguments) if all(_WORD.match(argument) for argument in arguments) else None
 
 
 def _signal(name: str, entities: int) -> str:
-    """The declaration of a `bool` signal of so many entities."""
+    """Return the declaration of a `bool` signal with this many entities."""
     parameters = ", ".join(f"x{number}: entity" for number in range(1, entities + 1))
     return f"signal {name}({parameters}): bool\n"
 
 
 def _declares(text: str) -> bool:
-    """Whether a text is a declaration of the language: a column may be called like a word of it."""
-    _, found = parse(SourceFile("<column>", text))
-    return not any(each.severity == "error" for each in found)
+    """Whether a text is a valid declaration; it is not if a column is named like a keyword."""
+    _, problems = parse(SourceFile("<column>", text))
+    return not any(problem.severity == "error" for problem in problems)
