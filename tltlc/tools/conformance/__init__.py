@@ -1,4 +1,4 @@
-"""The conformance corpus: specs, traces, and what every monitor says of them, whatever its language.
+"""The conformance corpus: specs, traces, and the expected output of a monitor in any language.
 
-It is the same byte for byte at each run, as far as the C library's ``exp``, ``tanh`` and ``pow`` are.
+Every run writes the same bytes if the C library's ``exp``, ``tanh`` and ``pow`` are the same.
 """

@@ -1,4 +1,4 @@
-"""A case for each operator and function of predicates, at the values where languages differ."""
+"""One case for each operator and function of predicates, at values where languages differ."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _ROOT = _op("sqrt", _X)
 _HUGE = _op("*", 1e308, _X)
 _NESTED = When(
     (
-        # None of the later parts has a value where the earlier ones decide.
+        # Where an earlier part decides, the later parts have no value.
         (_test("and", _test(">", _X, 0.0), _test("<", _SHARE, 0.5)), _op("-", _SHARE, 0.25)),
         (_test("or", _test("<=", _X, 0.0), _test(">=", _op("/", _Y, _X), 2.0)), _per(_Y, 4.0)),
         (_test("not", _test("<", _when(_test(">", _Y, 0.0), _op("sqrt", _Y), 0.0), 1.0)), _per(_op("sqrt", _Y), 2.0)),
@@ -105,7 +105,7 @@ _EXPRESSIONS: Final[dict[str, tuple[Expression, Expression, tuple[float, ...]]]]
     ),
     "clamped_infinities": (
         _op("clamp", _HUGE, -0.5, 0.75),
-        # A difference of infinities is no number, and none is less or greater than it.
+        # The difference of two infinities is NaN, and no number is less or greater than NaN.
         _op("max", _op("min", 0.25, _op("-", _HUGE, _op("*", _HUGE, 2.0))), -0.75),
         _NEAR_ZERO,
     ),
@@ -113,7 +113,7 @@ _EXPRESSIONS: Final[dict[str, tuple[Expression, Expression, tuple[float, ...]]]]
 
 
 def _both(name: str, first: Expression, second: Expression) -> Case:
-    # Again and again: the automaton keeps asking, so that each step shows a value.
+    # The formula asks for this again and again, so that every step shows a value.
     formula = f.always(f.eventually(f.and_(f.atom("first"), f.atom("second"))))
     signals = (*_SIGNALS, _SEEN_SIGNAL) if name == "cases" else _SIGNALS
     fspa = automaton(name, formula, {"first": first, "second": second}, signals, (_GAIN_PARAM,))

@@ -1,4 +1,7 @@
-"""Comparisons over ranges of all sizes, with values next to their thresholds: scaling must not decide a truth."""
+"""Comparisons over ranges of all sizes, with values next to their thresholds.
+
+They test that scaling does not change the truth of a comparison.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,10 @@ from tltlc.tools.conformance.traces import table
 
 @record
 class Border:
-    """``x OP threshold`` for an x in [low, high]; where the threshold is None, it is another signal of that range."""
+    """``x OP threshold`` for an x in [low, high].
+
+    If the threshold is None, it is another signal of the same range.
+    """
 
     op: str
     threshold: float | None
@@ -25,29 +31,32 @@ class Border:
     high: float
 
     def declaration(self, number: int) -> str:
-        """The signals ``xN`` and, for a threshold that varies, ``yN``."""
+        """Return the signal declarations: ``xN`` and, for a varying threshold, ``yN``."""
         names = [f"x{number}"] if self.threshold is not None else [f"x{number}", f"y{number}"]
         return "".join(f"signal {name} in [{self.low!r}, {self.high!r}]\n" for name in names)
 
     def comparison(self, number: int) -> str:
-        """The comparison in the language."""
+        """Return the comparison in the language."""
         return f"x{number} {self.op} {f'y{number}' if self.threshold is None else repr(self.threshold)}"
 
     def values(self) -> Iterator[tuple[float, ...]]:
-        """Pairs of x and the threshold, or x alone: next to each other, and the ends."""
+        """Yield values at and next to the threshold, and the ends of the range.
+
+        A value is a pair of x and the threshold, or x alone.
+        """
         for threshold in (self.low, self.high, 0.0) if self.threshold is None else (self.threshold,):
             for x in (threshold, *_neighbours(threshold), self.low, self.high, 1e-30, -1e-30):
                 if self.low <= x <= self.high and self.low <= threshold <= self.high:
                     yield (x, threshold) if self.threshold is None else (x,)
 
     def holds(self, x: float, threshold: float | None = None) -> bool:
-        """The truth of the comparison."""
+        """Whether the comparison is true."""
         right = self.threshold if threshold is None else threshold
         assert right is not None, "a threshold that varies is given"
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]
 
     def truth(self) -> tuple[float, ...]:
-        """Values at which the comparison is true."""
+        """Return values at which the comparison is true."""
         x, threshold = (self.high, self.low) if self.op[0] == ">" else (self.low, self.high)
         return (x, threshold) if self.threshold is None else (x,)
 
@@ -69,24 +78,24 @@ EXTREMES: Final = (
 
 
 def drawn_borders(draw: Draw, count: int) -> tuple[Border, ...]:
-    """Comparisons whose ranges and thresholds have any exponent that a number may have."""
-    found: list[Border] = []
-    while len(found) < count:
+    """Return random comparisons; ranges and thresholds have any exponent of a normal float."""
+    borders: list[Border] = []
+    while len(borders) < count:
         low, threshold, high = sorted(_any_number(draw) for _ in range(3))
         if low < threshold < high:
             op = draw.one(("<", "<=", ">", ">="))
-            found.append(Border(op, None if draw.chance(0.25) else threshold, low, high))
-    return tuple(found)
+            borders.append(Border(op, None if draw.chance(0.25) else threshold, low, high))
+    return tuple(borders)
 
 
 def _any_number(draw: Draw) -> float:
-    """A normal number: Mono's compiler and library misread smaller ones by a bit."""
+    """Return a normal number; Mono's compiler and library misread subnormal ones by a bit."""
     sign = -1.0 if draw.chance(0.5) else 1.0
     return sign * ldexp(1 + draw.below(1 << 20) / (1 << 20), draw.below(2046) - 1022)
 
 
 def _case(name: str, borders: tuple[Border, ...]) -> Case:
-    """All comparisons at once, again and again: in each row all but at most one are true."""
+    """Return a case with all comparisons, required again and again; in each row at most one is false."""
     numbered = list(enumerate(borders, start=1))
     declarations = "".join(border.declaration(number) for number, border in numbered)
     formula = " and ".join(border.comparison(number) for number, border in numbered)
@@ -94,7 +103,7 @@ def _case(name: str, borders: tuple[Border, ...]) -> Case:
     (fspa,) = compile_source(SourceFile(f"{name}.tltl", text), CompileOptions(specs=(name,))).automata
     columns = [f"{letter}{number}" for number, border in numbered for letter in "xy"[: len(border.truth())]]
     rows = [
-        [each for n, b in numbered for each in (values if n == number else b.truth())]
+        [value for n, b in numbered for value in (values if n == number else b.truth())]
         for number, border in numbered
         for values in border.values()
     ]

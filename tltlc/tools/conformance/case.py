@@ -1,4 +1,4 @@
-"""A case of the corpus: an automaton and the traces that it is run on."""
+"""A case of the corpus: an automaton and the traces that it runs on."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 @record
 class Case:
-    """``about`` says in a sentence what it is for; ``source`` is the text of its spec, where there is one.
+    """One case; the name of its automaton is the name of the case.
 
-    ``traces`` are whole CSV files.  The automaton's name is that of the case.
+    ``about`` is a sentence on its purpose. ``source`` is the text of its spec, if there is one.
+    ``traces`` are whole CSV files.
     """
 
     fspa: Fspa
@@ -28,7 +29,7 @@ class Case:
 
 
 Makers = Mapping[str, Callable[[], Case]]
-"""Names of cases and what makes them, so that one of them costs nothing of the others."""
+"""Cases by name, each as a function that builds it, so that one case is built without the others."""
 
 
 def automaton(
@@ -43,9 +44,10 @@ def automaton(
     judge: Judge | None = None,
     infinite: bool = False,
 ) -> Fspa:
-    """The automaton of a formula whose atoms have these expressions; without any, each is a signal in [-1, 1].
+    """Return the automaton of a formula whose atoms have these expressions.
 
-    Of ``signals`` and ``params`` those stay that the expressions use.
+    Without expressions, each atom is a signal in [-1, 1]. Only the ``signals`` and ``params`` that
+    the expressions use are kept.
     """
     spec = replace(spec_from_formula(formula, name, exclusive), limit_steps=limit, judge=judge)
     if expressions:

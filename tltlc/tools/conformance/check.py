@@ -26,7 +26,7 @@ LONGEST_RUN_S = 60
 
 
 def main(words: Sequence[str]) -> int:
-    """Check each case of the index; 0, or 1 where something differs, 2 for wrong usage."""
+    """Check each case of the index; return 0, 1 if anything differs, or 2 for wrong usage."""
     only = words[1].split(",") if len(words) > 1 and words[0] == "--only" else None
     command = words[2:] if only else words
     if not command or command[0].startswith("-"):
@@ -46,7 +46,7 @@ def main(words: Sequence[str]) -> int:
 
 
 def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -> str | None:
-    """What is wrong with the words of the command line, if anything is."""
+    """Return what is wrong with the command line, or None."""
     if not any("{name}" in word for word in command):
         return "the command holds no {name}, so that every case would run the same monitor"
     for case in only:
@@ -57,26 +57,29 @@ def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -
 
 
 def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, index: Mapping[str, Any]) -> int:
-    """Each case, and at the end how many differ."""
-    traces = wrong = 0
+    """Check each case; print the differences, and at the end their number."""
+    traces = differing = 0
     for case in index["cases"]:
         if only and case["name"] not in only:
             continue
         tolerance = 0.0 if case["exact"] else index["tolerance"]
         for trace in case["traces"]:
             traces += 1
-            found = list(of_trace(command, folder, case["name"], trace, tolerance))
-            wrong += bool(found)
-            for problem in found[:5]:
+            problems = list(of_trace(command, folder, case["name"], trace, tolerance))
+            differing += bool(problems)
+            for problem in problems[:5]:
                 print(f"{trace['trace']}: {problem}")
-    print(f"{traces} traces, {wrong} of them not as expected")
-    return 1 if wrong or not traces else 0
+    print(f"{traces} traces, {differing} of them not as expected")
+    return 1 if differing or not traces else 0
 
 
 def of_trace(
     command: Sequence[str], folder: Path, name: str, trace: Mapping[str, Any], tolerance: float
 ) -> Iterator[str]:
-    """What a monitor does otherwise on one trace of the index; raises OSError where it cannot be started."""
+    """Yield the differences of a monitor on one trace of the index.
+
+    Raises OSError if the monitor cannot be started.
+    """
     words = [word.replace("{name}", name) for word in command]
     try:
         done = subprocess.run([*words, "--full", folder / trace["trace"]], capture_output=True, timeout=LONGEST_RUN_S)
@@ -98,48 +101,48 @@ def differences(
     error: Mapping[str, Any] | None,
     tolerance: float,
 ) -> Iterator[str]:
-    """What is otherwise than expected in an exit status, standard output and standard error.
+    """Yield the differences from the expected exit status, standard output and standard error.
 
-    ``rows`` begin with the header; ``error`` has a kind, a step and names, as in the index.
+    ``rows`` begin with the header. ``error`` has a kind, a step and names, as in the index.
     """
-    wanted = 1 if error else 0
-    if status != wanted:
-        yield f"exit status {status}, not {wanted}: {err}"
+    expected_status = 1 if error else 0
+    if status != expected_status:
+        yield f"exit status {status}, not {expected_status}: {err}"
     yield from _in_rows(out, rows, tolerance)
     yield from _in_words(err, warnings, error)
 
 
 def _in_rows(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Iterator[str]:
-    """Cell by cell; where the first sample is refused, the header may be missing."""
-    columns, *wanted = rows
-    # Engines print lines of their own first.
+    """Compare the rows cell by cell. The header may be missing if the first sample is refused."""
+    columns, *expected = rows
+    # Game engines print lines of their own first.
     header = re.search(rf"^{re.escape(','.join(columns))}\r?$", out, re.MULTILINE)
     if header is None:
-        if wanted:
+        if expected:
             yield f"there is no header in: {out}"
         return
-    found = [*csv.reader(io.StringIO(out[header.end() :].lstrip("\r\n"), newline=""), strict=True)]
-    if len(found) != len(wanted):
-        yield f"{len(found)} rows, not {len(wanted)}"
-    for number, (row, right) in enumerate(zip(found, wanted), start=1):  # noqa: B905 (counted above)
-        if len(row) != len(right):
+    printed = [*csv.reader(io.StringIO(out[header.end() :].lstrip("\r\n"), newline=""), strict=True)]
+    if len(printed) != len(expected):
+        yield f"{len(printed)} rows, not {len(expected)}"
+    for number, (row, expected_row) in enumerate(zip(printed, expected), start=1):  # noqa: B905 (counted above)
+        if len(row) != len(expected_row):
             yield f"row {number} has {len(row)} cells: {row}"
             continue
         for place, column in enumerate(columns):
-            cell, its = row[place], right[place]
-            if cell != its and not (column in NUMBERS and _is_near(cell, its, tolerance)):
-                yield f"row {number}: {column} is {cell!r}, not {its!r}"
+            cell, expected_cell = row[place], expected_row[place]
+            if cell != expected_cell and not (column in NUMBERS and _is_near(cell, expected_cell, tolerance)):
+                yield f"row {number}: {column} is {cell!r}, not {expected_cell!r}"
 
 
-def _is_near(cell: str, wanted: str, tolerance: float) -> bool:
+def _is_near(cell: str, expected: str, tolerance: float) -> bool:
     try:
-        return tolerance > 0.0 and abs(float(cell) - float(wanted)) <= tolerance
+        return tolerance > 0.0 and abs(float(cell) - float(expected)) <= tolerance
     except ValueError:
         return False
 
 
 def _in_words(err: str, warnings: int, error: Mapping[str, Any] | None) -> Iterator[str]:
-    """In standard error: a line for an error that names what is to blame, and one for each warning."""
+    """Compare standard error: one line for an error, with the names at fault, or one per warning."""
     lines = err.splitlines()
     errors = [line for line in lines if line.startswith("error: ")]
     if error is None:

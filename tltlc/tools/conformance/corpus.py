@@ -1,4 +1,4 @@
-"""The corpus as files: a folder per case, an index, and a page on how to check a monitor against them."""
+"""The corpus as files: a folder per case, an index, and a page on how to check a monitor."""
 
 from __future__ import annotations
 
@@ -31,32 +31,32 @@ CASES: Final[Makers] = {
 
 VERSION: Final = 1
 TOLERANCE: Final = 1e-12
-"""How far numbers may be off where a case is not exact."""
+"""The largest difference of numbers in a case that is not exact."""
 
 _ROUNDED_ANYHOW: Final = ("exp", "tanh", "^")
-"""Operators that each language's library rounds in its own way."""
+"""Operators whose rounding depends on the library of the language."""
 
 
 def files() -> backends.Files:
-    """Every file of the corpus, by its path with slashes."""
-    found: backends.Files = {}
+    """Return every file of the corpus, by its path with slashes."""
+    folders: backends.Files = {}
     index: list[dict[str, Any]] = []
     for make in CASES.values():
         case = make()
         outcomes = [expected(case.fspa, trace) for trace in case.traces]
         index.append(_entry(case, outcomes))
-        found.update(_folder(case, outcomes))
+        folders.update(_folder(case, outcomes))
     document = {"version": VERSION, "columns": list(COLUMNS), "tolerance": TOLERANCE, "cases": index}
     return {
         "README.md": _beside("about.md"),
         "check.py": _beside("check.py"),
         "index.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n",
-        **found,
+        **folders,
     }
 
 
 def is_corpus(folder: Path) -> bool:
-    """Whether an earlier run has written into this folder: its index is there, of any version."""
+    """Whether a folder holds a corpus of any version, recognised by its index."""
     try:
         document = json.loads(read_source(folder / "index.json", max_bytes=MAX_ARTEFACT_BYTES).text)
     except (TltlError, ValueError, RecursionError):
@@ -65,32 +65,35 @@ def is_corpus(folder: Path) -> bool:
 
 
 def is_exact(fspa: Fspa) -> bool:
-    """Whether numbers are the same to the last digit everywhere: each operation is one that IEEE 754 defines."""
+    """Whether numbers are the same to the last digit everywhere.
+
+    This holds if IEEE 754 defines each operation.
+    """
     operations = [node for atom in fspa.atoms for node in nodes(atom.expression) if isinstance(node, Op)]
     return all(node.op not in _ROUNDED_ANYHOW or _is_product(node) for node in operations)
 
 
 def _is_product(node: Op) -> bool:
-    """Whether it is a power that is computed by multiplication."""
+    """Whether the node is a power that is computed by multiplication."""
     exponent = node.args[-1]
     return node.op == "^" and isinstance(exponent, Const) and exponent.value in MULTIPLIED_EXPONENTS
 
 
 def _folder(case: Case, outcomes: Sequence[Expected]) -> backends.Files:
-    """The files of one case."""
+    """Return the files of one case."""
     name = case.fspa.name
-    found = backends.emit("json", case.fspa)
+    contents = backends.emit("json", case.fspa)
     if case.source is not None:
-        found[f"{name}.tltl"] = case.source
+        contents[f"{name}.tltl"] = case.source
     for number, (trace, outcome) in enumerate(zip(case.traces, outcomes, strict=True), start=1):
-        found[f"{name}.{number}.csv"] = trace
-        found[f"{name}.{number}.expected.csv"] = outcome.table()
+        contents[f"{name}.{number}.csv"] = trace
+        contents[f"{name}.{number}.expected.csv"] = outcome.table()
         if outcome.refusal is not None:
-            found[f"{name}.{number}.error.txt"] = _said(outcome.refusal)
-    return {f"{name}/{file}": content for file, content in found.items()}
+            contents[f"{name}.{number}.error.txt"] = _refusal_text(outcome.refusal)
+    return {f"{name}/{file}": content for file, content in contents.items()}
 
 
-def _said(refusal: Refusal) -> str:
+def _refusal_text(refusal: Refusal) -> str:
     lines = [f"kind: {refusal.kind}", f"step: {refusal.step}", *(f"name: {name}" for name in refusal.names)]
     if refusal.line is not None:
         lines.insert(2, f"line: {refusal.line}")
@@ -98,7 +101,7 @@ def _said(refusal: Refusal) -> str:
 
 
 def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
-    """What the index says of a case."""
+    """Return the entry of a case in the index."""
     fspa, name = case.fspa, case.fspa.name
     traces = []
     for number, outcome in enumerate(outcomes, start=1):
@@ -121,7 +124,7 @@ def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
 
 
 def _beside(name: str) -> str:
-    """A file that lies beside this one."""
+    """Return the text of a file in the folder of this module."""
     path = os.path.join(os.path.dirname(__file__), name)  # noqa: PTH118, PTH120
     with open(path, encoding="utf-8") as file:  # noqa: PTH123
         return file.read()

@@ -10,23 +10,26 @@ T = TypeVar("T")
 
 
 class Draw:
-    """Draws from a seed; all of it comes from ``Random.random``, whose numbers Python promises not to change."""
+    """Draws from a seed.
+
+    Everything comes from ``Random.random``, whose numbers Python promises not to change.
+    """
 
     def __init__(self, seed: int) -> None:
         self._random = Random(seed).random
 
     def below(self, count: int) -> int:
-        """A number from 0 to ``count`` - 1."""
+        """Return a number from 0 to ``count`` - 1."""
         return int(self._random() * count)
 
     def one(self, items: Sequence[T]) -> T:
-        """One of the items."""
+        """Return one of the items."""
         return items[self.below(len(items))]
 
     def chance(self, share: float) -> bool:
-        """True in a share of all cases, in [0, 1]."""
+        """Return True with a probability of ``share``, in [0, 1]."""
         return self._random() < share
 
     def between(self, low: float, high: float) -> float:
-        """A number in [low, high), with three decimals at most."""
+        """Draw a number from [low, high) and round it to three decimals."""
         return round(low + (high - low) * self._random(), 3)

@@ -1,4 +1,4 @@
-"""What the monitor says of a trace: rows, and why it refuses a sample."""
+"""The expected output of a monitor on a trace: rows, and the reason if it refuses a sample."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ COLUMNS: Final = (
 
 @record
 class Refusal:
-    """Why a trace is refused, at which step (from 1), and the signals or atoms that are to blame.
+    """Why and at which step (from 1) a trace is refused, and the signals or atoms at fault.
 
-    ``line`` is that of the file (from 1) where it cannot be read; None where the monitor refuses a sample.
+    ``line`` is the line of the file (from 1) that cannot be read. It is None if the monitor refuses
+    a sample.
     """
 
     kind: Kind
@@ -37,20 +38,20 @@ class Refusal:
     line: int | None = None
 
     def document(self) -> dict[str, Any]:
-        """The refusal in the index of the corpus."""
+        """Return the refusal as it appears in the index of the corpus."""
         return {"kind": self.kind, "step": self.step, "names": list(self.names), "line": self.line}
 
 
 @record
 class Expected:
-    """The rows before the end or the refusal, without the header, and how many values had to be clamped."""
+    """The rows before the end or the refusal, without the header, and the number of clamped values."""
 
     rows: tuple[tuple[str, ...], ...]
     refusal: Refusal | None
     warnings: int
 
     def table(self) -> str:
-        """The rows as CSV."""
+        """Return the rows as CSV."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(COLUMNS)
@@ -59,7 +60,7 @@ class Expected:
 
 
 def expected(fspa: Fspa, trace: bytes) -> Expected:
-    """What a monitor of the automaton says of a CSV file."""
+    """Return the output of a monitor of the automaton on a CSV file."""
     monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), Sample()
     refusal = None
     try:
@@ -77,7 +78,7 @@ def _cells(number: int, step: Step) -> tuple[str, ...]:
 
 
 def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Refusal:
-    """The refusal that a diagnostic's code stands for; what it says in words is found out anew."""
+    """Return the refusal for a diagnostic's code; the names are computed again, not read from its text."""
     if error.code == "TLT0620":
         return Refusal("no sample", step)
     if error.code == "TLT0612":
@@ -95,7 +96,7 @@ def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sam
 
 
 def _missing(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
-    """The signals that have no column."""
+    """Return the signals without a column."""
     table = read_rows(Lines(io.BytesIO(trace), "trace"))
     header = table.header if isinstance(table, Table) else ()
     return tuple(signal.name for signal in fspa.signals if signal.name not in header)
@@ -106,7 +107,7 @@ def _infinite(fspa: Fspa, sample: Sample) -> list[str]:
 
 
 def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
-    """The first atom that has none, and why."""
+    """Return the first atom that has no value, and the reason."""
     signals, params = _clamped(fspa, sample), {param.name: param.value for param in fspa.params}
     too_large: str | None = None
     for atom in fspa.atoms:
@@ -118,14 +119,14 @@ def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
             return "too large", atom.name
         except ValueError:
             return "no root", atom.name
-        # All are computed before any is checked.
+        # A monitor computes all values before it checks any, so an exception in a later atom comes first.
         too_large = too_large or (None if isfinite(value) else atom.name)
     assert too_large is not None, "some atom has no value"
     return "too large", too_large
 
 
 def _together(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
-    """The atoms of the first group of which several hold."""
+    """Return the atoms that hold in the first exclusive group with more than one of them."""
     signals, params = _clamped(fspa, sample), {param.name: param.value for param in fspa.params}
     holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]
     holding = [[atom for atom in group if holds[atom]] for group in fspa.exclusive]
@@ -133,7 +134,7 @@ def _together(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
 
 
 def _clamped(fspa: Fspa, sample: Mapping[str, float]) -> dict[str, float]:
-    """The signals within their ranges."""
+    """Return the signals, clamped to their ranges."""
     values = {}
     for signal in fspa.signals:
         value = sample[signal.name]

@@ -1,4 +1,4 @@
-"""Random predicates, with every operator and function."""
+"""Random predicates with every operator and function."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _EXPONENTS: Final = (2.0, 3.0, 0.5, -1.0, 1.5)
 
 
 def predicate(draw: Draw) -> Expression:
-    """An expression whose values lie in [-1, 1], most often, with both signs."""
+    """Return an expression whose values mostly lie in [-1, 1], with both signs."""
     inner = _expression(draw, 3)
-    way = draw.below(4)
-    if way == 0:
+    choice = draw.below(4)
+    if choice == 0:
         return Op("clamp", (inner, Const(-1.0), Const(1.0)))
-    if way == 1:
+    if choice == 1:
         return Op("tanh", (inner,))
-    if way == 2:
+    if choice == 2:
         return Op("/", (inner, Op("+", (Const(1.0), Op("abs", (inner,))))))
     return Op("*", (Const(0.25), inner))
 
@@ -43,15 +43,15 @@ def predicate(draw: Draw) -> Expression:
 def _expression(draw: Draw, depth: int) -> Expression:
     if not depth or draw.chance(0.15):
         return _leaf(draw)
-    way = draw.below(8)
-    if way == 0:
+    choice = draw.below(8)
+    if choice == 0:
         return Op(draw.one(_UNARY), (_expression(draw, depth - 1),))
-    if way == 1:
+    if choice == 1:
         return Op("^", (_expression(draw, depth - 1), Const(draw.one(_EXPONENTS))))
-    if way == 2:
+    if choice == 2:
         parts = tuple(_expression(draw, depth - 1) for _ in range(3))
         return Op(draw.one(("clamp", "min", "max")), parts)
-    if way <= 4:
+    if choice <= 4:
         cases = tuple((_condition(draw, depth - 1), _expression(draw, depth - 1)) for _ in range(1 + draw.below(2)))
         return When(cases, _expression(draw, depth - 1))
     return Op(draw.one(_BINARY), (_expression(draw, depth - 1), _expression(draw, depth - 1)))

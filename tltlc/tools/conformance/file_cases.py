@@ -1,4 +1,4 @@
-"""Cases from files: those of the paper with a recorded trace each, and some more, of all forms of the language."""
+"""Cases from files: the specs of the paper, each with a recorded trace, and more that cover the language."""
 
 from __future__ import annotations
 

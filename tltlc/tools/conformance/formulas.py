@@ -1,4 +1,4 @@
-"""Random formulas, with every operator."""
+"""Random formulas with every operator."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ BINARY: Final[tuple[Callable[[Formula, Formula], Formula], ...]] = (
 
 
 def formula(draw: Draw, atoms: Sequence[str], leaves: int) -> Formula:
-    """A formula with as many leaves, most of them atoms."""
+    """Return a formula with this many leaves, most of them atoms."""
     if leaves == 1:
         leaf = draw.one((TRUE, FALSE)) if draw.chance(0.05) else f.atom(draw.one(atoms))
         return draw.one(UNARY)(leaf) if draw.chance(0.5) else leaf
     left = 1 + draw.below(leaves - 1)
-    found = draw.one(BINARY)(formula(draw, atoms, left), formula(draw, atoms, leaves - left))
-    return draw.one(UNARY)(found) if draw.chance(0.3) else found
+    combined = draw.one(BINARY)(formula(draw, atoms, left), formula(draw, atoms, leaves - left))
+    return draw.one(UNARY)(combined) if draw.chance(0.3) else combined

@@ -1,4 +1,4 @@
-"""Traces that are written oddly, and how ``docs/traces.md`` says that each is read."""
+"""Traces in unusual notation, and how they must be read according to ``docs/traces.md``."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ SIGNALS: Final = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bo
 
 @record
 class Odd:
-    """A trace; the values of ``x`` and ``seen`` in the samples that are read, in order; and the line of the refusal.
+    """A trace, the values of ``x`` and ``seen`` in the samples that are read, and the refused line.
 
-    ``line`` is from 1, None where all is read, and 0 where the trace holds no sample.
+    ``line`` counts from 1. It is None if everything is read, and 0 if the trace has no sample.
     """
 
     trace: bytes
@@ -34,26 +34,26 @@ _TWO: Final = ((0.5, 1.0), (-0.25, 0.0))
 
 
 def _row(row: bytes) -> Odd:
-    """A second row that is refused."""
+    """Return a trace whose second row is refused."""
     return Odd(_HEAD + b"0.5,1\n" + row + b"\n0.5,1\n", _ONE, 3)
 
 
 def _cell(cell: bytes, value: float | None) -> Odd:
-    """A second value of ``x``, or one that is refused."""
+    """Return a trace with a second value of ``x``; None means that the cell is refused."""
     if value is None:
         return _row(cell + b",1")
     return Odd(_HEAD + b"0.5,1\n" + cell + b",1\n", (*_ONE, (value, 1.0)))
 
 
 def _truth(cell: bytes, value: float | None) -> Odd:
-    """A second value of ``seen``, or one that is refused."""
+    """Return a trace with a second value of ``seen``; None means that the cell is refused."""
     if value is None:
         return _row(b"0.5," + cell)
     return Odd(_HEAD + b"0.5,1\n0.5," + cell + b"\n", (*_ONE, (0.5, value)))
 
 
 def _note(cell: bytes) -> Odd:
-    """A cell in a column that nothing reads."""
+    """Return a trace with a cell in a column that nothing reads."""
     return Odd(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
 
 
@@ -195,13 +195,13 @@ _NUMBERS: Final = (
     *(("2.4703282292062328e-324", 5e-324), ("2.4703282292062327e-324", 0.0)),
     ("9007199254740993e-16", 0.9007199254740993),
     ("0.1000000000000000055511151231257827", 0.1),
-    # Half-way between two doubles, the even one counts; a little above, the upper one.
+    # Halfway between two doubles, the even one is read; slightly above, the upper one.
     ("0.500000000000000055511151231257827021181583404541015625", 0.5),
     ("0.500000000000000055511151231257827021181583404541015625" + "0" * 900 + "1", 0.5000000000000001),
     ("-0." + "0" * 400 + "1e400", -0.1),
     ("1" + "0" * 400 + "e-400", 1.0),
     ("0.5" + "0" * 2000 + "1", 0.5),
-    # Readers that cut off exponents or digits, some after 5,200, must not notice it here.
+    # Some readers truncate exponents or digits, e.g. after 5,200. These values must still be read correctly.
     ("-0." + "0" * 20_000 + "25e20000", -0.25),
     ("0025" + "0" * 20_000 + ".0E-20002", 0.25),
     ("25" * 10_000 + "e-20000", 0.25252525252525254),
@@ -329,7 +329,7 @@ MORE_VALUES: Final[Mapping[str, Odd]] = {
     ),
     "a million digits and a smaller exponent": _cell(b"-" + b"9" * 1_040_000 + b"e-99999999999999999999", -0.0),
 }
-"""Left out of the corpus, which starts a program for each trace."""
+"""Values that are not in the corpus, because checking the corpus starts a program for each trace."""
 
 
 def _case(name: str, about: str, odd: Mapping[str, Odd]) -> Case:
@@ -337,7 +337,7 @@ def _case(name: str, about: str, odd: Mapping[str, Odd]) -> Case:
     expressions: dict[str, Expression] = {"a": Signal("x"), "b": seen}
     formula = f.always(f.eventually(f.and_(f.atom("a"), f.atom("b"))))
     fspa = automaton(name, formula, expressions, SIGNALS, limit=50)
-    return Case(fspa, about, tuple(each.trace for each in odd.values()))
+    return Case(fspa, about, tuple(case.trace for case in odd.values()))
 
 
 CASES: Final[Makers] = {

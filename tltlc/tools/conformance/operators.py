@@ -1,4 +1,4 @@
-"""A case for each temporal operator, and for each way to judge, with and without a limit."""
+"""A case for each temporal operator and each judge, with and without a limit."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tltlc.tools.conformance.traces import drawn, lively
 _A, _B, _C = f.atom("a"), f.atom("b"), f.atom("c")
 
 _VALUES: Final = (-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0)
-"""Few, so that values are equal, or 0, at many steps."""
+"""Only a few values, so that values are equal, or 0, at many steps."""
 
 _Shape = tuple[str, Formula, "Judge | None", "int | None", bool]
 
@@ -44,7 +44,7 @@ def _case(number: int, shape: _Shape) -> Case:
     fspa = automaton(name, formula, limit=limit, judge=judge, infinite=infinite)
     draw = Draw(1000 + number)
     pools = dict.fromkeys("abc", _VALUES)
-    # Values that mostly hold make a trace outlive its rules; only zeros hold nothing.
+    # With mostly positive values a trace rarely violates a rule early; with zeros no atom holds.
     lucky = dict.fromkeys("abc", (-0.5, 0.25, 0.5, 1.0, 1.0))
     zeros = dict.fromkeys("abc", (0.0, -0.0))
     traces = (lively(fspa, draw, 24, pools), lively(fspa, draw, 30, lucky), drawn(fspa, draw, 14, zeros))

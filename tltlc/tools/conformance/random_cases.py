@@ -1,4 +1,4 @@
-"""Cases from a seed: formulas and predicates as nobody would write them."""
+"""Cases from a seed, with formulas and predicates that no person would write."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _VALUES: Final = (-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0)
 _JUDGES: Final[tuple[Judge, ...]] = ("goal", "limit")
 _OPEN: Final = ("pending", "holding")
 _STATES: Final = range(2, 10)
-"""Fewer show little, more take long to compile."""
+"""The accepted numbers of states: smaller automata show little, larger ones compile slowly."""
 
 
 def _of_formula(name: str, seed: int, infinite: bool) -> Case:
-    """A random formula over signals."""
+    """Return a case with a random formula over signals."""
     draw = Draw(seed)
     fspa = _automaton(name, draw, infinite)
     pools = {signal.name: _VALUES for signal in fspa.signals}
@@ -36,7 +36,7 @@ def _of_formula(name: str, seed: int, infinite: bool) -> Case:
 
 
 def _of_predicates(name: str, seed: int) -> Case:
-    """A random formula over random predicates."""
+    """Return a case with a random formula over random predicates."""
     draw = Draw(seed)
     expressions = {atom: predicate(draw) for atom in _ATOMS}
     fspa = _automaton(name, draw, False, expressions)
@@ -45,22 +45,22 @@ def _of_predicates(name: str, seed: int) -> Case:
 
 
 def _automaton(name: str, draw: Draw, infinite: bool, expressions: Mapping[str, Expression] = EMPTY) -> Fspa:
-    """The first automaton of a fit size."""
+    """Return the first random automaton of a suitable size."""
     while True:
-        asked = formula(draw, _ATOMS, 3 + draw.below(3))
+        goal = formula(draw, _ATOMS, 3 + draw.below(3))
         if expressions:
-            # What is asked again and again shows a predicate's value at each step.
-            asked = f.always(f.eventually(asked))
+            # A goal that recurs shows a predicate's value at each step.
+            goal = f.always(f.eventually(goal))
         groups = [
-            pair for pair in combinations(dict.fromkeys(asked.atoms()), 2) if not expressions and draw.chance(0.15)
+            pair for pair in combinations(dict.fromkeys(goal.atoms()), 2) if not expressions and draw.chance(0.15)
         ]
         limit = 2 + draw.below(20) if draw.chance(0.6) else None
         judge = draw.one(_JUDGES)
-        if infinite and len(set(asked.atoms())) < 2:
+        if infinite and len(set(goal.atoms())) < 2:
             continue
         fspa = automaton(
             name,
-            asked,
+            goal,
             expressions,
             SIGNALS,
             PARAMS,

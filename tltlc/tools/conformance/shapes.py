@@ -1,4 +1,4 @@
-"""Automata and traces of unusual shapes: exclusive atoms, verdicts that stand from the start, names, files."""
+"""Automata and traces of unusual shapes: exclusive atoms, verdicts decided at the start, names, files."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _VALUES: Final = (-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0)
 
 
 def _exclusive(name: str, count: int) -> Case:
-    """A sequence over atoms of which one holds at a time."""
+    """Return a case with a sequence over atoms of which only one holds at a time."""
     atoms = [f"at_{number}" for number in range(count)]
     order = f.atom(atoms[-1])
     for atom in reversed(atoms[:3]):
@@ -83,7 +83,7 @@ def _many() -> Case:
 
 
 def _named(name: str, names: tuple[str, str, str]) -> Case:
-    """Hostile names wherever a monitor shows or reads one."""
+    """Return a case with hostile names everywhere a monitor shows or reads a name."""
     first, second, third = names
     formula = f.and_(f.eventually(f.and_(f.atom(first), f.next_(f.atom(second)))), f.always(f.atom(third)))
     fspa = replace(automaton(name, formula, limit=20), doc=f"{first} */ {second}\n\\ {third}")
@@ -106,7 +106,7 @@ _NAMES: Final = {
 
 
 def _ranges() -> Case:
-    """Values out of range count as its ends, and are told of once."""
+    """Return a case with values out of range: they are clamped, and one warning is given per signal."""
     expressions: dict[str, Expression] = {
         "near": Op("-", (Const(1.0), Op("/", (Signal("distance"), Const(4.0))))),
         "loud": Op("*", (Const(3.0), Signal("noise"))),
@@ -137,7 +137,7 @@ _INFINITE: Final = ("nan", "inf", "-inf", "1e400", "-1e999", "NaN", "Infinity")
 
 
 def _cells() -> Case:
-    """Ways to write a file, good ones and those that must be refused."""
+    """Return a case with ways to write a file, valid ones and others that must be refused."""
     expressions: dict[str, Expression] = {
         "a": Signal("x"),
         "b": Op("-", (Op("*", (Const(2.0), Signal("seen"))), Const(1.0))),

@@ -19,13 +19,13 @@ Pools = Mapping[str, Sequence[float]]
 """Values to draw from, per signal."""
 
 _OPEN: Final = 25.0
-"""How far values go where a range is open."""
+"""An open lower end counts as -_OPEN; an open upper end lies 2 * _OPEN above the lower end."""
 _ATTEMPTS: Final = 200
 _TRIES: Final = 6
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "\n") -> bytes:
-    """A CSV file; cells are quoted where they must be."""
+    """Return a CSV file; cells are quoted only if necessary."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator=end)
     writer.writerow(columns)
@@ -34,9 +34,9 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
 
 
 def drawn(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, refused: bool = False) -> bytes:
-    """A random trace of samples that the automaton takes.
+    """Return a random trace of samples that the automaton accepts.
 
-    Where ``refused``, the last is one that it does not take, if one is found.
+    If ``refused``, the last sample is one that it does not accept, if one is found.
     """
     samples = [_sample(fspa, draw, pools, sound=True) for _ in range(length)]
     if refused:
@@ -46,7 +46,7 @@ def drawn(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, refused:
 
 
 def lively(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY) -> bytes:
-    """Of some random traces the one that meets the most states, and takes the longest until all is settled."""
+    """Return the one of several random traces that visits most states and stays undecided longest."""
     return max([drawn(fspa, draw, length, pools) for _ in range(_TRIES)], key=lambda trace: _life(fspa, trace))
 
 
@@ -80,19 +80,19 @@ def _value(draw: Draw, signal: Signal, pool: Sequence[float]) -> float:
         return float(draw.below(2))
     low = -_OPEN if signal.low is None else signal.low
     high = low + 2 * _OPEN if signal.high is None else signal.high
-    way = draw.below(12)
-    if way == 0:
+    choice = draw.below(12)
+    if choice == 0:
         return draw.one((low, high))
-    if way == 1:
+    if choice == 1:
         return draw.one((0.0, -0.0)) if low <= 0.0 <= high else low
-    if way == 2:
-        # Out of range, where there is one: it counts as its end.
+    if choice == 2:
+        # A value out of range, if the range has ends; it is clamped.
         return draw.one((low - 0.5, high + 0.5))
     return draw.between(low, high)
 
 
 def _text(draw: Draw, signal: Signal, value: float) -> str:
-    """A number as one of the ways to write it."""
+    """Return a number in one of its spellings."""
     if signal.type == "bool" and draw.chance(0.7):
         return "true" if value else "false"
     if value == int(value) and draw.chance(0.7):
