@@ -38,7 +38,7 @@ def repeated(node: Formula) -> Formula:
 
 
 def complementary(node: Formula) -> Formula:
-    """Return the constant if an operand stands beside its negation."""
+    """Decide an ``and`` or ``or`` that contains an operand and its negation."""
     operands = set(node.args)
     if any(complement(part) in operands for part in node.args):
         return FALSE if node.op == "and" else TRUE

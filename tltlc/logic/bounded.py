@@ -1,4 +1,4 @@
-"""Recognise bounded operators in the nexts that they were expanded into.
+"""Recognise bounded operators in their expansions into nexts.
 
 ``F[0,2] p`` is the formula ``p | X(p | X p)``, and ``G[0,2] p`` is ``p & N(p & N p)``. Texts print
 the bounded form, which stays short for any bound.

@@ -68,7 +68,7 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...
 def standard_library() -> Path:
     """Return the folder of the standard library.
 
-    It lies inside an installed package, and beside the package in a checkout.
+    It is inside the package if that is installed, and next to the package in a checkout.
     """
     package = Path(__file__).parent.parent
     installed = package / "stdlib"

@@ -23,7 +23,7 @@ _MOST_LETTERS = 4
 _MOST_NAMES = 5
 """The most entities that a message lists."""
 _MOST_HINTS = 50
-"""The number of logged problems after which unknown names get no suggestions: comparisons are slow."""
+"""After this many logged problems, unknown names get no suggestions, because finding them is slow."""
 _DECLARATIONS = {
     "predicate": "signal {name}: bool",
     "signal or param": "signal {name} in [0, 100]",

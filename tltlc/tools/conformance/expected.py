@@ -26,7 +26,7 @@ COLUMNS: Final = (
 
 @record
 class Refusal:
-    """Why and at which step (from 1) a trace is refused, and the signals or atoms at fault.
+    """The refusal of a trace: its reason, its step (from 1), and the signals or atoms at fault.
 
     ``line`` is the line of the file (from 1) that cannot be read. It is None if the monitor refuses
     a sample.

@@ -92,7 +92,7 @@ def judge(fspa: Fspa, trace: Recorded) -> Judgement:
 
 
 class _Run:
-    """A run of an automaton on letters. It caches transitions, so each guard is evaluated once per letter."""
+    """A run of an automaton on letters; it caches the transition of each state and letter."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa

@@ -1,4 +1,4 @@
-"""Read trace files into evidence: the atoms, where they hold, and which traces contradict each other."""
+"""Read trace files into evidence: find the atoms and where they hold, and report contradictions."""
 
 from __future__ import annotations
 
