@@ -71,12 +71,14 @@ def resolved(node: Formula) -> Formula:
         return node
     inner_op = "or" if node.op == "and" else "and"
     for index, part in enumerate(node.args):
-        others = node.args[:index] + node.args[index + 1 :]
+        rest = node.args[:index] + node.args[index + 1 :]
         if part.op == inner_op:
-            remaining = [inner for inner in part.args if not any(_ruled_out(node.op, other, inner) for other in others)]
+            remaining = [
+                inner for inner in part.args if not any(_ruled_out(node.op, operand, inner) for operand in rest)
+            ]
             if len(remaining) < len(part.args):
                 return join(node.op, (*node.args[:index], join(inner_op, remaining), *node.args[index + 1 :]))
-        elif part.op == "implies" and node.op == "and" and any(syntactically_implies(x, part.args[0]) for x in others):
+        elif part.op == "implies" and node.op == "and" and any(syntactically_implies(x, part.args[0]) for x in rest):
             return join("and", (*node.args[:index], part.args[1], *node.args[index + 1 :]))
     return node
 

@@ -131,13 +131,13 @@ class Context:
             )
         return atom(name)
 
-    def arithmetic_of(self, expression: Expression, source: SourceFile, span: Span, others: int = 0) -> int:
+    def arithmetic_of(self, expression: Expression, source: SourceFile, span: Span, counted: int = 0) -> int:
         """Return the number of nodes of an expression.
 
-        Raises ResolutionError (TLT0315) if that exceeds the limit together with the ``others``
-        already counted.
+        Raises ResolutionError (TLT0315) if the limit is exceeded together with the ``counted``
+        nodes.
         """
-        left = WORK["arithmetic of all atoms"] - others
+        left = WORK["arithmetic of all atoms"] - counted
         size = sum(1 for _ in islice(nodes(expression), left + 1))
         if size > left:
             raise problem(
