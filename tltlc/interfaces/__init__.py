@@ -1,1 +1,1 @@
-"""What people and editors use: the command line, the language server and the playground."""
+"""The user interfaces: the command line, the language server and the playground."""

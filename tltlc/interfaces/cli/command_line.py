@@ -1,7 +1,8 @@
-"""The command line: finds a command, runs it, and turns every way to fail into a message and an exit status.
+"""The command line: finds and runs a command, and turns failures into messages and exit statuses.
 
-A command is a module of :mod:`tltlc.interfaces.cli.commands`; other distributions add theirs through the
-entry-point group ``tltlc.commands``, each entry a click command.  Neither is loaded before it is named.
+Each built-in command is a module of :mod:`tltlc.interfaces.cli.commands`. Other distributions add
+commands through the entry-point group ``tltlc.commands``; each entry is a click command. A command
+is loaded only when it is named.
 """
 
 from __future__ import annotations
@@ -44,7 +45,10 @@ BUILT_IN: Final = {
 }
 
 BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
-"""The commands whose work ends with the files that they read; others bound the parts of theirs that do."""
+"""Commands that run entirely within the limits of processor time and memory.
+
+Others limit only parts of their work.
+"""
 
 OF_THE_RUNTIME: Final = {
     "demonstrate": "Have the scripted expert play a level, and record it.",
@@ -58,10 +62,13 @@ OF_THE_RUNTIME: Final = {
     "baseline": "Record the figures that a suite is judged against.",
     "table1": "Train and play what the paper's Table I is of, and print ours beside it.",
 }
-"""Commands that come with tltlc and need an extra; they are entry points like those of others."""
+"""Commands that ship with tltlc but need an extra.
+
+They are entry points, like the commands of plugins.
+"""
 
 ENTRY_POINTS: Final = "tltlc.commands"
-"""The group of commands of other distributions."""
+"""The entry-point group for commands of other distributions."""
 
 COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
 
@@ -70,38 +77,41 @@ class CommandLine(click.Group):
     """The group of all commands."""
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
-        """Run and exit; messages go to standard error, and never is there a traceback."""
+        """Run the command and exit. Messages go to standard error; a traceback never appears."""
         exits.heard.clear()
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
-                # A terminal that cannot show ∧ gets an escape, not a crash.
+                # A terminal that cannot show ∧ gets an escape sequence instead of a crash.
                 stream.reconfigure(errors="backslashreplace")
-        # The process is this command, and nothing else, where the arguments are its own.
+        # `obj` tells whether the arguments are those of the process, which then runs nothing but this command.
         extra.update(obj=args is None, prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
         try:
             status = super().main(None if args is None else list(args), **extra) or 0
             sys.stdout.flush()
         except (Exception, OutOfTimeError) as error:
-            status = exits.report(_of_completion(error))
+            status = exits.report(_completion_error(error))
         exits.flush()
         sys.exit(status)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """As click does, but `-:NAME` is no option; the help where nothing is asked for, which is wrong usage."""
+        """Parse like click, but accept ``-:NAME`` as an argument.
+
+        Without arguments, print the help and exit with the status for wrong usage.
+        """
         if not args and not ctx.resilient_parsing:
             click.echo(ctx.get_help(), err=True)
             raise exits.StopQuietlyError(exits.USAGE)
         if any(text.startswith("-:") for text in args):
-            # A spec of standard input: click would take the hyphen for the start of options.
+            # It names a spec of standard input; click would parse it as short options.
             from tltlc.io.spec_file import STDIN_NAME
 
             args = [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args]
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; click would answer these two with a status of its own.
+        """Run the command, and record the files it reads so that none of them is overwritten.
 
-        What the command reads is noted, so that none of it is written over.
+        A closed pipe and Ctrl-C get our exit statuses instead of click's.
         """
         from tltlc.io.files import noted
 
@@ -110,7 +120,7 @@ class CommandLine(click.Group):
                 return super().invoke(ctx)
         except click.UsageError as error:
             if error.ctx is None and ctx.invoked_subcommand is not None:
-                # click's parser of options does not know which command it serves.
+                # click's option parser does not know which command it parses for.
                 command = self.get_command(ctx, ctx.invoked_subcommand)
                 if command is not None:
                     error.ctx = click.Context(command, parent=ctx, info_name=ctx.invoked_subcommand)
@@ -121,15 +131,15 @@ class CommandLine(click.Group):
             raise exits.StopQuietlyError(exits.interrupted()) from None
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The names of the commands, those of other distributions last."""
+        """Return the names of all commands; commands of other distributions come last."""
         return [*BUILT_IN, *sorted(plugin.name for plugin in plugins.find(ENTRY_POINTS) if plugin.name not in BUILT_IN)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of that name, loaded."""
+        """Load and return the command with this name, or None."""
         if cmd_name in BUILT_IN:
             from importlib import import_module
 
-            # A reserved word of Python is no name for a module.
+            # A module cannot be named like a Python keyword.
             module = f"tltlc.interfaces.cli.commands.{cmd_name}{'_' if iskeyword(cmd_name) else ''}"
             command: click.Command = import_module(module).command
             return command
@@ -142,7 +152,7 @@ class CommandLine(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """As click does, with a suggestion where there is no such command."""
+        """Resolve like click, and suggest a similar name if there is no such command."""
         if args[0].startswith("-") or self.get_command(ctx, args[0]):
             return super().resolve_command(ctx, args)
         from difflib import get_close_matches
@@ -153,18 +163,18 @@ class CommandLine(click.Group):
         )
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of commands, from the table above, so that showing it loads none of them."""
+        """Write the list of commands from the tables above, without loading any command."""
         rows = list(BUILT_IN.items())
         for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
             if plugin.name not in BUILT_IN:
-                said = OF_THE_RUNTIME.get(plugin.name, f"A command of {plugin.module}, from {plugin.distribution}.")
+                summary = OF_THE_RUNTIME.get(plugin.name, f"A command of {plugin.module}, from {plugin.distribution}.")
                 extra = f" (needs the extra {', '.join(plugin.extras)})" if plugin.extras else ""
-                rows.append((plugin.name, f"{said[:-1]}{extra}."))
+                rows.append((plugin.name, f"{summary[:-1]}{extra}."))
         with formatter.section("Commands"):
             formatter.write_dl(rows)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
-        """Completions, from the table above."""
+        """Complete command names from the table above, without loading any command."""
         from click.shell_completion import CompletionItem
 
         names = [CompletionItem(name, help=BUILT_IN.get(name)) for name in self.list_commands(ctx)]
@@ -173,8 +183,8 @@ class CommandLine(click.Group):
         )
 
 
-def _of_completion(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
-    """Wrong usage where click completes a line, and does not find the variables that a shell's script sets."""
+def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
+    """Return the error, or a usage error if the shell script's completion variables are missing."""
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")
     return error
@@ -236,5 +246,5 @@ def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:
 if os.environ.get("TLTLC_DEBUG") == "1":
     import faulthandler
 
-    # A crash or a hang below Python shows where it is.
+    # Show where a crash or a hang below Python happens.
     faulthandler.enable()

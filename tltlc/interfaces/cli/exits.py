@@ -1,4 +1,4 @@
-"""Exit statuses, and the last word on every exception."""
+"""Exit statuses, and the final handling of every exception."""
 
 from __future__ import annotations
 
@@ -41,20 +41,23 @@ _STATUS_OF_CODE: Final = {
     "TLT0800": USAGE,
     "TLT0815": USAGE,
 }
-"""The codes whose exit status is not that of an error in a source text."""
+"""Codes whose exit status is not that of an error in a source text."""
 
 _COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "tomli"}
-"""Modules that come with tltlc, and that an installation by parts may lack."""
+"""Packages that tltlc depends on but that a partial installation may lack."""
 
 
 heard: Final[list[int]] = []
-"""The numbers of the signals that have ended the work of this process, the first one first."""
+"""Numbers of the signals that ended the work of this process, in order of arrival."""
 
 _NO_OUTPUT: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF}
-"""What standard output may say to a write; files that a command names have their own messages."""
+"""Errors that a write to standard output may raise.
+
+Files that a command names have their own messages.
+"""
 
 _NO_LOOK: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
-"""What the system may say of a path at which it is only asked whether something is there."""
+"""Errors that the system may raise when we only check whether a path exists."""
 
 _NO_ROOM: Final = {
     errno.EMFILE: "this process may open no more files",
@@ -62,13 +65,13 @@ _NO_ROOM: Final = {
     errno.EAGAIN: "the system can start no more processes",
     errno.ENOMEM: "there is not enough memory",
 }
-"""What the system lacks, by what it says to whoever asks for a file or a process."""
+"""Message for each error that the system raises for lack of a resource."""
 
 _NO_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?")
 
 
 class StopQuietlyError(Exception):
-    """Ends the command with a status and no message: nobody is there to read one."""
+    """End the command with a status and no message, because no one can read one."""
 
     def __init__(self, status: int) -> None:
         super().__init__(status)
@@ -76,28 +79,34 @@ class StopQuietlyError(Exception):
 
 
 def status_of(diagnostics: Iterable[Diagnostic]) -> int:
-    """The exit status for what was found: the greatest of its errors', whatever their order; 0 where there is none."""
+    """Return the greatest exit status of the errors among diagnostics, or 0 if there is none."""
     errors = (diagnostic.code for diagnostic in diagnostics if diagnostic.severity == "error")
     return max((_STATUS_OF_CODE.get(code, FINDINGS) for code in errors), default=CLEAN)
 
 
 def interrupted() -> int:
-    """The exit status of a command that a signal has ended: 128 and the signal's number, by default that of Ctrl-C."""
+    """Return the exit status after a signal: 128 plus its number.
+
+    Without a recorded signal, it is the status of Ctrl-C.
+    """
     return 128 + heard[0] if heard else INTERRUPTED
 
 
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
-    """The error for a part that is not installed; extras of tltlc itself are installed from its clone."""
+    """Return error TLT0730 for a component that is not installed.
+
+    Its help says how to install it; extras of tltlc itself are installed from its clone.
+    """
     title = f"{wanted_by} needs `{module}`, which is not installed"
     own = requirement.startswith("tltlc[")
-    way_out = f"in the clone of tltlc: pip install -c constraints.txt '{requirement.replace('tltlc', '.')}'"
-    return TltlError([Diagnostic("TLT0730", title, help=way_out if own else f"pip install '{requirement}'")])
+    own_help = f"in the clone of tltlc: pip install -c constraints.txt '{requirement.replace('tltlc', '.')}'"
+    return TltlError([Diagnostic("TLT0730", title, help=own_help if own else f"pip install '{requirement}'")])
 
 
 def report(error: Exception | OutOfTimeError) -> int:
-    """Say on standard error what went wrong and return the exit status."""
+    """Report an error on standard error and return the exit status."""
     if spent := exhausted(error):
-        # What was running keeps its memory for as long as the error says where it was.
+        # The traceback would keep the memory of the interrupted work alive.
         error.__traceback__ = error.__context__ = error.__cause__ = None
         error = spent
     if isinstance(error, BrokenPipeError):
@@ -125,7 +134,7 @@ def report(error: Exception | OutOfTimeError) -> int:
     if isinstance(error, TltlError):
         from tltlc.interfaces.cli.report import show
 
-        # Standard error may be full, too.
+        # Standard error may be full as well.
         with suppress(OSError):
             show(error.diagnostics, "text", sys.stderr)
         return status_of(error.diagnostics)
@@ -133,7 +142,7 @@ def report(error: Exception | OutOfTimeError) -> int:
 
 
 def is_interrupted(error: BaseException | None) -> bool:
-    """Whether an exception is what a library has made of an interrupt."""
+    """Whether an exception is a KeyboardInterrupt, or has one among its causes."""
     while error is not None:
         if isinstance(error, KeyboardInterrupt):
             return True
@@ -142,7 +151,10 @@ def is_interrupted(error: BaseException | None) -> bool:
 
 
 def _lacking(error: BaseException | None) -> str | None:
-    """What the system lacks for this command; None if an exception, or one that led to it, is about something else."""
+    """Return the message for the resource that the system lacks.
+
+    Return None if no exception in the chain is about that.
+    """
     while error is not None:
         if isinstance(error, MemoryError):
             return _NO_ROOM[errno.ENOMEM]
@@ -153,26 +165,29 @@ def _lacking(error: BaseException | None) -> str | None:
 
 
 def _usage(error: click.ClickException) -> Diagnostic:
-    """A complaint about the command line, as a diagnostic."""
-    # click lists choices one a line.
+    """Return a click usage error as a diagnostic."""
+    # click prints one choice per line.
     message = " ".join(error.format_message().rstrip(".").split())
     context = error.ctx if isinstance(error, click.UsageError) else None
     command = context.command_path if context else "tltlc"
-    message = _NO_NUMBER.sub(lambda found: _number_wanted(found[1], found[2]), message)
+    message = _NO_NUMBER.sub(lambda match: _number_wanted(match[1], match[2]), message)
     if message[1:2].islower():
         message = message[0].lower() + message[1:]
     return Diagnostic("TLT0700", message, help=f"`{command} --help` shows how to use it")
 
 
 def _number_wanted(text: str, kind: str) -> str:
-    """What click says in the words of its types."""
+    """Reword click's message about an invalid number; suggest a decimal point for a comma."""
     wanted = f"`{text}` is no {'whole ' if kind == 'integer' else ''}number"
     pointed = text.replace(",", ".", 1)
     return f"{wanted}; write {pointed}" if kind == "float" and re.fullmatch(r"-?\d+\.\d+", pointed) else wanted
 
 
 def flush() -> None:
-    """Flush standard output and drop what it does not take: at the end of Python that would change the exit status."""
+    """Flush standard output and drop what cannot be written.
+
+    Python's own flush would change the exit status.
+    """
     try:
         sys.stdout.flush()
     except (OSError, ValueError):
@@ -196,14 +211,17 @@ def _refused_path(error: OSError) -> TltlError:
 
 
 def _discard_output() -> None:
-    """Let Python's own flush at exit go nowhere: whoever read our output has gone, or is full."""
-    # Where standard output is no file of the system, nothing is flushed to one.
+    """Redirect standard output to the null device, so that Python's flush at exit does not fail."""
+    # Standard output may have no file descriptor.
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _bug(error: BaseException) -> int:
-    """An exception that nobody foresaw: a short reference for the report, the traceback only when asked for."""
+    """Report an unforeseen exception with a short reference.
+
+    Show the traceback only if TLTLC_DEBUG is 1.
+    """
     import traceback
     import zlib
 

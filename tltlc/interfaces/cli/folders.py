@@ -1,4 +1,4 @@
-"""The source files that arguments name: themselves, or those of a folder."""
+"""The source files that arguments name: files themselves, or the files in a folder."""
 
 from __future__ import annotations
 
@@ -15,51 +15,55 @@ if TYPE_CHECKING:
 
 
 def every_source(arguments: Iterable[str], report: Report) -> list[str]:
-    """The files that arguments name, each once, in order; a folder that has none is reported, and left out."""
-    found: dict[str, None] = {}
+    """Return the files that the arguments name, each once, in order.
+
+    Report and skip folders without any.
+    """
+    paths: dict[str, None] = {}
     for argument in arguments:
         try:
-            found.update(dict.fromkeys(sources(argument)))
+            paths.update(dict.fromkeys(sources(argument)))
         except TltlError as error:
             report.add(error.diagnostics)
-    return list(found)
+    return list(paths)
 
 
 def in_folders(arguments: Iterable[str]) -> list[str]:
-    """The source files that are by now in those of the arguments that are folders."""
-    return [file for argument in arguments if _is_folder(argument) for file in _inside(argument)]
+    """Return the source files that are now in those arguments that are folders."""
+    return [file for argument in arguments if _is_folder(argument) for file in _files_inside(argument)]
 
 
 def sources(argument: str) -> list[str]:
-    """The argument itself, or the ``.tltl`` files in a folder and below it, hidden ones left out, in order.
+    """Return the argument itself, or the visible ``.tltl`` files in and below a folder, sorted.
 
-    Errors: TLT0722 where a folder has none, TLT0001 where it cannot be read.
+    Raises TltlError: TLT0722 if a folder contains none, TLT0001 if a folder cannot be read.
     """
     if not _is_folder(argument):
         return [argument]
-    inside = _inside(argument)
-    if not inside:
+    files = _files_inside(argument)
+    if not files:
         raise TltlError([Diagnostic("TLT0722", f"there is no .tltl file in `{argument}`", help="name another folder")])
-    return inside
+    return files
 
 
 def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
-    """The files with these endings in a folder and below it, relative to it, in order.
+    """Return the files with these endings in and below a folder, relative to it and sorted.
 
-    Hidden files are left out, and so are pipes and devices: reading one could take for ever.  Raises TltlError,
-    TLT0001, for a folder that the system does not let us read: without its files an answer could be wrong.
+    Skips hidden files, and pipes and devices, because reading one could block forever. Raises
+    TltlError with TLT0001 for a folder that cannot be read: without its files the result could be
+    wrong.
     """
-    found: list[Path] = []
+    paths: list[Path] = []
     for place, folders, files in walk(folder, onerror=_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        inside = Path(place).relative_to(folder)
-        named = [name for name in files if name.endswith(endings) and not name.startswith(".")]
-        found += [inside / name for name in named if may_be_file(os.path.join(place, name))]  # noqa: PTH118
-    return sorted(found)
+        relative = Path(place).relative_to(folder)
+        wanted = [name for name in files if name.endswith(endings) and not name.startswith(".")]
+        paths += [relative / name for name in wanted if may_be_file(os.path.join(place, name))]  # noqa: PTH118
+    return sorted(paths)
 
 
 def is_free(folder: Path) -> bool:
-    """Whether there is nothing of that name, or an empty folder."""
+    """Whether nothing is at this path, or only an empty folder."""
     try:
         return not os.path.lexists(folder) or not os.listdir(folder)  # noqa: PTH208
     except OSError:
@@ -67,12 +71,12 @@ def is_free(folder: Path) -> bool:
 
 
 def in_the_way(folder: Path, advice: str) -> TltlError:
-    """TLT0722: a folder holds something, and a command makes whole folders only."""
+    """Return TLT0722 for a folder that is not empty but that a command must create."""
     return TltlError([Diagnostic("TLT0722", f"`{folder}` is there already, and not empty", help=advice)])
 
 
 def leads_out(path: str, arguments: Iterable[str]) -> bool:
-    """Whether a file that no argument names is a link out of the folder in which it was found."""
+    """Whether a file that was found in a folder is a link to a place outside the named folders."""
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]
     place = os.path.realpath(path)
@@ -80,12 +84,12 @@ def leads_out(path: str, arguments: Iterable[str]) -> bool:
 
 
 def _unreadable(error: OSError) -> None:
-    # A folder may be removed meanwhile.
+    # A folder may be removed while we search.
     if not isinstance(error, FileNotFoundError):
         raise reading_error(str(error.filename), error)
 
 
-def _inside(folder: str) -> list[str]:
+def _files_inside(folder: str) -> list[str]:
     return [str(Path(folder, file)) for file in below(Path(folder))]
 
 

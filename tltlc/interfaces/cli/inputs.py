@@ -1,4 +1,7 @@
-"""What a command is given, compiled: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input."""
+"""Read and compile the argument of a command.
+
+It is ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ if TYPE_CHECKING:
 
 @record
 class Input:
-    """A compiled argument: its automata in order, and the program unless it is an artefact."""
+    """A compiled argument: its automata in order, and its program unless it is an artefact."""
 
     name: str
     automata: tuple[Fspa, ...]
@@ -30,7 +33,7 @@ class Input:
     diagnostics: tuple[Diagnostic, ...]
 
     def one(self) -> Fspa:
-        """The only automaton; error TLT0721 where there are several or none."""
+        """Return the only automaton; raise TLT0721 if there are several or none."""
         if len(self.automata) == 1:
             return self.automata[0]
         names = [fspa.name for fspa in self.automata]
@@ -40,14 +43,15 @@ class Input:
             else (f"`{self.name}` holds no spec")
         )
         path = STDIN if self.name == STDIN_NAME else self.name
-        way_out = f"name one of them, e.g. `{path}:{names[0]}`" if names else "declare one: `spec NAME { … }`"
-        raise TltlError([Diagnostic("TLT0721", title, help=way_out)])
+        help_ = f"name one of them, e.g. `{path}:{names[0]}`" if names else "declare one: `spec NAME { … }`"
+        raise TltlError([Diagnostic("TLT0721", title, help=help_)])
 
 
 def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> Input:
-    """Read and compile an argument; ``specs`` picks by name beside what the argument itself says.
+    """Read and compile an argument.
 
-    Errors: TltlError with everything that the file's reading and compilation found, at the levels of its project.
+    ``specs`` selects by name, in addition to a name in the argument. Raises TltlError with all
+    diagnostics of reading and compiling, at the levels of the project.
     """
     path, name = split(argument)
     if path.endswith(".toml"):
@@ -63,36 +67,39 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
 
         raise with_way_out(error, path) from None
     if source.text.startswith("HOA:") or path.endswith(".hoa"):
-        raise TltlError([_of_another_tool(source)])
+        raise TltlError([_hoa_diagnostic(source)])
     if is_artefact:
         return _artefact(source, settings, wanted, project)
     from tltlc.pipeline import compile_source
 
     with project.levelling():
         compiled = compile_source(source, compile_settings(settings, project, wanted))
-    found = project.levelled(compiled.diagnostics)
-    stop_at_errors(found)
-    return Input(source.name, compiled.automata, compiled.program, project, found)
+    diagnostics = project.levelled(compiled.diagnostics)
+    stop_at_errors(diagnostics)
+    return Input(source.name, compiled.automata, compiled.program, project, diagnostics)
 
 
 def check_text(source: SourceFile) -> None:
-    """For commands that take source texts alone: error TLT0722 for an artefact, TLT0652 for an automaton of others."""
+    """Check that a source is a source text.
+
+    Raise TLT0722 for an artefact, TLT0652 for a HOA automaton.
+    """
     if source.text.startswith("HOA:"):
-        raise TltlError([_of_another_tool(source)])
+        raise TltlError([_hoa_diagnostic(source)])
     if source.text.lstrip().startswith("{") or source.name.endswith(ARTEFACT_ENDING):
         raise TltlError([no_text(source.name)])
 
 
 def no_text(artefact: str) -> Diagnostic:
-    """The message for an artefact where only a source text will do."""
+    """Return the diagnostic for an artefact where a source text is required."""
     title = f"`{artefact}` is an artefact: it holds an automaton, and no source text"
     return Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")
 
 
-def _of_another_tool(source: SourceFile) -> Diagnostic:
+def _hoa_diagnostic(source: SourceFile) -> Diagnostic:
     title = f"`{source.name}` is an automaton in the Hanoi format, and no spec"
-    way_out = f"`tltlc import {source.name} --predicates LIB.tltl` makes an artefact of it"
-    return Diagnostic("TLT0652", title, help=way_out)
+    help_ = f"`tltlc import {source.name} --predicates LIB.tltl` makes an artefact of it"
+    return Diagnostic("TLT0652", title, help=help_)
 
 
 def _artefact(source: SourceFile, settings: Settings, wanted: tuple[str, ...], project: Project) -> Input:

@@ -1,4 +1,4 @@
-"""Signals end a command in order: Ctrl-C, SIGTERM and SIGHUP clean up, and are never taken for a fault of tltlc."""
+"""Handle Ctrl-C, SIGTERM and SIGHUP: clean up and end the command, and never report a bug."""
 
 from __future__ import annotations
 
@@ -17,30 +17,31 @@ from tltlc.interfaces.cli import exits
 from tltlc.interfaces.cli.main import end_at_once
 
 REQUESTS: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""The signals by which other programs, and a terminal that is closed, ask a process to end."""
+"""The signals that other programs and closing terminals send to end a process."""
 
 _TEMPORARY: Final = "tltlc.io.temporary"
 """The module whose functions must not be interrupted."""
 
 _AGAIN_S: Final = 0.05
-"""From an interrupt that came in the middle of such code to the next attempt."""
+"""Seconds between an interrupt in the middle of such code and the next attempt."""
 
 _PATIENCE_S: Final = 1.0
-"""From the first one to the end of the process, if by then nothing but imports has gone on."""
+"""Seconds of importing after the first interrupt before the process ends without cleaning up."""
 
 _came: Final[dict[int, float]] = {}
-"""When the interrupts came that wait for the end of an import, by their signals."""
+"""Arrival times of interrupts that wait for an import to end, by signal number."""
 
 
 @contextmanager
 def signals_end() -> Iterator[None]:
-    """Within, the process is one command: SIGINT, SIGTERM and SIGHUP end it with 128 and the signal's number.
+    """Let SIGINT, SIGTERM and SIGHUP end the process with 128 plus the signal's number.
 
-    They raise KeyboardInterrupt, so that what was done is kept and temporary files are removed on the way out.  A
-    signal that is ignored, as SIGINT in the background of a shell or SIGHUP under ``nohup``, stays ignored.  A program
-    that is started has the defaults for those that are not ignored.  A forked copy of this process has the defaults for
-    SIGTERM and SIGHUP, but SIGINT still raises KeyboardInterrupt there.  After the command, SIGINT is ignored: its own
-    end has begun.
+    They raise KeyboardInterrupt, so finished work is kept and temporary files are removed. A signal
+    that is already ignored stays ignored, such as SIGINT in a shell's background or SIGHUP under
+    ``nohup``. A program that this process starts has the default handlers, except for ignored
+    signals. A forked copy of this process has the defaults for SIGTERM and SIGHUP, but SIGINT still
+    raises KeyboardInterrupt there. After the command, SIGINT is ignored, because the process is
+    already ending.
     """
     try:
         _listen()
@@ -48,14 +49,14 @@ def signals_end() -> Iterator[None]:
     except KeyboardInterrupt:
         sys.exit(exits.interrupted())
     finally:
-        # Python's own end would turn it into a death by the signal, or into a crash of a library's threads.
+        # During Python's shutdown a SIGINT would kill the process, or crash the threads of a library.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         _stop_listening()
 
 
 def _listen() -> None:
     if hasattr(os, "register_at_fork"):
-        # Programs that are started get the defaults from the system.
+        # exec resets the handlers of started programs; only forked copies need this.
         os.register_at_fork(after_in_child=_stop_listening)
     if signal.getsignal(signal.SIGINT) in (signal.default_int_handler, end_at_once):
         signal.signal(signal.SIGINT, interrupt)
@@ -71,11 +72,11 @@ def _stop_listening() -> None:
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """The handler of a signal: raises KeyboardInterrupt, as soon as no code runs that must not be interrupted.
+    """Handle a signal: raise KeyboardInterrupt as soon as no uninterruptible code runs.
 
-    Half-imported modules turn the exception into errors of their own, or lose it; an import that takes long ends with
-    the process.  Temporary files would stay if the code that makes and removes them were interrupted, by a second
-    signal for instance.
+    Half-imported modules turn the exception into other errors or lose it, so an interrupt waits for
+    imports; if one takes too long, the process ends at once. Code that creates or removes temporary
+    files would leave some behind if it were interrupted, for example by a second signal.
     """
     if not _is_at_temporary_files(frame):
         if not _is_importing(frame):
@@ -90,22 +91,22 @@ def interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def _end(status: int) -> NoReturn:
-    """End at once, with what was printed."""
+    """Flush the standard streams and end the process at once."""
     for stream in (sys.stdout, sys.stderr):
-        # Whoever reads it may have gone.
+        # The reader may be gone.
         with suppress(OSError, ValueError):
             stream.flush()
     os._exit(status)
 
 
 def _is_importing(frame: FrameType | None) -> bool:
-    return any(each.f_code.co_filename.startswith("<frozen importlib") for each in _stack(frame))
+    return any(caller.f_code.co_filename.startswith("<frozen importlib") for caller in _stack(frame))
 
 
 def _is_at_temporary_files(frame: FrameType | None) -> bool:
-    """Whether temporary files are made or removed now, or a ``with`` that may do so is about to begin or end."""
+    """Whether code runs that manages temporary files, or that enters or leaves a ``with``."""
     is_at_with = frame is not None and frame.f_globals.get("__name__") == "contextlib"
-    return is_at_with or any(each.f_globals.get("__name__") == _TEMPORARY for each in _stack(frame))
+    return is_at_with or any(caller.f_globals.get("__name__") == _TEMPORARY for caller in _stack(frame))
 
 
 def _stack(frame: FrameType | None) -> Iterator[FrameType]:
@@ -119,5 +120,5 @@ def _send_again(number: int) -> None:
     if sys.platform == "win32" or ident is None:
         interrupt_main(signal.Signals(number))
     else:
-        # Ends a wait for the system, too.
+        # This also ends a blocking system call.
         signal.pthread_kill(ident, number)

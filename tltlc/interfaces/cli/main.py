@@ -1,6 +1,6 @@
-"""The entry point, which imports nothing by itself: Ctrl-C is to be handled before anything slow begins.
+"""The entry point; imports nothing itself, so Ctrl-C is handled before anything slow starts.
 
-Python's own handler prints a traceback, and raises in the middle of whatever is being imported.
+Python's own handler would print a traceback, and raise in the middle of an import.
 """
 
 TYPE_CHECKING = False
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 def main(arguments: "Sequence[str] | None" = None) -> "NoReturn":
     """Run the command line and exit with its status.
 
-    Without ``arguments``, take those of the process, and handle its signals and its standard streams.
+    Without ``arguments``, use the arguments of the process, and manage its signals and standard
+    streams.
     """
     if arguments is None:
         _run_process()
@@ -23,7 +24,7 @@ def main(arguments: "Sequence[str] | None" = None) -> "NoReturn":
 
 
 def end_at_once(number: int = 2, frame: "FrameType | None" = None) -> "NoReturn":
-    """Handle Ctrl-C while the command line is being loaded: nothing has been done yet, so nothing needs to be kept."""
+    """Handle Ctrl-C while the command line is loading, when there is no work to keep yet."""
     import os
 
     os._exit(128 + number)
@@ -44,12 +45,15 @@ def _run_process() -> "NoReturn":
         with signals_end():
             cli.main()
     except KeyboardInterrupt:
-        # It came before the first handler was there, or behind the last one.
+        # It came before our handler was installed, or after it was removed.
         raise SystemExit(_interrupted()) from None
 
 
 def _interrupted() -> int:
-    """The exit status for the signal that came; before the command line was loaded, only Ctrl-C raises anything."""
+    """Return the exit status for the signal.
+
+    Before the command line is loaded, only Ctrl-C can raise.
+    """
     import sys
 
     exits = sys.modules.get("tltlc.interfaces.cli.exits")

@@ -1,4 +1,4 @@
-"""Numbers on the command line: whole ones of a size that every part computes with, others finite."""
+"""Number types for command-line options: bounded whole numbers and finite floats."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Final, NoReturn
 import click
 
 LARGEST: Final = 2**62
-"""Sums of two fit into 64 bits."""
+"""The sum of two such numbers fits into 64 bits."""
 _MOST_DIGITS: Final = 20
 
 
@@ -16,10 +16,10 @@ class WholeRange(click.IntRange):
     """A whole number in a range, at most :data:`LARGEST`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number."""
+        """Return the number."""
         text = str(value).strip()
         digits = text.lstrip("+-").lstrip("0")
-        # Python refuses to read thousands of digits.
+        # Python refuses to parse thousands of digits.
         if len(digits) > _MOST_DIGITS and digits.isdecimal():
             self._fail(f"{text[:_MOST_DIGITS]}…", param, ctx)
         number = super().convert(value, param, ctx)
@@ -32,10 +32,10 @@ class WholeRange(click.IntRange):
 
 
 class FiniteRange(click.FloatRange):
-    """A finite number in a range, of which `nan` is neither below nor above."""
+    """A finite number in a range; click's own range check accepts `nan`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number."""
+        """Return the number."""
         number = super().convert(value, param, ctx)
         if not isfinite(number):
             self.fail("write a number", param, ctx)

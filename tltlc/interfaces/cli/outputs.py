@@ -1,4 +1,4 @@
-"""The options and the writing that all commands share which make files of automata."""
+"""Options and file writing shared by all commands that generate files from automata."""
 
 from __future__ import annotations
 
@@ -31,19 +31,23 @@ target_option = click.option(
 
 
 def targets_of(lists: Iterable[str]) -> list[str]:
-    """The targets that are asked for; raises TltlError, TLT0710, for one that there is not."""
+    """Return the names in comma-separated lists of targets.
+
+    Raise TltlError, TLT0710, for an unknown one.
+    """
     from tltlc import backends
 
-    asked = [name.strip() for names in lists for name in names.split(",")]
-    for target in asked:
+    targets = [name.strip() for names in lists for name in names.split(",")]
+    for target in targets:
         backends.target(target)
-    return asked
+    return targets
 
 
 def files_of(automata: Iterable[Fspa], asked: Sequence[str], project: Project, report: Report) -> Files:
-    """The files of what is asked for of each automaton, else of the project's targets, else of the usual ones.
+    """Generate the files of each automaton for the requested targets.
 
-    Raises click.UsageError where two targets write the same file.
+    If none are requested, use the targets of the project, or else the default targets. Raises
+    click.UsageError if two targets write the same file.
     """
     from tltlc import backends
 
@@ -65,9 +69,9 @@ def files_of(automata: Iterable[Fspa], asked: Sequence[str], project: Project, r
 
 
 def write_and_tell(folder: Path, files: Files, report: Report, advice: str = "name another folder with -o") -> None:
-    """Write all of the files or none, and tell of each that has changed.
+    """Write all of the files or none, and report each one that changed.
 
-    Raises TltlError: TLT0005 or TLT0700, with ``advice``, as :func:`tltlc.io.writing.write_files` does.
+    Raises TltlError: TLT0005 or TLT0700 with ``advice``, like :func:`tltlc.io.writing.write_files`.
     """
     from tltlc.io.writing import write_files
 

@@ -8,14 +8,15 @@ from typing import Any, Final, Literal
 import click
 
 STDOUT: Final = "-"
-"""The path that stands for standard output where a command writes one text."""
+"""The path that means standard output for commands that write one text."""
 
 
 class OutputPath(click.Path):
-    """A file or a folder to write to: ``-`` means standard output where ``stdout`` is set, and is refused elsewhere.
+    """A file or folder to write to.
 
-    ``kind`` is what it must be if something is there already; "place" is either.  Without ``checked``, the writing
-    itself reports something else that is there, with TLT0005.
+    ``-`` means standard output if ``stdout`` is set; else it is refused. ``kind`` is what an
+    existing path must be; "place" allows both. Without ``checked``, an existing path of the other
+    kind is reported only on writing, with TLT0005.
     """
 
     def __init__(
@@ -24,7 +25,7 @@ class OutputPath(click.Path):
         super().__init__(
             path_type=Path,
             allow_dash=stdout,
-            # One may write into a folder that one must not list.
+            # A folder may be writable without being readable.
             readable=False,
             file_okay=not checked or kind != "folder",
             dir_okay=not checked or kind != "file",
@@ -33,15 +34,19 @@ class OutputPath(click.Path):
         self.stdout = stdout
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path; of a file with the name ``-``, which is written ``./-``, the absolute one."""
+        """Return the path.
+
+        For a file named ``-``, written ``./-``, return the absolute path, because ``-`` means
+        standard output.
+        """
         if value == STDOUT and not self.stdout:
             kind = "file or a folder" if self.kind == "place" else self.kind
-            # Where one is needed, standard output is none.
+            # This option needs a file or folder, which standard output is not.
             self.fail(f"a {kind} is needed, and `-` is none (`./-` is one of that name)", param, ctx)
         path = Path(super().convert(value, param, ctx))  # type: ignore[arg-type] # `path_type` makes it one
         return Path.cwd() / path if str(path) == STDOUT != value else path
 
 
 def is_stdout(path: Path | None) -> bool:
-    """Whether a path that :class:`OutputPath` has read stands for standard output."""
+    """Whether a path that :class:`OutputPath` parsed means standard output."""
     return path is not None and str(path) == STDOUT

@@ -1,4 +1,7 @@
-"""What other distributions, or parts that need an extra, add to the command line through entry points."""
+"""Find and load the entry points that extend the command line.
+
+They belong to other distributions, or to parts of tltlc that need an extra.
+"""
 
 from __future__ import annotations
 
@@ -26,18 +29,24 @@ class Plugin:
 
 
 def find(group: str) -> tuple[Plugin, ...]:
-    """The entry points of a group, none of them loaded; of distributions of one name, those of the first count."""
-    found: dict[tuple[str, str], Plugin] = {}
+    """Return the entry points of a group, without loading them.
+
+    If several distributions have the same name, only the first one on ``sys.path`` counts.
+    """
+    entries: dict[tuple[str, str], Plugin] = {}
     first: dict[str, int] = {}
     for index, folder in enumerate(sys.path):
         for plugin in _in_folder(group, folder):
             if first.setdefault(plugin.distribution, index) == index:
-                found.setdefault((plugin.distribution, plugin.name), plugin)
-    return tuple(found.values())
+                entries.setdefault((plugin.distribution, plugin.name), plugin)
+    return tuple(entries.values())
 
 
 def load(plugin: Plugin, wanted_by: str) -> Any:
-    """What an entry point stands for; error TLT0730, with the way to install it, where it lacks a component."""
+    """Import what an entry point names.
+
+    Raise TLT0730, with installation help, if a component is missing.
+    """
     from functools import reduce
     from importlib import import_module
 
@@ -50,7 +59,10 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
 
 
 def of_levels(name: str, wanted_by: str) -> Any:
-    """What knows levels under that name, of the group ``tltlc.levels``; error TLT0730 where it is not installed."""
+    """Load the entry point of group ``tltlc.levels`` with this name.
+
+    Raise TLT0730 if it is not installed.
+    """
     for plugin in find("tltlc.levels"):
         if plugin.name == name:
             return load(plugin, wanted_by)
@@ -58,7 +70,10 @@ def of_levels(name: str, wanted_by: str) -> Any:
 
 
 def _in_folder(group: str, folder: str) -> Iterator[Plugin]:
-    """The entry points that installed distributions have there: asking importlib.metadata costs 16 ms."""
+    """Yield the entry points of distributions in a folder.
+
+    Using importlib.metadata would take 16 ms.
+    """
     try:
         names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
     except OSError:
@@ -87,7 +102,7 @@ def _in_text(group: str, text: str, distribution: str) -> Iterator[Plugin]:
 
 
 def _in_archive(group: str, path: str) -> Iterator[Plugin]:
-    """What is inside an archive, only importlib.metadata can say."""
+    """Yield the entry points in an archive, which only importlib.metadata can read."""
     from importlib.metadata import distributions
 
     for distribution in distributions(path=[path]):

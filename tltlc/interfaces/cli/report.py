@@ -1,4 +1,4 @@
-"""Showing diagnostics in the format that the user chose, and the exit status that follows."""
+"""Show diagnostics in the format that the user chose, and compute the resulting exit status."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
 
 _MOST_ALIKE: Final = 20
-"""At most this many diagnostics of one code in one file are shown to people at a time."""
+"""The text format shows at most this many diagnostics with the same code in the same file."""
 
 
 class Report:
-    """Collects what a command finds; as a context, ends the command at the first :class:`TltlError`.
+    """Collects the diagnostics of a command; as a context, ends it at the first TltlError.
 
-    What was found before is not told again: two files may import a third one, of which there is something to say.
-    Text is shown at once, on standard error.  The formats for machines are one document per run,
-    shown at the end: on standard output, or on standard error for commands that put results there.
+    Each diagnostic is reported once, even if two files import the file that it is about. The text
+    format is shown at once, on standard error. Machine formats form one document per run, which is
+    shown at the end: on standard output, or on standard error for commands that print results.
     ``status`` is the exit status.
     """
 
@@ -33,10 +33,10 @@ class Report:
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show (or keep for the end) what was found."""
-        new = tuple(each for each in dict.fromkeys(diagnostics) if each not in self.found)
+        """Show diagnostics that are new, or keep them for the final document."""
+        new = tuple(diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic not in self.found)
         if self.format == "text":
-            # A full standard error changes no verdict.
+            # A full standard error must not change the exit status.
             with suppress(OSError):
                 if self.found and new:
                     print(file=sys.stderr)
@@ -45,7 +45,7 @@ class Report:
         self.status = max(self.status, exits.status_of(new))
 
     def say(self, text: str) -> None:
-        """Narration: a line on standard error, only beside diagnostics for people."""
+        """Print a progress message on standard error; the machine formats omit it."""
         if self.format == "text":
             from tltlc.diagnostics.shortening import short_text
 
@@ -68,29 +68,29 @@ class Report:
 
 
 def counted(number: int, noun: str) -> str:
-    """``1 file``, ``2 files``."""
+    """Return a number with its noun: ``1 file``, ``2 files``."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def tally(diagnostics: Iterable[Diagnostic]) -> str:
-    """How many there are of each severity: ``1 error, 2 warnings``; ``nothing to report`` of none."""
-    severities = [each.severity for each in diagnostics]
+    """Count diagnostics by severity: ``1 error, 2 warnings``, or ``nothing to report``."""
+    severities = [diagnostic.severity for diagnostic in diagnostics]
     counts = [(severities.count(severity), severity) for severity in ("error", "warning", "note")]
     return ", ".join(counted(number, severity) for number, severity in counts if number) or "nothing to report"
 
 
 def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None:  # noqa: A002
-    """Write diagnostics to a stream; in colour only for people at a terminal.
+    """Write diagnostics to a stream; use colour only for text at a terminal.
 
-    Text has the first 20 of each code in a file, and says how many more there are. Formats for machines have all.
+    Text shows the first 20 of each code in a file and counts the rest. Machine formats show all.
     """
-    found = tuple(diagnostics)
-    if not found and format == "text":
+    all_diagnostics = tuple(diagnostics)
+    if not all_diagnostics and format == "text":
         return
     from tltlc.diagnostics.formats.text import visible
     from tltlc.diagnostics.render import render
 
-    shown, left_out = _first(found) if format == "text" else (found, Counter[_Alike]())
+    shown, left_out = _first(all_diagnostics) if format == "text" else (all_diagnostics, Counter[_Alike]())
     text = render(shown, format, color=format == "text" and wants_colour(stream))
     stream.write(text if text.endswith("\n") or not text else text + "\n")
     for (severity, code, file), count in left_out.items():
@@ -100,22 +100,22 @@ def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None
 
 
 _Alike = tuple[str, str, str]
-"""Severity, code and file of diagnostics."""
+"""Severity, code and file of a diagnostic; diagnostics that share them are counted together."""
 
 
-def _first(found: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
-    """The first diagnostics of each code in each file, and how many of them are left out."""
+def _first(diagnostics: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
+    """Return the first diagnostics of each code in each file, and how many of each are left out."""
     counts: Counter[_Alike] = Counter()
     shown = []
-    for each in found:
-        alike = each.severity, each.code, each.labels[0].source.name if each.labels else ""
+    for diagnostic in diagnostics:
+        alike = diagnostic.severity, diagnostic.code, diagnostic.labels[0].source.name if diagnostic.labels else ""
         counts[alike] += 1
         if counts[alike] <= _MOST_ALIKE:
-            shown.append(each)
+            shown.append(diagnostic)
     left_out = Counter({alike: count - _MOST_ALIKE for alike, count in counts.items() if count > _MOST_ALIKE})
     return tuple(shown), left_out
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Whether colour helps here: a terminal that can, and no NO_COLOR in the environment."""
+    """Whether to use colour: the stream is a capable terminal, and NO_COLOR is not set."""
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

@@ -1,4 +1,4 @@
-"""The options that every command on a source file shares, and what they come to beside a project file."""
+"""The options of all commands on source files, and how they combine with a project file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @record
 class Settings:
-    """What the command line says of where and how to compile; ``libraries`` before those of the project file."""
+    """Where and how to compile, from the command line.
+
+    ``libraries`` come before those of the project file.
+    """
 
     libraries: tuple[Path, ...] = ()
     params: Mapping[str, str] = EMPTY
@@ -84,7 +87,7 @@ format_option = click.option(
 
 
 def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
-    """How to compile a file of a project; ``specs`` picks by name."""
+    """Return the options to compile a file of a project; ``specs`` selects by name."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.pipeline import CompileOptions
 
@@ -97,7 +100,7 @@ def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...
 
 
 def work_of(settings: Settings) -> int:
-    """The steps that a search or a comparison may take: as many as an automaton over infinite traces."""
+    """Return the steps that a search may take, as many as for an automaton over infinite traces."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.infinite.work import STEPS_PER_STATE
 
@@ -105,7 +108,7 @@ def work_of(settings: Settings) -> int:
 
 
 def check_libraries(libraries: tuple[Path, ...]) -> None:
-    """Error TLT0001 for a library folder that is none."""
+    """Raise TLT0001 for a library folder that does not exist."""
     for folder in libraries:
         if not is_dir(folder):
             title = f"the library folder `{folder}` is not there"
@@ -113,13 +116,16 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
 
 
 def assignments(written: tuple[str, ...], form: str, option: str) -> dict[str, str]:
-    """What ``NAME=VALUE`` says, of each; raises click.BadParameter where one is not of that ``form``, or set twice."""
-    found: dict[str, str] = {}
+    """Parse ``NAME=VALUE`` texts.
+
+    Raise click.BadParameter for a wrong form or a name that is set twice.
+    """
+    values: dict[str, str] = {}
     for text in written:
         name, equals, value = map(str.strip, text.partition("="))
         if not equals or not name or not value:
             raise click.BadParameter(f"`{text}` is not of the form {form}", param_hint=option)
-        if name in found:
+        if name in values:
             raise click.BadParameter(f"`{name}` is set twice", param_hint=option)
-        found[name] = value
-    return found
+        values[name] = value
+    return values

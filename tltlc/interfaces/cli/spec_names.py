@@ -1,4 +1,4 @@
-"""Where a spec is declared whose name was given in the place of a file."""
+"""Find the spec that was meant when its name was given in place of a file."""
 
 from __future__ import annotations
 
@@ -18,23 +18,26 @@ _MOST_NAMED: Final = 3
 
 
 def with_way_out(error: TltlError, argument: str) -> TltlError:
-    """The error for an argument that is no file, which names what was meant: a file, or a spec as ``FILE:NAME``."""
+    """Suggest ``NAME.tltl`` or ``FILE:NAME`` in the error for an argument that is not a file."""
     if exists(argument):
         return error
     if is_file(f"{argument}.tltl"):
-        meant = [f"{argument}.tltl"]
+        suggestions = [f"{argument}.tltl"]
     elif is_plain_name(argument):
-        meant = [f"{path}:{argument}" for path in islice(_declaring(argument), _MOST_NAMED)]
+        suggestions = [f"{path}:{argument}" for path in islice(_declaring(argument), _MOST_NAMED)]
     else:
-        meant = []
-    if not meant:
+        suggestions = []
+    if not suggestions:
         return error
-    way_out = f"did you mean {' or '.join(f'`{each}`' for each in meant)}?"
-    return TltlError([replace(each, help=way_out) for each in error.diagnostics])
+    help_ = f"did you mean {' or '.join(f'`{suggestion}`' for suggestion in suggestions)}?"
+    return TltlError([replace(diagnostic, help=help_) for diagnostic in error.diagnostics])
 
 
 def _declaring(name: str) -> Iterator[Path]:
-    """The files in the current folder and below that declare a spec of that name; of many, some are looked at."""
+    """Yield files in and below the current folder that declare a spec of this name.
+
+    The search is limited.
+    """
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import SpecDecl
 
@@ -45,13 +48,15 @@ def _declaring(name: str) -> Iterator[Path]:
             continue
         if name in source.text:
             module, _ = parse(source)
-            if any(isinstance(each, SpecDecl) and each.name == name for each in module.declarations):
+            if any(
+                isinstance(declaration, SpecDecl) and declaration.name == name for declaration in module.declarations
+            ):
                 yield path
 
 
 def _files() -> Iterator[Path]:
-    """Source files, those of the current folder first; hidden ones, pipes and devices are left out."""
+    """Yield visible source files, those of the current folder first; skip pipes and devices."""
     for place, folders, files in islice(walk("."), _MOST_FOLDERS):
-        folders[:] = sorted(each for each in folders if not each.startswith("."))
-        named = (Path(place, each) for each in sorted(files) if each.endswith(".tltl") and not each.startswith("."))
-        yield from filter(may_be_file, named)
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        paths = (Path(place, name) for name in sorted(files) if name.endswith(".tltl") and not name.startswith("."))
+        yield from filter(may_be_file, paths)

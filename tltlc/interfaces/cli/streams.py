@@ -1,6 +1,7 @@
-"""Start with all three standard streams, whichever of them the caller has closed.
+"""Make sure that all three standard streams are open, even if the caller closed some.
 
-Without this, the next file that is opened gets the number of the closed stream, and what is printed lands in that file.
+Without this, the next file that is opened gets the number of the closed stream, and printed text
+ends up in that file.
 """
 
 from __future__ import annotations
@@ -12,14 +13,16 @@ from typing import Final
 _MODES: Final = (os.O_RDONLY, os.O_RDONLY, os.O_WRONLY)
 """How the null device is opened in place of standard input, output and error.
 
-Writing to standard output then fails, so that a command whose result is lost says so; messages are lost in silence.
+Standard output is opened for reading, so writing to it fails and a command whose result would be
+lost reports an error. Messages to standard error are lost silently.
 """
 
 
 def open_missing_streams() -> None:
     """Open the null device in place of each standard stream that is closed.
 
-    ``sys.stdin`` stays None where standard input is closed: :mod:`tltlc.io.spec_file` reports that where it is read.
+    If standard input is closed, ``sys.stdin`` stays None; :mod:`tltlc.io.spec_file` reports that on
+    reading.
     """
     opened = {number: _open(number, mode) for number, mode in enumerate(_MODES) if not _is_open(number)}
     if sys.stdout is None:
@@ -37,10 +40,10 @@ def _is_open(number: int) -> bool:
 
 
 def _open(number: int, mode: int) -> int:
-    """The null device under that number, which child processes inherit, too."""
-    opened = os.open(os.devnull, mode)
-    if opened != number:
-        os.dup2(opened, number)
-        os.close(opened)
+    """Open the null device under this file descriptor number, which child processes inherit."""
+    descriptor = os.open(os.devnull, mode)
+    if descriptor != number:
+        os.dup2(descriptor, number)
+        os.close(descriptor)
     os.set_inheritable(number, True)
     return number

@@ -1,4 +1,4 @@
-"""Doing a command's work again whenever a file changes that it depends on."""
+"""Repeat the work of a command whenever a file that it depends on changes."""
 
 from __future__ import annotations
 
@@ -13,28 +13,35 @@ from tltlc.io.files import Stamp, noted, stamp
 from tltlc.io.resources import OutOfTimeError, bounded
 
 PAUSE_S: Final = 0.2
-"""Between two looks at the files.  Editors replace files in steps: a change counts once a second look finds no more."""
+"""Seconds between two looks at the files.
+
+A change counts once the next look finds the same state.
+"""
 
 _MOST_LOOKS: Final = 10
-"""So many looks after the first change it counts anyway: some programs write to a file all the time."""
+"""After this many looks, a change counts anyway: some programs never stop writing."""
 
 
 def repeat(work: Callable[[tuple[str, ...]], None], listed: Callable[[], Iterable[str]] = tuple) -> NoReturn:
-    """Work at once, and again after each change, until something is raised, as Ctrl-C does.
+    """Run ``work`` at once, and again after each change, until something like Ctrl-C is raised.
 
-    ``work`` is given the paths that have changed, the first time none.  The files are those that :mod:`tltlc.io.files`
-    looked for or read the last time, whether they are there or not, and those that ``listed`` says by now.
+    ``work`` receives the paths that changed; the first time, none. The watched files are those that
+    the last run looked for or read through :mod:`tltlc.io.files`, whether they exist or not, and
+    those that ``listed`` returns now.
     """
     changed: tuple[str, ...] = ()
     while True:
         known = frozenset(listed())
         with noted() as before:
-            _done(work, changed)
+            _run_bounded(work, changed)
         changed = _changes(before, known, listed)
 
 
-def _done(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
-    """Work; what took too long or too much is reported, and may be mended by the next change."""
+def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
+    """Run ``work`` within the limits.
+
+    Report the error if it exceeds them, because the next change may fix that.
+    """
     try:
         with bounded():
             work(changed)
@@ -45,8 +52,11 @@ def _done(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> 
 def _changes(
     before: Mapping[str, Stamp], known: frozenset[str], listed: Callable[[], Iterable[str]]
 ) -> tuple[str, ...]:
-    """Wait until files are no longer as they were, and then until they stay as they are, or for some more looks."""
-    found: dict[str, Stamp] = {}
+    """Wait until files change, then until they stay the same or for ``_MOST_LOOKS`` more looks.
+
+    Return their paths.
+    """
+    changed: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()
     due = 0.0
     looks = 0
@@ -55,21 +65,21 @@ def _changes(
         begun = time.monotonic()
         if begun >= due:
             new = tuple(path for path in listed() if path not in known and path not in before)
-            # A large folder is searched less often: for a twentieth of the time at most.
+            # Searching a large folder takes at most a twentieth of the time.
             due = begun + 20 * (time.monotonic() - begun)
-        last, found = found, {path: now for path, was in before.items() if (now := stamp(path)) != was}
-        found.update({path: stamp(path) for path in new})
-        looks += bool(found)
-        if found and (found == last or looks > _MOST_LOOKS):
-            # A file may have been looked at under several paths: the first is the one that messages use.
-            files = {_place(path): path for path in reversed(found)}
-            return tuple(path for path in found if path in files.values())
+        last, changed = changed, {path: now for path, was in before.items() if (now := stamp(path)) != was}
+        changed.update({path: stamp(path) for path in new})
+        looks += bool(changed)
+        if changed and (changed == last or looks > _MOST_LOOKS):
+            # The same file may appear under several paths; messages use the first one.
+            files = {_place(path): path for path in reversed(changed)}
+            return tuple(path for path in changed if path in files.values())
 
 
 def _place(path: str) -> str:
-    """Where a path leads, by one name; error TLT0001 where the current folder has gone."""
+    """Return the real path; raise TLT0001 if the current folder was deleted."""
     try:
         return os.path.realpath(path)
     except FileNotFoundError:
-        title, way_out = "the current folder has been deleted", "start the command again in another one"
-        raise TltlError([Diagnostic("TLT0001", title, help=way_out)]) from None
+        title, help_ = "the current folder has been deleted", "start the command again in another one"
+        raise TltlError([Diagnostic("TLT0001", title, help=help_)]) from None
