@@ -1,1 +1,4 @@
-"""One module per command, loaded when its command is named; each holds one click command, ``command``."""
+"""One module per command, loaded when its command is named.
+
+Each defines one click command, ``command``.
+"""

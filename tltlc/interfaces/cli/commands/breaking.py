@@ -1,4 +1,4 @@
-"""``tltlc breaking``: what changed since a revision, or beside a folder, that others notice."""
+"""``tltlc breaking``: report changes since a revision, or against a folder, that others notice."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.revisions import Tree
 
 _OF_SERVICES: Final = ("github", "sarif")
-"""Formats for services that know the files of now alone."""
+"""Formats for services that only know the current files."""
 
 
 @click.command(
@@ -53,7 +53,7 @@ def command(paths: tuple[str, ...], against: str, settings: Settings, format: st
     for path in paths:
         if path == STDIN or split(path)[1] is not None:
             raise click.UsageError(f"`{path}` is no path: name files and folders")
-    found: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     with Report(format) as report, earlier(against, paths) as old:
 
         def shown(diagnostics: Iterable[Diagnostic], path: str) -> tuple[Diagnostic, ...]:
@@ -68,38 +68,44 @@ def command(paths: tuple[str, ...], against: str, settings: Settings, format: st
                 report.add(shown(error.diagnostics, path))
         for change in followed(changes, work_of(settings)):
             try:
-                of_file = shown(breaking(change, work_of(settings)), change.path)
+                file_diagnostics = shown(breaking(change, work_of(settings)), change.path)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            report.add(of_file)
-            found += of_file
-            if not of_file and os.path.exists(change.path):  # noqa: PTH110 (as below)
+            report.add(file_diagnostics)
+            diagnostics += file_diagnostics
+            if not file_diagnostics and os.path.exists(change.path):  # noqa: PTH110 (as below)
                 report.say(f"{change.path}: nothing has changed that others notice")
-        counts = [sum(each.severity == severity for each in found) for severity in ("error", "warning", "note")]
+        counts = [
+            sum(diagnostic.severity == severity for diagnostic in diagnostics)
+            for severity in ("error", "warning", "note")
+        ]
         report.say("{} breaking, {} changed, {} compatible".format(*counts))
     return report.status
 
 
 def _files(argument: str, old: Tree) -> list[str]:
-    """The argument itself, or the files in a folder that hold specs now or did; error TLT0722 where there are none."""
+    """Return the argument itself, or the spec files that a folder holds or held.
+
+    Raise TLT0722 if there are none.
+    """
     from tltlc.interfaces.cli.folders import below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     folders = [folder for folder in (argument, old.at(argument)) if folder is not None and os.path.isdir(folder)]  # noqa: PTH112
     if not folders:
         return [argument]
-    # The old folder may lie in the new one.
-    found = {path for folder in folders for path in below(Path(folder), SOURCE_ENDINGS)}
-    inside = [path for path in sorted(found) if not old.holds(Path(argument, path))]
-    if not inside:
+    # The old folder may lie inside the new one.
+    candidates = {path for folder in folders for path in below(Path(folder), SOURCE_ENDINGS)}
+    spec_files = [path for path in sorted(candidates) if not old.holds(Path(argument, path))]
+    if not spec_files:
         title = f"there is no spec, library or artefact in `{argument}`"
         raise TltlError([Diagnostic("TLT0722", title, help="name another folder")])
-    return [str(Path(argument, path)) for path in inside]
+    return [str(Path(argument, path)) for path in spec_files]
 
 
 def _change(path: str, old: Tree, settings: Settings) -> Change:
-    """A file as it was and as it is; errors of either version."""
+    """Compile the old and the new version of a file; raise the errors of either."""
     from tltlc.tools.diff.breaking import Change, Version
 
     before = old.at(path)
@@ -111,7 +117,7 @@ def _change(path: str, old: Tree, settings: Settings) -> Change:
 
 
 def _version(path: str, settings: Settings) -> Version:
-    """A file as it stands, compiled."""
+    """Compile a file in its current state."""
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import of_artefact, of_library, of_specs
 

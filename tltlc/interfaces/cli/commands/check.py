@@ -1,4 +1,7 @@
-"""``tltlc check``: everything that compiling would say, and nothing written; with a level, whether it fits."""
+"""``tltlc check``: report everything that compiling would, without writing.
+
+With a level, also report whether the specs fit it.
+"""
 
 from __future__ import annotations
 
@@ -10,24 +13,25 @@ from tltlc.interfaces.cli import plugins
 from tltlc.interfaces.cli.settings import Settings, source_options
 
 LEVELS: Final = "tltlc.levels"
-"""Where a context keeps what checks levels. It is a click command, whose options join those of ``check --level``.
+"""The key in a context for the click command that checks levels.
 
-Its callback is given ``levels`` (as on the command line), ``inputs`` (the compiled arguments), ``settings``, the
-``report``, and the values of its options.
+Its options join those of ``check --level``. Its callback receives ``levels`` (as on the command
+line), ``inputs`` (the compiled arguments), ``settings``, the ``report``, and the values of its
+options.
 """
 
 
 class Check(click.Command):
-    """The command; the options that only levels have are there once ``--level`` is given."""
+    """The command; the options for levels appear once ``--level`` is given."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """As click does, with the options of levels where one is named."""
+        """Parse like click, with the options for levels if one is named."""
         if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
             ctx.meta[LEVELS] = plugins.of_levels("check", "`tltlc check --level`")
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """The options of the command, and those of levels before its ``--help``."""
+        """Return the options of the command, with those for levels before ``--help``."""
         *own, help_ = super().get_params(ctx)
         levels = ctx.meta.get(LEVELS)
         return [*own, *(levels.params if levels else ()), help_]
@@ -81,8 +85,8 @@ def command(
     specs = specs or (() if levels else (".",))
     inputs = []
     with Report(format) as report:
-        every = every_source(specs, report)
-        for spec in every:
+        paths = every_source(specs, report)
+        for spec in paths:
             try:
                 opened = open_input(spec, settings)
             except TltlError as error:
@@ -92,8 +96,8 @@ def command(
             inputs.append(opened)
             if spec in specs and not opened.diagnostics:
                 report.say(f"{opened.name}: {counted(len(opened.automata), 'spec')}, nothing to report")
-        if len(every) > 1 or not set(every).issubset(specs):
-            report.say(f"{counted(len({split(each)[0] for each in every}), 'file')}: {tally(report.found)}")
+        if len(paths) > 1 or not set(paths).issubset(specs):
+            report.say(f"{counted(len({split(path)[0] for path in paths}), 'file')}: {tally(report.found)}")
         if levels and (inputs or not specs):
             context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
     return report.status

@@ -1,4 +1,4 @@
-"""``tltlc compile``: all files of all specs are made first, and only then written."""
+"""``tltlc compile``: generate the files of all specs, then write them all."""
 
 from __future__ import annotations
 
@@ -61,15 +61,15 @@ def command(
         with bounded(), Report(format) as report:
             if changed:
                 report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
-            asked = targets_of(target_lists)
+            targets = targets_of(target_lists)
             files: Files = {}
             sources: dict[str, str] = {}
             for opened in _opened(every_source(specs, report), settings, names, report):
                 if not opened.automata and opened.name not in in_folders(specs):
                     report.say(f"{opened.name}: there is no spec in it")
-                made = files_of(opened.automata, asked, opened.project, report)
-                _check_apart(made, opened.name, sources, is_waiting=bool(changed))
-                files |= made
+                generated = files_of(opened.automata, targets, opened.project, report)
+                _check_apart(generated, opened.name, sources, is_waiting=bool(changed))
+                files |= generated
             if report.status == exits.CLEAN:
                 write_and_tell(folder, files, report)
         return report.status
@@ -78,11 +78,11 @@ def command(
         try:
             status = compile_once(changed)
         except click.UsageError as error:
-            # That two targets write one file may be a matter of what was just written in `tltl.toml`.
+            # The clash of two targets may come from a new edit of `tltl.toml`, so keep waiting for changes.
             if not changed:
                 raise
             status = exits.report(error)
-        # No file that changes would mend the command line.
+        # No change of a file would fix the command line.
         if status in (exits.USAGE, exits.UNREADABLE) and not changed:
             raise exits.StopQuietlyError(status)
         if format == "text":
@@ -99,7 +99,7 @@ def command(
 
 
 def _opened(specs: list[str], settings: Settings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
-    """The arguments that have no errors, compiled; what is found in each is shown."""
+    """Yield the compiled arguments that have no errors; report the diagnostics of each."""
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.inputs import open_input
 
@@ -113,14 +113,15 @@ def _opened(specs: list[str], settings: Settings, names: tuple[str, ...], report
         yield opened
 
 
-def _check_apart(made: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
-    """Note in ``sources`` which source makes which file; error TLT0700 if another one has made a file of that name.
+def _check_apart(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
+    """Record in ``sources`` which source makes which file.
 
-    ``is_waiting`` is whether the command goes on with the next change of a file.
+    Raise TLT0700 if two sources make the same file. ``is_waiting`` is whether the command goes on
+    after the next change of a file.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
-    for name in made:
+    for name in files:
         if name in sources:
             apart = "" if is_waiting else ", or compile each file into a folder of its own, with -o"
             title = f"`{sources[name]}` and `{source}` both make `{name}`"

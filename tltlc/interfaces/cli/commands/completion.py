@@ -1,4 +1,4 @@
-"""``tltlc completion``: the script that teaches a shell to complete commands and options."""
+"""``tltlc completion``: print the script that teaches a shell to complete commands and options."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``tltlc conformance``: specs, traces and expected rows, for monitors in any language to be checked against."""
+"""``tltlc conformance``: write specs, traces and expected rows to check any monitor."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def command(folder: Path) -> int:
     with Report() as report:
         if not is_free(folder) and not is_corpus(folder):
             raise in_the_way(folder, "name another folder with -o, or an empty one")
-        made = files()
-        write_files(folder, made, over_inputs=True)
-        report.say(f"wrote {len(CASES)} cases, {len(made)} files, to {folder}: see {folder / 'README.md'}")
+        contents = files()
+        write_files(folder, contents, over_inputs=True)
+        report.say(f"wrote {len(CASES)} cases, {len(contents)} files, to {folder}: see {folder / 'README.md'}")
     return report.status

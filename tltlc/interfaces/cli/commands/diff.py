@@ -1,4 +1,4 @@
-"""``tltlc diff``: how the specs of two files differ."""
+"""``tltlc diff``: report how the specs of two files differ."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> i
     from tltlc.interfaces.cli.report import Report
     from tltlc.tools.diff.pairs import diff_files
 
-    found: FileDiff | None = None
+    difference: FileDiff | None = None
     with Report(results=True) as report:
         ours, theirs, one_each = _opened(a, b, settings)
-        found = diff_files(
+        difference = diff_files(
             (_shown(a, ours), ours.automata),
             (_shown(b, theirs), theirs.automata),
             one_each=one_each,
@@ -61,16 +61,19 @@ def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> i
         if format == "json":
             from tltlc.tools.diff.diff_json import document
 
-            print(json.dumps(document(found), ensure_ascii=False, indent=2))
+            print(json.dumps(document(difference), ensure_ascii=False, indent=2))
         else:
             from tltlc.tools.diff.text import text
 
-            print(text(found), end="")
-    return report.status or (exits.CLEAN if found and found.is_same else exits.FINDINGS)
+            print(text(difference), end="")
+    return report.status or (exits.CLEAN if difference and difference.is_same else exits.FINDINGS)
 
 
 def _opened(a: str, b: str, settings: Settings) -> tuple[Input, Input, bool]:
-    """Both files, with the specs to be compared, and whether that is one of each, whatever their names."""
+    """Open both files with the specs to compare.
+
+    The flag is whether to compare one spec of each, whatever their names.
+    """
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
         raise click.UsageError("A and B cannot both be standard input")
@@ -83,15 +86,17 @@ def _opened(a: str, b: str, settings: Settings) -> tuple[Input, Input, bool]:
 
 
 def _open(argument: str, settings: Settings) -> Input:
-    """A side as :func:`~tltlc.interfaces.cli.inputs.open_input` reads it; of ``REV:FILE`` the file as it was in that
-    revision.
+    """Open one side; ``REV:FILE`` is the file at that revision.
 
-    Errors: those of :func:`~tltlc.tools.diff.revisions.earlier`, TLT0751 where the revision has no such file.
+    Other arguments are opened by :func:`~tltlc.interfaces.cli.inputs.open_input`.
+
+    Raises the errors of :func:`~tltlc.tools.diff.revisions.earlier`, and TLT0751 if the revision
+    has no such file.
     """
     from tltlc.interfaces.cli.inputs import open_input
 
     path, name = split(argument)
-    revision, file = _of_revision(path)
+    revision, file = _split_revision(path)
     if not revision:
         return open_input(argument, settings)
     from tltlc.tools.diff.revisions import earlier
@@ -99,18 +104,18 @@ def _open(argument: str, settings: Settings) -> Input:
     with earlier(revision, [file]) as old:
         before = old.at(file)
         if before is None:
-            way_out = "name a file that was there, by its path from the current folder"
-            raise TltlError([Diagnostic("TLT0751", f"there is no file `{file}` in `{revision}`", help=way_out)])
-        of_old = replace(settings, libraries=old.libraries(settings.libraries))
+            help_ = "name a file that was there, by its path from the current folder"
+            raise TltlError([Diagnostic("TLT0751", f"there is no file `{file}` in `{revision}`", help=help_)])
+        old_settings = replace(settings, libraries=old.libraries(settings.libraries))
         try:
-            opened = open_input(before if name is None else f"{before}:{name}", of_old)
+            opened = open_input(before if name is None else f"{before}:{name}", old_settings)
         except TltlError as error:
             raise TltlError(old.renamed(error.diagnostics)) from None
         return replace(opened, name=path)
 
 
-def _of_revision(path: str) -> tuple[str, str]:
-    """The revision and the file of ``REV:FILE``; no revision for the path of a file of now."""
+def _split_revision(path: str) -> tuple[str, str]:
+    """Split ``REV:FILE`` into revision and file; a path of a current file has an empty revision."""
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     revision, _, file = path.partition(":")
@@ -121,17 +126,20 @@ def _of_revision(path: str) -> tuple[str, str]:
 
 
 def _declared(a: Input, b: Input) -> Declared:
-    """The ``exclusive`` of both files; an artefact does not say what its file declared."""
+    """Return the ``exclusive`` declarations of both files.
+
+    An artefact has None, because it does not store them.
+    """
     return (a.program.exclusive if a.program else None, b.program.exclusive if b.program else None)
 
 
 def _like(name: str | None, opened: Input) -> Input:
-    """The file with its spec of the name that the other side has, if there is one and it has several."""
-    named = tuple(fspa for fspa in opened.automata if fspa.name == name)
-    return replace(opened, automata=named or opened.automata)
+    """Reduce a file to the spec that has the name on the other side, if there is one."""
+    matches = tuple(fspa for fspa in opened.automata if fspa.name == name)
+    return replace(opened, automata=matches or opened.automata)
 
 
 def _shown(argument: str, opened: Input) -> str:
-    """What the report calls a side."""
+    """Return the name of a side in the report."""
     name = split(argument)[1]
     return opened.name if name is None else f"{opened.name}:{name}"

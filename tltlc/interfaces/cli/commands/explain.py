@@ -1,4 +1,4 @@
-"""``tltlc explain``: a spec in plain words, or the page of an error code."""
+"""``tltlc explain``: explain a spec in plain words, or print the page of an error code."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _specs(argument: str, format: str, settings: Settings) -> int:  # noqa: A002
     from tltlc.interfaces.cli.report import Report
     from tltlc.tools.explain.explanation import explain
 
-    explained: list[Explanation] = []
+    explanations: list[Explanation] = []
     with Report(results=True) as report:
         for path in every_source([argument], report):
             try:
@@ -66,43 +66,48 @@ def _specs(argument: str, format: str, settings: Settings) -> int:  # noqa: A002
                 continue
             report.add(opened.diagnostics)
             formulas = {spec.name: spec.formula for spec in opened.program.specs} if opened.program else {}
-            explained += [explain(fspa, formulas.get(fspa.name)) for fspa in opened.automata]
-        if explained or not report.status:
-            _show(explained, format)
+            explanations += [explain(fspa, formulas.get(fspa.name)) for fspa in opened.automata]
+        if explanations or not report.status:
+            _show(explanations, format)
     return report.status
 
 
-def _show(explained: list[Explanation], format: str) -> None:  # noqa: A002
+def _show(explanations: list[Explanation], format: str) -> None:  # noqa: A002
     if format == "json":
         import json
 
         from tltlc.tools.explain.values import values
 
-        click.echo(json.dumps({"specs": [values(each) for each in explained]}, indent=2, ensure_ascii=False))
+        click.echo(
+            json.dumps({"specs": [values(explanation) for explanation in explanations]}, indent=2, ensure_ascii=False)
+        )
         return
     if format == "markdown":
         from tltlc.tools.explain.markdown import markdown as write
     else:
         from tltlc.tools.explain.text import text as write
-    click.echo("\n".join(write(each) for each in explained), nl=False)
+    click.echo("\n".join(write(explanation) for explanation in explanations), nl=False)
 
 
 def _code(code: str) -> int:
-    """The page of a code; of the beginning of codes, each with its title."""
+    """Print the page of a code.
+
+    For a prefix, list the codes that start with it, with their titles.
+    """
     from tltlc.diagnostics import codes
 
     wanted = re.sub(r"(?i)\A(?:tlt)?", "TLT", code.strip(), count=1)
     if wanted not in codes.codes():
         family = codes.family(wanted)
         if not family:
-            *others, last = (f"`{each}`" for each in codes.nearest(wanted))
-            listed = f"{', '.join(others)} or {last}"
+            *first, last = (f"`{nearest}`" for nearest in codes.nearest(wanted))
+            listed = f"{', '.join(first)} or {last}"
             raise click.UsageError(
                 f"there is no error code `{code}`: did you mean {listed}?", click.get_current_context()
             )
         from tltlc.interfaces.cli.commands.list import show
 
-        show([{"name": each, "doc": codes.title(each)} for each in family])
+        show([{"name": member, "doc": codes.title(member)} for member in family])
         return 0
     text = codes.page(wanted)
     if sys.stdout.isatty():

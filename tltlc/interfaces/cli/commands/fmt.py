@@ -1,4 +1,4 @@
-"""``tltlc fmt``: source files in their one layout."""
+"""``tltlc fmt``: format source files."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
     with Report(results=True) as report:
         for path in every_source(paths or (".",), report):
             try:
-                wanted = style or project_for(path).formatting
+                wanted_style = style or project_for(path).formatting
                 if not check and not diff and leads_out(path, paths or (".",)):
                     report.say(f"{path} is left as it is: it is a link out of the folder")
                     continue
-                is_same = _format(path, wanted, report, check=check, diff=diff)
+                is_same = _format(path, wanted_style, report, check=check, diff=diff)
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
@@ -66,7 +66,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
 
 
 def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -> bool:
-    """Format one file, or say what would change; whether it is in that layout already."""
+    """Format one file, or print what would change; return whether its layout is already correct."""
     from pathlib import Path
 
     from tltlc.interfaces.cli.inputs import check_text
@@ -89,7 +89,7 @@ def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -
         sys.stdout.write(unified(source.name, data.decode(), formatted, color=wants_colour(sys.stdout)))
     if not check and not diff:
         if path == STDIN:
-            # The text is UTF-8, whatever the terminal says.
+            # The text is UTF-8, whatever encoding the terminal has.
             sys.stdout.buffer.write(formatted.encode())
         elif not is_same:
             rewrite(Path(path), formatted)

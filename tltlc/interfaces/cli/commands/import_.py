@@ -1,4 +1,4 @@
-"""``tltlc import``: an automaton of another tool becomes an artefact."""
+"""``tltlc import``: turn the automaton of another tool into an artefact."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def command(
 
     atoms = assignments(given, "AP=PREDICATE", "--atom")
     with Report(format) as report:
-        asked = targets_of(target_lists)
+        targets = targets_of(target_lists)
         check_libraries(settings.libraries)
         project = project_for(predicates)
         source = read_text(file, MAX_ARTEFACT_BYTES)
@@ -95,10 +95,10 @@ def command(
         budget = settings.state_budget or DEFAULT_STATE_BUDGET
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
         with project.levelling():
-            fspa, found = load(source, library, options)
-        found = project.levelled(found)
-        stop_at_errors(found)
-        report.add(found)
+            fspa, diagnostics = load(source, library, options)
+        diagnostics = project.levelled(diagnostics)
+        stop_at_errors(diagnostics)
+        report.add(diagnostics)
         advice = "name another folder with -o, or another spec with --name"
-        write_and_tell(folder, files_of([fspa], asked, project, report), report, advice)
+        write_and_tell(folder, files_of([fspa], targets, project, report), report, advice)
     return report.status

@@ -1,4 +1,4 @@
-"""``tltlc lint``: what compiles and yet may not say what was meant, with fixes."""
+"""``tltlc lint``: report what compiles but may not mean what the author intended, with fixes."""
 
 from __future__ import annotations
 
@@ -45,26 +45,31 @@ def command(paths: tuple[str, ...], fixing: bool, settings: Settings, format: st
     from tltlc.tools.lint.neighbours import neighbours
 
     with Report(format) as report:
-        every = every_source(paths or (".",), report)
-        others = {path: words(str(path), text) for path, text in neighbours(every).items()}
-        for path in every:
+        files = every_source(paths or (".",), report)
+        neighbour_words = {path: words(str(path), text) for path, text in neighbours(files).items()}
+        for path in files:
             try:
-                mending = fixing and not leads_out(path, paths or (".",))
-                if fixing and not mending:
+                can_fix = fixing and not leads_out(path, paths or (".",))
+                if fixing and not can_fix:
                     report.say(f"{path} is left as it is: it is a link out of the folder")
-                found = _of_file(path, used_elsewhere(path, others.values()), mending, settings, report)
+                diagnostics = _lint_file(
+                    path, used_elsewhere(path, neighbour_words.values()), can_fix, settings, report
+                )
             except TltlError as error:
-                found = error.diagnostics
-            report.add(found)
-        if len(every) > 1 or not report.found:
-            report.say(f"{counted(len(every), 'file')}: {tally(report.found)}")
+                diagnostics = error.diagnostics
+            report.add(diagnostics)
+        if len(files) > 1 or not report.found:
+            report.say(f"{counted(len(files), 'file')}: {tally(report.found)}")
     return report.status or _status(report.found)
 
 
-def _of_file(
+def _lint_file(
     path: str, elsewhere: Container[str], fixing: bool, settings: Settings, report: Report
 ) -> tuple[Diagnostic, ...]:
-    """What is left to be said of a file, mended before where that is asked for; others may use the names elsewhere."""
+    """Lint a file, and fix it first if ``fixing``; return the remaining diagnostics.
+
+    ``elsewhere`` has the names that other files may use.
+    """
     from pathlib import Path
 
     from tltlc.interfaces.cli.inputs import check_text
@@ -84,18 +89,18 @@ def _of_file(
     with project.levelling():
         if not fixing:
             return _diagnostics(lint(source, options, elsewhere, project.lint))
-        mended = fix(source, options, project.lint, elsewhere)
-    if mended.source != source:
-        rewrite(Path(path), mended.source.text)
-    for each in mended.fixed:
-        label = each.labels[0]
-        report.say(f"fixed {label.source.name}:{label.source.position(label.span.start)[0]}: {each.title}")
-    return _diagnostics(mended.left)
+        fixes = fix(source, options, project.lint, elsewhere)
+    if fixes.source != source:
+        rewrite(Path(path), fixes.source.text)
+    for diagnostic in fixes.fixed:
+        label = diagnostic.labels[0]
+        report.say(f"fixed {label.source.name}:{label.source.position(label.span.start)[0]}: {diagnostic.title}")
+    return _diagnostics(fixes.left)
 
 
-def _diagnostics(found: tuple[Finding, ...]) -> tuple[Diagnostic, ...]:
-    return tuple(each.diagnostic for each in found)
+def _diagnostics(findings: tuple[Finding, ...]) -> tuple[Diagnostic, ...]:
+    return tuple(finding.diagnostic for finding in findings)
 
 
-def _status(found: Iterable[Diagnostic]) -> int:
-    return exits.FINDINGS if any(each.severity != "note" for each in found) else exits.CLEAN
+def _status(diagnostics: Iterable[Diagnostic]) -> int:
+    return exits.FINDINGS if any(diagnostic.severity != "note" for diagnostic in diagnostics) else exits.CLEAN

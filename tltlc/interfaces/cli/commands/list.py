@@ -1,4 +1,4 @@
-"""``tltlc list``: what there is to use: predicates, targets, levels, error codes."""
+"""``tltlc list``: list the available predicates, targets, levels or error codes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from tltlc.diagnostics.diagnostic import TltlError
 Row = dict[str, str]
 
 LISTS = "tltlc.lists"
-"""The group of entry points that list what the compiler knows nothing of: functions that return rows."""
+"""The entry-point group for lists that the compiler does not know itself.
+
+Each is a function that returns rows.
+"""
 
 
 @click.command(
@@ -52,7 +55,7 @@ def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
 
 
 def show(rows: list[Row]) -> None:
-    """A table for a terminal, columns with tabs for a file."""
+    """Print a table to a terminal, and tab-separated columns to a file."""
     if sys.stdout.isatty():
         _table(rows)
     else:
@@ -60,7 +63,10 @@ def show(rows: list[Row]) -> None:
 
 
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
-    """The predicates that each library declares, as they stand in its text; files that are broken are reported."""
+    """Yield the predicates that each library declares, as written there.
+
+    Report the errors of broken files.
+    """
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import PredicateDecl
     from tltlc.interfaces.cli.settings import check_libraries
@@ -76,8 +82,8 @@ def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterat
             except TltlError as error:
                 add(error.diagnostics)
                 continue
-            module, found = parse(source)
-            add(found)
+            module, diagnostics = parse(source)
+            add(diagnostics)
             for declaration in module.declarations:
                 if isinstance(declaration, PredicateDecl):
                     signature = declaration.name
@@ -108,14 +114,14 @@ def _codes() -> Iterator[Row]:
 
 
 def _levels() -> Iterator[Row]:
-    """Those of the runtime; error TLT0730 where it is not installed."""
+    """Return the levels of the runtime; raise TLT0730 if it is not installed."""
     from tltlc.interfaces.cli import plugins
     from tltlc.interfaces.cli.exits import missing_component
 
     for plugin in plugins.find(LISTS):
         if plugin.name == "levels":
-            listed: Callable[[], Iterator[Row]] = plugins.load(plugin, "`tltlc list levels`")
-            return listed()
+            list_levels: Callable[[], Iterator[Row]] = plugins.load(plugin, "`tltlc list levels`")
+            return list_levels()
     raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[game]")
 
 
@@ -123,7 +129,10 @@ _LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels":
 
 
 def _lines(rows: list[Row]) -> None:
-    """Columns of plain text, the last as long as it likes; the name stands in the signature where there is one."""
+    """Print tab-separated columns.
+
+    A signature already contains the name, so it replaces the name.
+    """
     for row in rows:
         print("\t".join(value for key, value in row.items() if not (key == "name" and "signature" in row)))
 

@@ -1,4 +1,4 @@
-"""``tltlc lsp``: the language server of editors."""
+"""``tltlc lsp``: run the language server for editors."""
 
 from __future__ import annotations
 

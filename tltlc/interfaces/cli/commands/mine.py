@@ -1,4 +1,4 @@
-"""``tltlc mine``: specs proposed from recorded traces."""
+"""``tltlc mine``: propose specs from recorded traces."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tltlc.tools.mine.vocabulary import Words
 
 ENDINGS: Final = (".csv", ".jsonl")
-"""Of the traces in a folder."""
+"""File name endings of traces in a folder."""
 _MOST_BYTES: Final = MINED_TRACE.size
 _TELL_EVERY_S: Final = 1.0
 
@@ -130,18 +130,18 @@ def command(
         library = None if predicates is None else _library(predicates)
         imported = _import(library, predicates, output) if library and predicates and output else None
         resolve = ResolveOptions(options.library_dirs, options.params)
-        words, evidence, found = gathered(
+        words, evidence, diagnostics = gathered(
             _files(traces), _files(counterexamples), library, resolve, _every_second(report)
         )
         if output is not None and not is_stdout(output):
             check_not_read(output)
-        for line in _left_out(words, predicates):
+        for line in _column_messages(words, predicates):
             report.say(line)
-        report.add(found)
+        report.add(diagnostics)
         search = Search(evidence, Options(min_support, max_length))
-        whole, interrupted = _searched(search, seconds, report)
+        whole, interrupted = _run_search(search, seconds, report)
         left_out = (*_unread(words), *search.left_out())
-        report.add(tuple(_beyond_the_limits(each, predicates) for each in left_out))
+        report.add(tuple(_beyond_the_limits(title, predicates) for title in left_out))
         proposals = confirmed(search.ranked(), evidence, words, options, top)
         if not proposals:
             report.add((_nothing(evidence, whole=whole),))
@@ -158,13 +158,13 @@ def command(
     return exits.interrupted() if interrupted else report.status
 
 
-def _left_out(words: Words, predicates: str | None) -> Iterator[str]:
-    """What is said of columns that are no atoms."""
+def _column_messages(words: Words, predicates: str | None) -> Iterator[str]:
+    """Yield messages about columns that are left out because they are not atoms."""
     misnamed = [name for name in words.left_out if name in words.misnamed]
-    others = [name for name in words.left_out if name not in words.misnamed]
-    if others:
-        way_out = "" if predicates else " (`--predicates LIB` computes atoms from numbers)"
-        yield f"columns left out, being no atoms: {', '.join(others)}{way_out}"
+    not_atoms = [name for name in words.left_out if name not in words.misnamed]
+    if not_atoms:
+        hint = "" if predicates else " (`--predicates LIB` computes atoms from numbers)"
+        yield f"columns left out, being no atoms: {', '.join(not_atoms)}{hint}"
     if misnamed:
         names = ", ".join(misnamed)
         yield f"columns left out, as no atom can be called so: {names} (atoms are called `seen` or `at(key)`)"
@@ -174,37 +174,37 @@ def _left_out(words: Words, predicates: str | None) -> Iterator[str]:
 
 
 def _files(arguments: Sequence[str]) -> list[TraceFile]:
-    """The traces of the command line, those of a folder in order of their names."""
+    """Read the traces that the command line names; those of a folder in order of their names."""
     from tltlc.io.files import is_dir, read_bytes
     from tltlc.tools.mine.reading import TraceFile
 
-    found = []
+    files = []
     for argument in arguments:
         if argument == STDIN:
-            found.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0]))
+            files.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0]))
         else:
-            paths = _of_folder(argument) if is_dir(argument) else [argument]
-            found += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in paths]
-    for file in found:
+            paths = _traces_in(argument) if is_dir(argument) else [argument]
+            files += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in paths]
+    for file in files:
         if len(file.data) > _MOST_BYTES:
             title = f"`{file.name}` is larger than {_MOST_BYTES >> 20} MiB"
             raise TltlError([Diagnostic("TLT0004", title, help="record fewer steps, or fewer signals")])
-    return found
+    return files
 
 
-def _of_folder(folder: str) -> list[str]:
-    """The traces in a folder and those in it; error TLT0001 where there is none."""
+def _traces_in(folder: str) -> list[str]:
+    """Return the traces in and below a folder; raise TLT0001 if there are none."""
     from tltlc.interfaces.cli.folders import below
 
-    seen = below(Path(folder), ENDINGS)
-    if not seen:
+    paths = below(Path(folder), ENDINGS)
+    if not paths:
         title = f"the folder `{folder}` holds no trace"
         raise TltlError([Diagnostic("TLT0001", title, help=f"traces in it end in {' or '.join(ENDINGS)}")])
-    return [str(Path(folder, path)) for path in seen]
+    return [str(Path(folder, path)) for path in paths]
 
 
 def _library(predicates: str) -> SourceFile:
-    """The file, or where it is the name of a library, a text that imports that."""
+    """Read the file; if the argument is the name of a library, return a text that imports it."""
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import is_file, read_source
 
@@ -220,7 +220,7 @@ def _is_name(predicates: str) -> bool:
 
 
 def _compile_options(predicates: str | None, settings: Settings) -> CompileOptions:
-    """How specs about the atoms of a library are compiled."""
+    """Return the options to compile specs about the atoms of a library."""
     from tltlc.io.project import Project, project_for
 
     check_libraries(settings.libraries)
@@ -230,8 +230,11 @@ def _compile_options(predicates: str | None, settings: Settings) -> CompileOptio
 # --- the search -----------------------------------------------------------------------------------
 
 
-def _searched(search: Search, seconds: float | None, report: Report) -> tuple[bool, bool]:
-    """Search until the end, until time is up, or until Ctrl-C: whether it came to its end, and whether by Ctrl-C."""
+def _run_search(search: Search, seconds: float | None, report: Report) -> tuple[bool, bool]:
+    """Search until the end, until time is up, or until Ctrl-C.
+
+    Return whether the search completed, and whether Ctrl-C interrupted it.
+    """
     begun = monotonic()
     tell = _every_second(report)
     try:
@@ -248,20 +251,20 @@ def _searched(search: Search, seconds: float | None, report: Report) -> tuple[bo
 
 
 def _every_second(report: Report) -> Callable[[str], None]:
-    """Says what is being done, once a second."""
-    told = monotonic()
+    """Return a function that reports progress at most once a second."""
+    last_report = monotonic()
 
     def tell(text: str) -> None:
-        nonlocal told
-        if monotonic() - told >= _TELL_EVERY_S:
-            told = monotonic()
+        nonlocal last_report
+        if monotonic() - last_report >= _TELL_EVERY_S:
+            last_report = monotonic()
             report.say(text)
 
     return tell
 
 
 def _unread(words: Words) -> Iterator[str]:
-    """What is said where there are more atoms than are read."""
+    """Yield a message if there are more atoms than the limit allows to read."""
     from tltlc.io.limits import WORK
 
     if words.unread:
@@ -271,8 +274,8 @@ def _unread(words: Words) -> Iterator[str]:
 
 
 def _beyond_the_limits(title: str, predicates: str | None) -> Diagnostic:
-    way_out = "name fewer predicates in the library" if predicates else "record only the columns that matter"
-    return Diagnostic("TLT0624", title, help=way_out, severity="warning")
+    help_ = "name fewer predicates in the library" if predicates else "record only the columns that matter"
+    return Diagnostic("TLT0624", title, help=help_, severity="warning")
 
 
 def _nothing(evidence: Evidence, *, whole: bool) -> Diagnostic:
@@ -281,8 +284,8 @@ def _nothing(evidence: Evidence, *, whole: bool) -> Diagnostic:
     title = "there is no spec to propose: what the traces have in common, the counterexamples have, too"
     if evidence.made_up:
         title = "there is no spec to propose: the traces have nothing in common"
-    way_out = "lower --min-support, or record signals of what makes the difference"
-    return Diagnostic("TLT0761", title, help=way_out)
+    help_ = "lower --min-support, or record signals of what makes the difference"
+    return Diagnostic("TLT0761", title, help=help_)
 
 
 # --- output ---------------------------------------------------------------------------------------
@@ -297,7 +300,10 @@ def _write(
     imported: str | None,
     report: Report,
 ) -> None:
-    """Write the proposals as a source file, or print it; ``imported`` is the line that imports their library."""
+    """Write the proposals as a source file, or print them.
+
+    ``imported`` is the line that imports their library.
+    """
     from tltlc.io.writing import write_file
     from tltlc.tools.fmt import format_text
     from tltlc.tools.mine.source_text import declarations, source_text
@@ -312,9 +318,9 @@ def _write(
 
 
 def _import(library: SourceFile, predicates: str, path: Path) -> str:
-    """The line that imports a library, or the file of that path, into a file that is to be at ``path``.
+    """Return the line that imports a library by name or by path into the file at ``path``.
 
-    Raises click.UsageError where there can be no such line.
+    Raises click.UsageError if no such line can be written.
     """
     import os
 
@@ -325,7 +331,7 @@ def _import(library: SourceFile, predicates: str, path: Path) -> str:
     try:
         relative = os.path.relpath(predicates, path.parent)
     except ValueError:
-        # Another drive of Windows.
+        # It is on another Windows drive.
         relative = str(Path(predicates).absolute())
     target = quoted(Path(relative).as_posix())
     if target is None:

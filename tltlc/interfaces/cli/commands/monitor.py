@@ -1,4 +1,4 @@
-"""``tltlc monitor``: a row per step as it happens, and the judgement of the whole trace."""
+"""``tltlc monitor``: print a row per step as it happens, and the verdict of the whole trace."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def command(spec: str, trace: str, as_json: bool, settings: Settings, format: st
 
 @contextmanager
 def _opened(trace: str) -> Iterator[Stream]:
-    """The trace, to be read line by line; error TLT0001, now or while it is read."""
+    """Open a trace to read it line by line; raise TLT0001 now, or later while it is read."""
     if trace == STDIN:
         yield _Trace(standard_input(), STDIN_NAME)
         return
@@ -79,13 +79,13 @@ def _opened(trace: str) -> Iterator[Stream]:
 
 
 class _Trace:
-    """A file whose reading fails with TLT0001."""
+    """A file that raises TLT0001 if reading fails."""
 
     def __init__(self, file: BinaryIO, name: str) -> None:
         self._file, self._name = file, name
 
     def readline(self, size: int = -1, /) -> bytes:
-        """The next line, or its first ``size`` bytes; nothing at the end."""
+        """Return the next line, or its first ``size`` bytes; empty at the end."""
         try:
             return self._file.readline(size)
         except OSError as error:
@@ -97,7 +97,7 @@ def _shown(trace: str) -> str:
 
 
 def _with_notices(rows: Iterator[Row], notices: list[Diagnostic], report: Report) -> Iterator[Row]:
-    """The rows; what the monitor remarks on the way is shown when it happens."""
+    """Pass the rows on, and report the notices of the monitor as soon as they occur."""
     for row in rows:
         report.add(notices)
         notices.clear()
@@ -143,7 +143,7 @@ def _show_json(fspa: Fspa, rows: Iterator[Row]) -> Iterator[Row]:
             between = ",\n"
             yield row
     except TltlError:
-        # The document ends all the same, and says that there is no judgement.
+        # Complete the JSON document anyway; it says that there is no verdict.
         print('\n], "accepted": null, "verdict": null}', flush=True)
         raise
 

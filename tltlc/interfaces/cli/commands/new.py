@@ -1,4 +1,4 @@
-"""``tltlc new``: a starter project."""
+"""``tltlc new``: create a starter project."""
 
 from __future__ import annotations
 

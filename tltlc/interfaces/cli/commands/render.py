@@ -1,4 +1,4 @@
-"""``tltlc render``: the picture of one automaton."""
+"""``tltlc render``: draw the automaton of a spec."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``tltlc serve``: the playground, on this machine or as a site."""
+"""``tltlc serve``: run the playground on this machine, or write it as a static site."""
 
 from __future__ import annotations
 
@@ -83,7 +83,10 @@ def _serve(port: int, opening: bool) -> None:
 
 
 def _report_ignored_project() -> None:
-    """Say that a project file above the current folder does not count: texts read nothing outside of that folder."""
+    """Report that a project file above the current folder is ignored.
+
+    Texts may read nothing outside the current folder.
+    """
     from tltlc.io.project import project_file
 
     try:
@@ -92,12 +95,12 @@ def _report_ignored_project() -> None:
         return  # the current folder has been deleted
     file = project_file(here)
     if file is not None and file.parent != here:
-        way_out = f"to use it, start `tltlc serve` in {file.parent}"
-        print(f"{file} is ignored, because it is above this folder; {way_out}", file=sys.stderr, flush=True)
+        hint = f"to use it, start `tltlc serve` in {file.parent}"
+        print(f"{file} is ignored, because it is above this folder; {hint}", file=sys.stderr, flush=True)
 
 
 def _open(address: str, stack: ExitStack) -> None:
-    """Have a browser open an address, by a file that stays until ``stack`` ends."""
+    """Open an address in a browser, through a file that exists until ``stack`` closes."""
     from threading import Thread
 
     from tltlc.diagnostics.diagnostic import TltlError
@@ -108,7 +111,7 @@ def _open(address: str, stack: ExitStack) -> None:
     except (OSError, TltlError):
         print("no temporary file can be written: open the address yourself", file=sys.stderr, flush=True)
         return
-    # Some browsers return when they are closed, and all of them need an answer before.
+    # `webbrowser.open` may block until the browser is closed, and the browser needs our answer before that.
     Thread(target=_start_browser, args=(file,), daemon=True).start()
 
 

@@ -1,4 +1,4 @@
-"""``tltlc test``: the test blocks of files, and of all files of folders."""
+"""``tltlc test``: run the test blocks of files, and of all files in folders."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], No
 
 
 def _unread(files: int) -> str:
-    """How many files have errors, so that none of their tests ran."""
+    """Return the text that counts the files with errors, whose tests did not run."""
     return f", {files} {'file' if files == 1 else 'files'} with errors" if files else ""
 
 

@@ -1,4 +1,4 @@
-"""``tltlc watch``: what is wrong in source files, what is likely to be, and which tests fail, after each change."""
+"""``tltlc watch``: report errors, likely mistakes and failing tests after each change of a file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tltlc.tools.lint.rule import Finding
 
 _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
-"""Empties the screen of a terminal, with what has left it above."""
+"""Clears the screen of a terminal, and its scrollback."""
 
 
 @click.command(
@@ -50,8 +50,8 @@ def command(paths: tuple[str, ...], settings: Settings) -> int:
             sys.stderr.write(_CLEAR)
         elif changed:
             print(file=sys.stderr)
-        said = f" changed: {', '.join(changed)}" if changed else ""
-        print(f"{time.strftime('%H:%M:%S')}{said}", file=sys.stderr, flush=True)
+        change = f" changed: {', '.join(changed)}" if changed else ""
+        print(f"{time.strftime('%H:%M:%S')}{change}", file=sys.stderr, flush=True)
         _look(arguments, settings)
         print("waiting for changes, until Ctrl-C", file=sys.stderr, flush=True)
 
@@ -59,7 +59,7 @@ def command(paths: tuple[str, ...], settings: Settings) -> int:
 
 
 def _look(arguments: tuple[str, ...], settings: Settings) -> None:
-    """Tell everything there is to be told of the files, and what it comes to."""
+    """Check, lint and test the files; report everything, and a summary."""
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report, counted, tally
     from tltlc.io.files import note
@@ -67,32 +67,32 @@ def _look(arguments: tuple[str, ...], settings: Settings) -> None:
     from tltlc.tools.lint.neighbours import neighbours
 
     report = Report()
-    every = every_source(arguments, report)
-    for path in (*every, *arguments):
-        # Under this name a change is told of, and not under that of a neighbour.
+    paths = every_source(arguments, report)
+    for path in (*paths, *arguments):
+        # A change is reported under the first noted name: this one, not the name of a neighbour.
         note(path)
-    others = [words(str(path), text) for path, text in neighbours(every).items()]
+    neighbour_words = [words(str(path), text) for path, text in neighbours(paths).items()]
     passed = 0
     failures: list[Diagnostic] = []
-    for path in every:
+    for path in paths:
         try:
-            found, results = _file(path, used_elsewhere(path, others), settings)
+            findings, results = _file(path, used_elsewhere(path, neighbour_words), settings)
         except TltlError as error:
             report.add(error.diagnostics)
             continue
         failed = [result.failure for result in results if result.failure]
-        report.add([*(each.diagnostic for each in found), *failed])
+        report.add([*(finding.diagnostic for finding in findings), *failed])
         passed, failures = passed + len(results) - len(failed), failures + failed
-    told = [tally(each for each in report.found if each not in failures)]
-    told += [f"{counted(passed, 'test')} passed"] if passed else []
-    told += [f"{counted(len(failures), 'test')} FAILED"] if failures else []
-    report.say(f"{counted(len(every), 'file')}: {', '.join(told)}")
+    summary = [tally(diagnostic for diagnostic in report.found if diagnostic not in failures)]
+    summary += [f"{counted(passed, 'test')} passed"] if passed else []
+    summary += [f"{counted(len(failures), 'test')} FAILED"] if failures else []
+    report.say(f"{counted(len(paths), 'file')}: {', '.join(summary)}")
 
 
 def _file(
     path: str, elsewhere: Container[str], settings: Settings
 ) -> tuple[tuple[Finding, ...], tuple[TestResult, ...]]:
-    """What there is to be said of a file, which is compiled once, and what became of its tests."""
+    """Compile a file once, lint it, and run its tests; return the findings and the test results."""
     from tltlc.core.record import replace
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import read_source
@@ -105,5 +105,5 @@ def _file(
     check_text(source)
     with project.levelling():
         view = view_of(source, compile_settings(settings, project))
-    found = findings(replace(view, elsewhere=elsewhere), project.lint)
-    return found, run_tests(view.program, (each.fspa for each in view.specs))
+    file_findings = findings(replace(view, elsewhere=elsewhere), project.lint)
+    return file_findings, run_tests(view.program, (compiled.fspa for compiled in view.specs))

@@ -1,4 +1,4 @@
-"""``tltlc witness``: traces that show what a spec takes and what it does not."""
+"""``tltlc witness``: show traces that a spec accepts and traces that it rejects."""
 
 from __future__ import annotations
 
@@ -64,15 +64,15 @@ def command(
             traces = _traces(Moves(fspa), accepting, rejecting, cover, settings, report)
             files.update(_written(fspa, traces, kind, report))
         if folder is not None:
-            wrote = write_files(folder, files)
-            for path in wrote:
+            written = write_files(folder, files)
+            for path in written:
                 report.say(f"wrote {path}")
-            if len(wrote) < len(files):
-                report.say(f"unchanged: {len(files) - len(wrote)}")
+            if len(written) < len(files):
+                report.say(f"unchanged: {len(files) - len(written)}")
             return report.status
         if kind == "csv" and len(files) > 1:
-            way_out = "write them to a folder with -o, or ask for one, by SPEC:NAME with --accepting or --rejecting"
-            raise click.UsageError(f"{len(files)} traces are no one CSV file: {way_out}", click.get_current_context())
+            hint = "write them to a folder with -o, or ask for one, by SPEC:NAME with --accepting or --rejecting"
+            raise click.UsageError(f"{len(files)} traces are no one CSV file: {hint}", click.get_current_context())
         click.echo("\n".join(str(text) for text in files.values()), nl=False)
     return report.status
 
@@ -80,33 +80,33 @@ def command(
 def _traces(
     moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: Settings, report: Report
 ) -> list[Witness]:
-    """The traces that are asked for; what cannot be had is reported."""
+    """Find the requested traces; report those that do not exist or cannot be found."""
     from tltlc.tools.witness import captions as remarks
     from tltlc.tools.witness import cover as covering
     from tltlc.tools.witness import traces
 
     fspa = moves.fspa
     work = work_of(settings)
-    found: list[Witness] = []
+    witnesses: list[Witness] = []
     with remarks.out_of_work(fspa):
-        for wanted, search, what in (
+        for wanted, search, outcome in (
             (accepting, traces.accepting, "accepted"),
             (rejecting, traces.rejecting, "rejected"),
         ):
             trace = search(moves, work) if wanted else None
             if trace is not None:
-                found.append(trace)
+                witnesses.append(trace)
             elif wanted:
-                report.add([remarks.no_trace(moves, what)])
+                report.add([remarks.no_trace(moves, outcome)])
     if cover:
         all_edges = covering.cover(moves)
-        found += all_edges.traces
+        witnesses += all_edges.traces
         report.add(remarks.untaken(fspa, all_edges.untaken))
-    return found
+    return witnesses
 
 
 def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
-    """The texts of the traces, by the names of their files."""
+    """Return the texts of the traces by file name."""
     from tltlc.monitor import Monitor
     from tltlc.tools.witness import captions as remarks
     from tltlc.tools.witness import text as written
@@ -119,16 +119,16 @@ def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], re
         report.add([remarks.no_signals(fspa)])
         return {}
     covers = sum(trace.kind == "cover" for trace in traces)
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     number, blocks, monitor = 0, Blocks(fspa), Monitor(fspa)
     for trace in traces:
         number += trace.kind == "cover"
-        which = f"cover_{number}" if trace.kind == "cover" else trace.kind
+        suffix = f"cover_{number}" if trace.kind == "cover" else trace.kind
         if kind == "csv":
-            found[f"{fspa.name}_{which}.csv"] = written.as_csv(fspa, trace, monitor)
+            texts[f"{fspa.name}_{suffix}.csv"] = written.as_csv(fspa, trace, monitor)
             if trace.cycle is not None:
                 report.say(f"{fspa.name}, {trace.kind}: {written.cycle_text(trace)}")
         else:
             title = remarks.title(fspa, trace, number, covers)
-            found[f"{fspa.name}_{which}.txt"] = written.as_test(fspa, trace, title, blocks)
-    return found
+            texts[f"{fspa.name}_{suffix}.txt"] = written.as_test(fspa, trace, title, blocks)
+    return texts
