@@ -1,1 +1,1 @@
-"""The language server: what the compiler knows of a text, while it is being written; ``tltlc lsp``."""
+"""The language server, ``tltlc lsp``: shows what the compiler knows about a text as you type."""

@@ -1,4 +1,4 @@
-"""Fixes that can be taken at once, as actions of the protocol."""
+"""Quick fixes, as code actions of the protocol."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def actions(
     uri_of: Callable[[str], str],
     edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
 ) -> list[types.CodeAction]:
-    """What can be done about what is said of a place."""
+    """Return the fixes for diagnostics that touch a span, as quick-fix actions."""
     uri = uri_of(document.source.name)
 
     def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
@@ -31,18 +31,18 @@ def actions(
             return document.said
         return Document(source, document.project, {**document.texts, source.name: source.text}).said
 
-    near = [each for each in findings if _touches(each.diagnostic, document, span)]
-    told = [each for each in document.said if _touches(each, document, span)]
+    near = [finding for finding in findings if _touches(finding.diagnostic, document, span)]
+    diagnostics = [diagnostic for diagnostic in document.said if _touches(diagnostic, document, span)]
     return [
         types.CodeAction(
             offer.fix.title,
             kind=types.CodeActionKind.QuickFix,
             diagnostics=[remark(offer.diagnostic, document, encoding, uri_of)],
             edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in offer.fix.edits]}),
-            # Editors apply a preferred action unasked, so it must not be a guess.
+            # Editors may apply a preferred action without asking, so it must not be a guess.
             is_preferred=offer.fix.applicability == "safe",
         )
-        for offer in (*of_findings(near, document.module), *of_errors(told, document.source, errors))
+        for offer in (*of_findings(near, document.module), *of_errors(diagnostics, document.source, errors))
     ]
 
 

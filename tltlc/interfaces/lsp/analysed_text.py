@@ -1,4 +1,4 @@
-"""A text as it stands at one moment, and what the compiler makes of it at once: syntax and names."""
+"""One state of a text, and what the compiler quickly derives from it: syntax and names."""
 
 from __future__ import annotations
 
@@ -28,9 +28,11 @@ if TYPE_CHECKING:
 
 
 class Document:
-    """One state of a text; ``unsaved`` are the texts of all open documents by path, in place of their files.
+    """One state of a text.
 
-    Everything is found when it is first asked for, and then kept: the text does not change.
+    ``texts`` has the texts of all open documents by path; they replace the files. ``notes`` are the
+    states of the files that were looked at before. Each property is computed on first use and then
+    cached, because the text does not change.
     """
 
     def __init__(
@@ -47,82 +49,87 @@ class Document:
 
     @property
     def module(self) -> Module:
-        """The declarations that could be read."""
+        """The declarations that could be parsed."""
         return self._parsed[0]
 
     @cached_property
     def resolution(self) -> Resolution:
-        """What the names stand for; predicates are not proved to stay in their ranges, which takes too long."""
+        """The meaning of the names.
+
+        It skips the proof that predicates stay in their ranges, which takes too long.
+        """
         options = ResolveOptions(library_dirs=self.project.libraries, proofs=False)
         with unsaved(self.texts), noted() as notes:
-            found = resolution(self.module, options)
+            result = resolution(self.module, options)
         self._notes.update(notes)
-        return found
+        return result
 
     def is_current(self) -> bool:
-        """Whether the files that it is made of are as they were; ``notes`` has those that were looked at before.
+        """Whether the files that this document depends on are unchanged.
 
-        In place of the files that are open, their texts counted.
+        Open files are not checked: the document was made from their texts in the editor.
         """
         return all(path_of(path) in self.texts or stamp(path) == state for path, state in self._notes.items())
 
     @property
     def scope(self) -> Scope:
-        """The names that the text sees."""
+        """The names that are visible in the text."""
         return self.resolution.env.scope
 
     @property
     def is_broken(self) -> bool:
-        """Whether there is an error of syntax."""
+        """Whether the text has a syntax error."""
         return bool(self._parsed[1])
 
     @cached_property
     def said(self) -> tuple[Diagnostic, ...]:
-        """What is wrong with syntax and names, less what comments and the project allow."""
+        """The diagnostics of syntax and names, without those that comments or the project allow."""
         if self.is_broken:
-            # Of what could be read, only what is wrong with names: the rest may be missing.
-            errors = [each for each in self.resolution.diagnostics if each.severity == "error"]
+            # Report only errors in names, and only those that the unread parts cannot explain.
+            errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
             missing = unread(self.module, self.tokens)
-            return (*self._parsed[1], *(each for each in errors if not missing.may_mend(each)))
-        found = self.resolution
-        left = unsilenced((loaded.module for loaded in found.modules), found.diagnostics)
-        kept = levelled(map(Finding, left), self.project.lint)
-        return tuple(each.diagnostic for each in kept)
+            return (*self._parsed[1], *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
+        resolved = self.resolution
+        remaining = unsilenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
+        kept = levelled(map(Finding, remaining), self.project.lint)
+        return tuple(finding.diagnostic for finding in kept)
 
     @property
     def is_clean(self) -> bool:
-        """Whether nothing found so far is an error, so that automata can be built."""
-        return not any(each.severity == "error" for each in (*self._parsed[1], *self.resolution.diagnostics))
+        """Whether there are no errors so far, so automata can be built."""
+        return not any(
+            diagnostic.severity == "error" for diagnostic in (*self._parsed[1], *self.resolution.diagnostics)
+        )
 
     @cached_property
     def lexed(self) -> Tokens:
-        """The text in tokens."""
+        """The tokens and comments of the text."""
         return tokenize(self.source.text)
 
     @property
     def tokens(self) -> list[Token]:
-        """The tokens, the last of which is the end."""
+        """The tokens; the last one marks the end."""
         return self.lexed.tokens
 
     @cached_property
     def names(self) -> tuple[Occurrence, ...]:
-        """Every name that stands for something, in order."""
+        """Every name that refers to a declaration, in order."""
         return occurrences(self.scope, self.tokens)
 
     def name_at(self, offset: int) -> Occurrence | None:
-        """The name at a place, or right before it."""
-        return next((each for each in self.names if each.span.start <= offset <= each.span.end), None)
+        """Return the name at an offset, or one that ends there."""
+        return next((name for name in self.names if name.span.start <= offset <= name.span.end), None)
 
     def token_at(self, offset: int) -> Token | None:
-        """The token at a place."""
-        return next((each for each in self.tokens if each.start <= offset < each.end), None)
+        """Return the token at an offset."""
+        return next((token for token in self.tokens if token.start <= offset < token.end), None)
 
     @cached_property
     def reads(self) -> frozenset[str]:
-        """The paths of the files that it is made of, its own among them."""
+        """The paths of the files that the program consists of, including this one."""
         return frozenset(path_of(loaded.module.source.name) for loaded in self.resolution.modules)
 
     def depends_on(self, name: str) -> bool:
-        """Whether a text is a part of it, or may become one where an import found nothing."""
-        # Before its names have been looked at, nothing is known.
+        """Whether a text is part of this document's program, or may be if an import failed."""
+        # Before the names are resolved, nothing is known.
         return "resolution" not in self.__dict__ or name in self.reads or self.scope.incomplete

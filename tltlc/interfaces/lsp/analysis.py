@@ -1,4 +1,4 @@
-"""What takes longer than a keystroke: automata, the remarks of the linter, the tests of a text."""
+"""The slow analysis, in a process of its own: automata, lint findings and tests of a text."""
 
 from __future__ import annotations
 
@@ -24,12 +24,15 @@ from tltlc.tools.lint.rules import rules
 from tltlc.tools.lint.run import findings, levelled, view_of
 
 _OF_USE: Final = ("TLT0421", "TLT0422")
-"""The rules that ask which names other files use."""
+"""Codes of the rules that depend on which names other files use."""
 
 
 @record
 class Request:
-    """A text to be looked at with the settings of its project; ``texts`` stand in place of the files at their paths."""
+    """A text to analyse with the settings of its project.
+
+    ``texts`` replace the files at their paths.
+    """
 
     source: SourceFile
     libraries: tuple[Path, ...]
@@ -39,7 +42,10 @@ class Request:
 
 @record
 class Figures:
-    """The automaton of a spec in numbers; ``distance`` is that of its first state, None where no trace satisfies it."""
+    """The automaton and tests of a spec in numbers.
+
+    ``distance`` is the distance of the first state; None if no trace satisfies the spec.
+    """
 
     spec: str
     states: int
@@ -50,7 +56,7 @@ class Figures:
 
 @record
 class Analysis:
-    """What was found: what is to be said of the text, the failures of its tests, and its specs in numbers."""
+    """The findings of compiler and linter, the failures of tests, and numbers for each spec."""
 
     findings: tuple[Finding, ...]
     failures: tuple[Diagnostic, ...] = ()
@@ -58,8 +64,8 @@ class Analysis:
 
     @property
     def said(self) -> tuple[Diagnostic, ...]:
-        """The messages of all of it."""
-        return (*(each.diagnostic for each in self.findings), *self.failures)
+        """The diagnostics of the findings and the failed tests."""
+        return (*(finding.diagnostic for finding in self.findings), *self.failures)
 
 
 def analyse(request: Request) -> Analysis:
@@ -71,39 +77,41 @@ def analyse(request: Request) -> Analysis:
         except TltlError as error:
             return Analysis(levelled(map(Finding, error.diagnostics), request.levels))
         if _seems_unused(view):
-            # Only now is it worth while to read the files around.
+            # Reading the neighbouring files is slow, so do it only if their uses matter.
             view = replace(view, elsewhere=_elsewhere(request))
-        found = findings(view, request.levels)
-        return _with_tests(view, found, options)
+        file_findings = findings(view, request.levels)
+        return _with_tests(view, file_findings, options)
 
 
 def _seems_unused(view: View) -> bool:
-    """Whether a declaration or an import is used by nothing in its own file."""
+    """Whether the file itself never uses one of its declarations or imports."""
     return any(True for rule in rules() if rule.code in _OF_USE for _ in rule.check(view))
 
 
 def _elsewhere(request: Request) -> Container[str]:
-    """The names that other files use of the text, as they stand in the editor."""
+    """Return the names that other files use, as they stand in the editor."""
     name = request.source.name
     if name.startswith("<"):
         return frozenset()
-    others = {str(path): text for path, text in neighbours([name]).items()}
+    neighbour_texts = {str(path): text for path, text in neighbours([name]).items()}
     for path, text in request.texts.items():
         place = os.path.realpath(path)
-        # Another project's files are none of those around, and new ones may not be saved yet.
-        if place in others or not os.path.lexists(place):
-            others[place] = text
-    return used_elsewhere(name, [words(path, text) for path, text in others.items()])
+        # Skip files of other projects. Keep new files, which may not be saved yet.
+        if place in neighbour_texts or not os.path.lexists(place):
+            neighbour_texts[place] = text
+    return used_elsewhere(name, [words(path, text) for path, text in neighbour_texts.items()])
 
 
-def _with_tests(view: View, found: tuple[Finding, ...], options: CompileOptions) -> Analysis:
+def _with_tests(view: View, file_findings: tuple[Finding, ...], options: CompileOptions) -> Analysis:
     module, _ = parse(view.source)
     program, _ = resolve(module, ResolveOptions(library_dirs=options.library_dirs, proofs=False))
-    results = run_tests(program, (each.fspa for each in view.specs))
+    results = run_tests(program, (compiled.fspa for compiled in view.specs))
     figures = []
-    for each in view.specs:
-        own = [result.passed for result in results if result.test.spec == each.spec.name]
-        fspa = each.fspa
-        figures.append(Figures(fspa.name, len(fspa.states), fspa.states[0].distance, sum(own), len(own) - sum(own)))
+    for compiled in view.specs:
+        passed = [result.passed for result in results if result.test.spec == compiled.spec.name]
+        fspa = compiled.fspa
+        figures.append(
+            Figures(fspa.name, len(fspa.states), fspa.states[0].distance, sum(passed), len(passed) - sum(passed))
+        )
     failures = tuple(result.failure for result in results if result.failure is not None)
-    return Analysis(found, failures, tuple(figures))
+    return Analysis(file_findings, failures, tuple(figures))

@@ -1,4 +1,4 @@
-"""What editors ask, passed to the modules that know."""
+"""The handlers of the editor's requests; each passes its request on to a module."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def _definition(server: Server, params: types.DefinitionParams) -> types.Locatio
     document, at = _place(server, params)
     if document is None:
         return None
-    found = document.name_at(at)
-    if found is not None:
-        symbol = found.symbol
+    name = document.name_at(at)
+    if name is not None:
+        symbol = name.symbol
         return types.Location(
             server.texts.uri(symbol.source.name), range_of(symbol.source, symbol.span, server.encoding)
         )
@@ -67,52 +67,52 @@ def _links(server: Server, params: types.DocumentLinkParams) -> list[types.Docum
 
 
 async def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
-    found = await _name_everywhere(server, params, references.may_have_references)
-    if found is None:
+    name = await _name_everywhere(server, params, references.may_have_references)
+    if name is None:
         return None
     return [
-        types.Location(server.texts.uri(document.source.name), range_of(document.source, each.span, server.encoding))
-        for document, places in references.references(found.symbol, server.texts)
-        for each in places
-        if params.context.include_declaration or not each.declares
+        types.Location(server.texts.uri(document.source.name), range_of(document.source, place.span, server.encoding))
+        for document, places in references.references(name.symbol, server.texts)
+        for place in places
+        if params.context.include_declaration or not place.declares
     ]
 
 
 def _highlight(server: Server, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight] | None:
     document, at = _place(server, params)
-    found = document.name_at(at) if document else None
-    if document is None or found is None:
+    name = document.name_at(at) if document else None
+    if document is None or name is None:
         return None
     return [
         types.DocumentHighlight(
-            range_of(document.source, each.span, server.encoding),
-            types.DocumentHighlightKind.Write if each.declares else types.DocumentHighlightKind.Read,
+            range_of(document.source, occurrence.span, server.encoding),
+            types.DocumentHighlightKind.Write if occurrence.declares else types.DocumentHighlightKind.Read,
         )
-        for each in document.names
-        if each.symbol.is_same(found.symbol)
+        for occurrence in document.names
+        if occurrence.symbol.is_same(name.symbol)
     ]
 
 
 async def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-    found = await _name_everywhere(server, params, references.may_have_references)
+    name = await _name_everywhere(server, params, references.may_have_references)
     document = server.texts.document(params.text_document.uri)
-    if document is None or found is None:
+    if document is None or name is None:
         return None
-    references.check_renamable(found.symbol, server.texts)
-    return types.PrepareRenamePlaceholder(range_of(document.source, found.span, server.encoding), found.symbol.name)
+    references.check_renamable(name.symbol, server.texts)
+    return types.PrepareRenamePlaceholder(range_of(document.source, name.span, server.encoding), name.symbol.name)
 
 
 async def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit | None:
-    found = await _name_everywhere(server, params, references.may_refuse_rename)
-    if found is None:
+    name = await _name_everywhere(server, params, references.may_refuse_rename)
+    if name is None:
         return None
-    return _workspace_edit(server, references.rename(found.symbol, params.new_name, server.texts))
+    return _workspace_edit(server, references.rename(name.symbol, params.new_name, server.texts))
 
 
 async def _move_files(server: Server, params: types.RenameFilesParams) -> types.WorkspaceEdit:
     await server.texts.parse(moves.may_import)
-    moved = [(name_of(each.old_uri), name_of(each.new_uri)) for each in params.files]
-    return _workspace_edit(server, moves.edits_of_moves(moved, server.texts))
+    renames = [(name_of(file.old_uri), name_of(file.new_uri)) for file in params.files]
+    return _workspace_edit(server, moves.edits_of_moves(renames, server.texts))
 
 
 def _format(server: Server, params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
@@ -134,7 +134,7 @@ def _actions(server: Server, params: types.CodeActionParams) -> list[types.CodeA
 def _lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens]:
     uri = params.text_document.uri
     document = server.texts.document(uri)
-    # The last ones, so that the lines of the text do not move at each key.
+    # Show the last lenses, even if outdated, so the lines of the text do not jump with each key.
     analysis = server.last_analysis(document) if document else None
     return lenses.lenses(document, uri, analysis, server.encoding) if document and analysis else []
 
@@ -162,21 +162,21 @@ def _symbols(server: Server, params: types.DocumentSymbolParams) -> list[types.D
 async def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
     await server.texts.parse(lambda text: True)
     return [
-        each
+        symbol
         for document in server.texts.all()
-        for each in symbols.found(document, params.query, server.encoding, server.texts.uri(document.source.name))
+        for symbol in symbols.found(document, params.query, server.encoding, server.texts.uri(document.source.name))
     ]
 
 
 async def run_tests(server: Server, uri: str, spec: str) -> None:
-    """Say how the tests of a spec ended."""
+    """Show the user the test results of a spec."""
     analysis = await server.analysis_of(uri)
-    figures = next((each for each in analysis.figures if each.spec == spec), None) if analysis else None
+    figures = next((entry for entry in analysis.figures if entry.spec == spec), None) if analysis else None
     document = server.texts.document(uri)
     if figures is not None:
         text = f"{spec}: {lenses.tests_text(figures)}"
     elif document is None or not any(
-        isinstance(each, SpecDecl) and each.name == spec for each in document.module.declarations
+        isinstance(declaration, SpecDecl) and declaration.name == spec for declaration in document.module.declarations
     ):
         text = f"there is no spec `{spec}`, so there are no tests to run"
     elif analysis is None and document.is_clean:
@@ -196,13 +196,13 @@ def _workspace_edit(server: Server, changed: list[tuple[Document, list[Edit]]]) 
 
 
 def _place(server: Server, params: Any) -> tuple[Document | None, int]:
-    """The document that a request is about, and the offset in it."""
+    """Return the document and the offset that a request is about."""
     document = server.texts.document(params.text_document.uri)
     return document, offset(document.source, params.position, server.encoding) if document else 0
 
 
-def _span(server: Server, document: Document, asked: types.Range) -> Span:
-    start, end = (offset(document.source, each, server.encoding) for each in (asked.start, asked.end))
+def _span(server: Server, document: Document, requested: types.Range) -> Span:
+    start, end = (offset(document.source, end_point, server.encoding) for end_point in (requested.start, requested.end))
     return Span(start, max(start, end))
 
 
@@ -212,11 +212,11 @@ def _name(server: Server, params: Any) -> Occurrence | None:
 
 
 async def _name_everywhere(server: Server, params: Any, is_needed: Callable[[Symbol, str], bool]) -> Occurrence | None:
-    """The name at the place that a request is about, once the workspace is parsed as far as is needed for it."""
+    """Parse the required texts of the workspace, then return the name that a request is about."""
     name = _name(server, params)
     if name is not None:
         await server.texts.parse(lambda text: is_needed(name.symbol, text))
-    # The text may have changed meanwhile.
+    # The text may have changed while other files were parsed.
     return _name(server, params)
 
 
@@ -229,7 +229,7 @@ FILES_AND_FOLDERS: Final = types.FileOperationRegistrationOptions(
         )
     ]
 )
-"""Whose new names and ends matter."""
+"""The files and folders whose renaming and deletion the editor reports to the server."""
 
 ANSWERS: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
     (types.TEXT_DOCUMENT_COMPLETION, _complete, types.CompletionOptions(trigger_characters=[".", '"', "("])),
@@ -254,4 +254,4 @@ ANSWERS: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
     (types.TEXT_DOCUMENT_DOCUMENT_SYMBOL, _symbols, None),
     (types.WORKSPACE_SYMBOL, _find_symbols, None),
 )
-"""The requests of the protocol, what answers them, and with which options."""
+"""The requests of the protocol with their handlers and options."""

@@ -1,4 +1,4 @@
-"""What may be written at a place: keywords where they fit, names that are known there, units, verdicts, libraries."""
+"""Complete keywords, visible names, units, verdicts and libraries at a place."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NAMES: Final = {"NAME"}
 
 
 def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
-    """What could be written at an offset, the likelier before the rest."""
+    """Return what may be written at an offset, likelier items first."""
     inside = quoted(document.source, offset)
     if inside is not None:
         before, span = inside
@@ -47,20 +47,23 @@ def completions(document: Document, offset: int, encoding: str) -> list[types.Co
     place = cursor(document.source, offset)
     if place is None:
         return []
-    found = {item.label: item for item in reversed([*_items(document, place)])}
-    return _edits(reversed(found.values()), document, place.word, encoding)
+    by_label = {item.label: item for item in reversed([*_items(document, place)])}
+    return _edits(reversed(by_label.values()), document, place.word, encoding)
 
 
 def _edits(
     items: Iterable[types.CompletionItem], document: Document, span: Span, encoding: str
 ) -> list[types.CompletionItem]:
-    """The items in order, each in place of what is written of a word so far."""
+    """Make each item replace the part of the word that is already written.
+
+    Number the items to keep their order.
+    """
     at = range_of(document.source, span, encoding)
-    found = list(items)
-    for rank, item in enumerate(found):
+    ordered = list(items)
+    for rank, item in enumerate(ordered):
         item.text_edit = types.TextEdit(at, item.label)
         item.sort_text = f"{rank:05}"
-    return found
+    return ordered
 
 
 def _items(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
@@ -83,7 +86,7 @@ def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.Completio
     for terminal in sorted(set(allowed) - {END}):
         if terminal in spellings and terminal != "TIMES":
             word = spellings[terminal]
-            # `entity` is the type of a parameter, too.
+            # `entity` is also the type of a parameter.
             form = _FORMS.get(word) if place.last != "COLON" else None
             yield types.CompletionItem(word, kind=Kind.Keyword, detail=form.replace("`", "") if form else None)
 
@@ -91,12 +94,12 @@ def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.Completio
 def _units(place: Cursor) -> Iterator[types.CompletionItem]:
     counted = place.first == "limit" or any(token.text in ("within", "for", "after") for token in place.piece[-2:])
     counted = counted or (any(token.type == "LSQB" for token in place.piece[-4:]) and place.start != "declaration")
-    known = [*_OF_TIME, *units.time_units()] if counted else [each for each in load().units if each not in _OF_TIME]
+    known = [*_OF_TIME, *units.time_units()] if counted else [unit for unit in load().units if unit not in _OF_TIME]
     if place.first == "clock":
         known = ["Hz", *units.time_units()]
     for unit in known:
-        found = units.in_si(1.0, unit)
-        detail = units.described(found[1]) if found else "samples"
+        conversion = units.in_si(1.0, unit)
+        detail = units.described(conversion[1]) if conversion else "samples"
         yield types.CompletionItem(unit, kind=Kind.Unit, detail=detail)
 
 
@@ -104,7 +107,7 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
 
 
 def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
-    """The names that fit by what stands in front of the place."""
+    """Yield the names that fit after the preceding tokens."""
     first, before = place.first, place.piece[-1].text if place.piece else ""
     if place.start == "clause" and first in ("level", "judge", "semantics", "tag"):
         yield from _settings(document, first)
@@ -113,7 +116,11 @@ def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
     elif place.start == "declaration" and first == "import":
         yield from _imports(document, place)
     elif place.start == "declaration" and first == "test":
-        yield from (_spec_item(each, document) for each in document.module.declarations if isinstance(each, SpecDecl))
+        yield from (
+            _spec_item(declaration, document)
+            for declaration in document.module.declarations
+            if isinstance(declaration, SpecDecl)
+        )
     elif place.start == "declaration" and (len(place.piece) == 1 or first in ("entity", "clock")):
         if first == "exclusive":
             yield from _expression(document, place)
@@ -131,10 +138,10 @@ def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
 def _settings(document: Document, clause: str) -> Iterator[types.CompletionItem]:
     words: Iterable[str] = {"judge": JUDGE, "semantics": SEMANTICS}.get(clause, ())
     if clause == "tag":
-        tags = {name.name for each in _clauses(document) if isinstance(each.value, tuple) for name in each.value}
+        tags = {name.name for item in _clauses(document) if isinstance(item.value, tuple) for name in item.value}
         words = sorted(tags)
     if clause == "level":
-        words = sorted({each.value.name for each in _clauses(document, "level") if isinstance(each.value, Name)})
+        words = sorted({item.value.name for item in _clauses(document, "level") if isinstance(item.value, Name)})
     yield from (types.CompletionItem(word, kind=Kind.EnumMember) for word in words)
 
 
@@ -145,8 +152,8 @@ def _clauses(document: Document, kind: str = "tag") -> Iterator[Clause]:
 
 
 def _types(head: str) -> Iterator[types.CompletionItem]:
-    others = {"predicate": ("entity",), "let": ("entity", "formula"), "signal": ("entity",)}.get(head, ())
-    for name in (*units.TYPES, *others):
+    extra_types = {"predicate": ("entity",), "let": ("entity", "formula"), "signal": ("entity",)}.get(head, ())
+    for name in (*units.TYPES, *extra_types):
         dimension = units.TYPES.get(name)
         detail = f"in {units.si_unit(dimension)}" if dimension and units.si_unit(dimension) else None
         yield types.CompletionItem(name, kind=Kind.TypeParameter, detail=detail)
@@ -178,10 +185,10 @@ def _expression(document: Document, place: Cursor) -> Iterator[types.CompletionI
 
 
 def _visible(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
-    """The visible names of these kinds: kind by kind, those of the text itself before imported ones."""
+    """Yield the visible names, kind by kind, those of the text itself before imported ones."""
     scope = document.scope
-    found = [(name, each) for name, each in scope.names.items() if each.kind in kinds]
-    for name, binding in sorted(found, key=lambda item: (kinds.index(item[1].kind), item[1].via is not None)):
+    bindings = [(name, binding) for name, binding in scope.names.items() if binding.kind in kinds]
+    for name, binding in sorted(bindings, key=lambda item: (kinds.index(item[1].kind), item[1].via is not None)):
         yield _name_item(name, binding)
 
 
@@ -199,7 +206,7 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """The atoms of the spec that the test around is for."""
+    """Yield the atoms of the spec that the enclosing test is for."""
     name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
     for spec in document.resolution.program.specs:
         if spec.name == name:
@@ -210,7 +217,7 @@ def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.Compl
 
 
 def _local(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """The parameters of the declaration around, and the variables of quantifiers."""
+    """Yield the parameters of the enclosing declaration, and the variables of quantifiers."""
     names: dict[str, None] = {}
     if piece and piece[0].text in ("predicate", "let"):
         depth = 0
@@ -225,7 +232,7 @@ def _local(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
 
 
 def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
-    """The word before the innermost open bracket, and how many commas stand behind it."""
+    """Return the word before the innermost open bracket, and how many commas follow the bracket."""
     open_: list[tuple[str, int]] = []
     for index, token in enumerate(piece):
         if token.type == "LPAR":
@@ -239,7 +246,7 @@ def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
 
 
 def _in_body(piece: tuple[Token, ...]) -> bool:
-    """Whether a place is behind the ``=`` of a declaration."""
+    """Whether a place is after the ``=`` of a declaration."""
     depth = 0
     for token in piece:
         depth += (token.type in ("LPAR", "LSQB")) - (token.type in ("RPAR", "RSQB"))
@@ -260,13 +267,13 @@ def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem
     if len(place.piece) == 1:
         yield from _libraries(document)
     elif place.last in ("LPAR", "COMMA"):
-        # What is being written cannot be read yet, so the file is imported as a whole.
+        # The incomplete import cannot be parsed, so resolve an import of the whole file instead.
         alone = SourceFile(document.source.name, f"import {place.piece[1].text}")
         yield from _visible(Document(alone, document.project, document.texts), tuple(_KINDS))
 
 
 def _libraries(document: Document) -> Iterator[types.CompletionItem]:
-    """The libraries that an import finds by name, those beside the text first."""
+    """Yield the libraries that an import finds by name, those next to the text first."""
     seen: dict[str, Path] = {}
     for folder in (_folder(document), *document.project.libraries, standard_library()):
         for path in _sources(folder, document):
@@ -278,7 +285,7 @@ def _libraries(document: Document) -> Iterator[types.CompletionItem]:
 
 
 def _paths(document: Document) -> Iterator[types.CompletionItem]:
-    """The files beside a text, and in the folders below and above."""
+    """Yield the files next to a text, and those in the folder above."""
     here = _folder(document)
     for folder, prefix in ((here, ""), (here.parent, "../")):
         for path in _sources(folder, document):
@@ -289,11 +296,11 @@ def _paths(document: Document) -> Iterator[types.CompletionItem]:
 def _sources(folder: Path, document: Document) -> list[Path]:
     with unsaved(document.texts):
         try:
-            found = set(folder.glob("*.tltl"))
+            paths = set(folder.glob("*.tltl"))
         except OSError:
-            found = set()
-    found |= {Path(name) for name in document.texts if Path(name).parent == folder and name.endswith(".tltl")}
-    return sorted(path for path in found if not path.stem.endswith("_tests"))
+            paths = set()
+    paths |= {Path(name) for name in document.texts if Path(name).parent == folder and name.endswith(".tltl")}
+    return sorted(path for path in paths if not path.stem.endswith("_tests"))
 
 
 def _folder(document: Document) -> Path:

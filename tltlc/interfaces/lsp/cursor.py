@@ -1,4 +1,4 @@
-"""What could stand at a place of a text that is being written, by the parser's own tables."""
+"""Use the parser's own tables to find what may stand at a place of an incomplete text."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ _STATEMENTS: Final = ("clause", "test_item")
 class Cursor:
     """A place in a text.
 
-    ``word`` covers what is written of a word up to the place; ``piece`` are the tokens of the declaration, clause or
-    line of a test before that word, which is read as a ``start``; ``around`` those of the block that it stands in;
-    ``allowed`` the terminals that could stand here, None where the piece is broken further up.
+    ``word`` covers the part of a word that is written up to the place. ``piece`` has the tokens of
+    the declaration, clause or test line before that word; the parser reads it from the symbol
+    ``start``. ``around`` has the tokens of the enclosing block. ``allowed`` has the terminals that
+    may stand here; it is None if the piece already has an error before the place.
     """
 
     word: Span
@@ -37,17 +38,17 @@ class Cursor:
 
     @property
     def last(self) -> str:
-        """The type of the token in front of the word, empty at the start of a piece."""
+        """The type of the token before the word; empty at the start of a piece."""
         return self.piece[-1].type if self.piece else ""
 
     @property
     def first(self) -> str:
-        """The word that the piece begins with."""
+        """The word that the piece starts with."""
         return self.piece[0].text if self.piece else ""
 
 
 def cursor(source: SourceFile, offset: int) -> Cursor | None:
-    """The place at an offset; None within comments and texts in quotes."""
+    """Return the place at an offset; None inside comments and quoted texts."""
     before = source.text[:offset]
     start = _word_start(before)
     lexed = tokenize(before[:start])
@@ -60,7 +61,7 @@ def cursor(source: SourceFile, offset: int) -> Cursor | None:
 
 
 def _word_start(text: str) -> int:
-    """The offset of the word at the end of a text; the end where no word stands there."""
+    """Return the offset of the word at the end of a text, or the end if there is no word."""
     start = end = len(text)
     while start and text[start - 1] in _IN_WORD:
         start -= 1
@@ -70,7 +71,7 @@ def _word_start(text: str) -> int:
 
 
 def quoted(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """The word before a text in quotes around an offset, and what is written of that text up to there."""
+    """Return the word before the quoted text at an offset, and the span of that text so far."""
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):
         return None
@@ -101,7 +102,10 @@ def _frozen(allowed: set[str] | None) -> frozenset[str] | None:
 
 
 def _accepted(start: str, tokens: Sequence[Token]) -> set[str] | None:
-    """What may follow these tokens, read as a ``start``; None where they cannot be read so far."""
+    """Return the terminals that may follow these tokens, parsed as a ``start``.
+
+    Return None if they have an error.
+    """
     end = tokens[-1].end if tokens else 0
     try:
         lalr.run(load(), start, [*tokens, Token(BAD, "", end, end), Token(END, "", end, end)], object())

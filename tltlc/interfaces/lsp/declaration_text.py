@@ -1,4 +1,4 @@
-"""Declarations as a reader sees them in passing: their text, what they mean, their range and unit."""
+"""Short descriptions of declarations: their text, meaning, range and unit."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
 _LONGEST: Final = 600
-"""Of a longer declaration, the head alone is shown."""
+"""A longer declaration is shown by its head only."""
 
 _SUPPLIED: Final = {
     "length": "metres",
@@ -42,11 +42,11 @@ _SUPPLIED: Final = {
 def declaration_text(
     declaration: Union[Declaration, Name, Parameter, Quantified], source: SourceFile, *, head: bool = False
 ) -> str:
-    """A declaration as it is written; only what stands in front of its ``=`` or ``{`` where that is asked for."""
+    """Return a declaration as written; if ``head``, only the part before its ``=`` or ``{``."""
     if isinstance(declaration, Name):
         return f"entity {declaration.name}"
     if isinstance(declaration, Quantified):
-        names = ", ".join(each.name for each in declaration.entities)
+        names = ", ".join(entity.name for entity in declaration.entities)
         return f"{'all' if declaration.all else 'any'} {declaration.variable} in ({names})"
     span = declaration.span
     text = dedent(source.slice(span))
@@ -60,7 +60,7 @@ def declaration_text(
 
 
 def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
-    """What is to be known of a name that is no spec's."""
+    """Describe a name that is not a spec, in Markdown."""
     declaration = symbol.declaration
     lines = [_code(declaration_text(declaration, symbol.source))]
     doc = getattr(declaration, "doc", "")
@@ -71,7 +71,7 @@ def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
 
 
 def spec_markdown(declaration: SpecDecl, spec: Spec | None, source: SourceFile, figures: str | None) -> str:
-    """What is to be known of a spec: what it asks for, and its size where that is known by now."""
+    """Describe a spec in Markdown: what it asks for, and its size if that is known."""
     lines = [_code(declaration_text(declaration, source, head=True))]
     lines += [declaration.doc] if declaration.doc else []
     if spec is not None:
@@ -89,7 +89,7 @@ def _code(text: str) -> str:
 
 
 def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
-    """The type, range, unit and value, and in English what a ``let`` stands for."""
+    """Yield the type, range, unit and value of a name, or the meaning of a ``let`` in English."""
     declaration, context = symbol.declaration, env.context
     if isinstance(declaration, SignalDecl):
         yield from _signal(declaration, context)
@@ -136,7 +136,7 @@ def _article(type_: str) -> str:
 
 
 def _range(low: float | None, high: float | None, type_: str) -> str:
-    """What follows on a range; nothing where there is none."""
+    """Return the text about a range; empty if there is none."""
     if type_ == "bool" or (low is None and high is None):
         return ""
     ends = -inf if low is None else low, inf if high is None else high

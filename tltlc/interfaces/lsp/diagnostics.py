@@ -1,4 +1,4 @@
-"""Diagnostics of the compiler as those of the protocol."""
+"""Convert the compiler's diagnostics to those of the protocol."""
 
 from __future__ import annotations
 
@@ -20,11 +20,14 @@ _SEVERITIES: Final = {
     "note": types.DiagnosticSeverity.Information,
 }
 _UNNECESSARY: Final = {"TLT0421", "TLT0422", "TLT0425", "TLT0427"}
-"""Remarks on what may be left out, which editors show faded."""
+"""Warnings about parts that can be removed, which editors show faded."""
 
 
 def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[str], str]) -> types.Diagnostic:
-    """A diagnostic, where it is to be seen in a document: of an imported file, at the import that leads there."""
+    """Convert a diagnostic for display in a document.
+
+    A diagnostic of an imported file appears at the import that leads there.
+    """
     diagnostic = shortened(diagnostic)
     main = label_in(diagnostic, document)
     place = main.span if main else _import_of(diagnostic, document)
@@ -33,7 +36,7 @@ def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Ca
         message += f": {main.message}"
     if diagnostic.help:
         message += f"\n{diagnostic.help}"
-    others = [
+    related = [
         types.DiagnosticRelatedInformation(
             types.Location(uri_of(label.source.name), range_of(label.source, label.span, encoding)),
             label.message or ("here" if main else diagnostic.title),
@@ -47,18 +50,18 @@ def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Ca
         severity=_SEVERITIES[diagnostic.severity],
         code=diagnostic.code,
         source="tltlc",
-        related_information=others or None,
+        related_information=related or None,
         tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
     )
 
 
 def label_in(diagnostic: Diagnostic, document: Document) -> Label | None:
-    """The first place of a diagnostic that lies in a document."""
+    """Return the first label of a diagnostic that lies in a document."""
     return next((label for label in diagnostic.labels if label.source.name == document.source.name), None)
 
 
 def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
-    """A diagnostic of a project file, where it is to be seen in that."""
+    """Convert a diagnostic of a project file, for display in that file."""
     diagnostic = shortened(diagnostic)
     label = diagnostic.labels[0]
     return types.Diagnostic(
@@ -71,16 +74,19 @@ def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic
 
 
 def _import_of(diagnostic: Diagnostic, document: Document) -> Span:
-    """The import that leads to the file that a diagnostic is about; the beginning where none is known."""
+    """Return the span of the import that leads to the file of a diagnostic.
+
+    If none does, return the first import, or the start of the text.
+    """
     names = {label.source.name for label in diagnostic.labels}
     for declaration, loaded in document.resolution.modules[-1].imports:
         waiting, seen = [loaded], set()
         while waiting:
-            each = waiting.pop()
-            if each.module.source.name in names:
+            current = waiting.pop()
+            if current.module.source.name in names:
                 return declaration.target_span
-            if id(each) not in seen:
-                seen.add(id(each))
-                waiting += [target for _, target in each.imports]
-    first = next((each for each in document.module.declarations if isinstance(each, Import)), None)
+            if id(current) not in seen:
+                seen.add(id(current))
+                waiting += [target for _, target in current.imports]
+    first = next((candidate for candidate in document.module.declarations if isinstance(candidate, Import)), None)
     return first.target_span if first and names else Span(0, 0)

@@ -1,4 +1,4 @@
-"""Times in steps, behind limits and bounds that are written in seconds: the clock often stands in another file."""
+"""Show times in steps after limits and bounds in seconds: the clock may be in another file."""
 
 from __future__ import annotations
 
@@ -16,38 +16,38 @@ from tltlc.resolve.problem import ResolutionError
 
 
 def hints(document: Document, span: Span, encoding: str) -> list[types.InlayHint]:
-    """``= 40 steps`` behind each time that ends within a part of a document."""
-    found = [each for each in durations(document) if span.start <= each[0].span.end <= span.end]
+    """Return a hint such as ``= 40 steps`` for each time that ends within a span of a document."""
+    visible = [duration for duration in durations(document) if span.start <= duration[0].span.end <= span.end]
     return [
         types.InlayHint(
             position(document.source, number.span.end, encoding), f"= {steps_text(steps)}", padding_left=True
         )
-        for number, steps in found
+        for number, steps in visible
     ]
 
 
 def steps_text(steps: int) -> str:
-    """``1 step``, ``40 steps``."""
+    """Return a number of steps in words: ``1 step``, ``40 steps``."""
     return f"{steps} step{'' if steps == 1 else 's'}"
 
 
 def durations(document: Document) -> Iterator[tuple[Number, int]]:
-    """The limits and bounds that are written as times, in steps."""
+    """Yield the limits and bounds that are written as times, with their steps."""
     for declaration in document.module.declarations:
         for number in _counts(declaration):
             if number.unit not in (None, "step", "steps"):
                 try:
                     steps = samples(number, document.resolution.env)
                 except ResolutionError:
-                    # There is no clock, or it is no time: a message says so.
+                    # There is no clock, or the unit is not a time; a diagnostic reports that.
                     continue
                 yield number, steps
 
 
 def _counts(declaration: Declaration) -> Iterator[Number]:
     if isinstance(declaration, SpecDecl):
-        yield from (each.value for each in declaration.clauses if isinstance(each.value, Number))
+        yield from (clause.value for clause in declaration.clauses if isinstance(clause.value, Number))
     for expression in expressions(declaration):
         for part in parts(expression):
             if isinstance(part, Unary) and part.bound is not None:
-                yield from (each for each in (part.bound.low, part.bound.high) if each is not None)
+                yield from (limit for limit in (part.bound.low, part.bound.high) if limit is not None)

@@ -1,4 +1,4 @@
-"""Files and folders that get other names: their imports lead where they led before."""
+"""When files or folders are renamed, update imports so that they still lead to the same files."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from tltlc.interfaces.lsp.workspace import Workspace
 from tltlc.resolve.imports import STANDARD_LIBRARY_NAME
 
 Moves = Sequence[tuple[str, str]]
-"""Paths of files and folders, each with the one that it gets."""
+"""Old and new paths of renamed files and folders."""
 
 
 def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
-    """What is to be written in place of the imports that would lead nowhere, document by document."""
-    found = [
+    """Return the edits for imports that the renames would break, by document."""
+    changes = [
         (document, list(_edits(document, moves))) for document in workspace.all() if may_import(document.source.text)
     ]
-    return [(document, edits) for document, edits in found if edits]
+    return [(document, edits) for document, edits in changes if edits]
 
 
 def may_import(text: str) -> bool:
@@ -54,14 +54,15 @@ def _moved(path: str, moves: Moves) -> str:
 
 
 def _leads(declaration: Import, folder: str, there: str) -> bool:
-    """Whether a path leads there as it is written."""
+    """Whether the import as written leads to that path."""
     return declaration.is_path and normpath(PurePath(folder, declaration.target)) == there
 
 
 def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
-    """How a file is imported into one of a folder: by its name where it was so and can be, else by its path.
+    """Return the import target for a file, as written in a file of a folder.
 
-    None for a path that no source can hold.
+    Use a name if the import had one and the new path allows it; else a path. None if the path
+    cannot be written in a source text.
     """
     if not declaration.is_path:
         for place in (folder, *map(str, libraries)):

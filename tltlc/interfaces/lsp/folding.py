@@ -1,4 +1,4 @@
-"""What of a text can be folded: blocks, statements of several lines, comments and imports that follow each other."""
+"""Find what can be folded: blocks, statements of several lines, and runs of comments or imports."""
 
 from __future__ import annotations
 
@@ -11,20 +11,25 @@ from tltlc.grammar.tree import Import, SpecDecl, TestDecl
 from tltlc.interfaces.lsp.analysed_text import Document
 
 _Lines = tuple[int, int]
-"""The first line and the last one, from 1."""
+"""The first and the last line, counted from 1."""
 
 
 def folds(document: Document) -> list[types.FoldingRange]:
-    """The lines that can be folded, in order; of a block the last one, with its brace, stays to be seen."""
+    """Return the lines that can be folded, in order.
+
+    The last line of a block, with its brace, stays visible.
+    """
     module = document.module
-    imports = [_lines(document, each.span) for each in module.declarations if isinstance(each, Import)]
-    comments = [_lines(document, each.span) for each in module.comments if _is_alone(document, each.span)]
-    found = [
+    imports = [
+        _lines(document, declaration.span) for declaration in module.declarations if isinstance(declaration, Import)
+    ]
+    comments = [_lines(document, comment.span) for comment in module.comments if _is_alone(document, comment.span)]
+    ranges = [
         *(_fold(lines) for lines in _statements(document)),
         *(_fold(lines, types.FoldingRangeKind.Imports) for lines in _runs(imports)),
         *(_fold(lines, types.FoldingRangeKind.Comment) for lines in _runs(comments)),
     ]
-    return sorted((each for each in found if each.start_line < each.end_line), key=lambda each: each.start_line)
+    return sorted((fold for fold in ranges if fold.start_line < fold.end_line), key=lambda fold: fold.start_line)
 
 
 def _fold(lines: _Lines, kind: types.FoldingRangeKind | None = None) -> types.FoldingRange:
@@ -32,7 +37,7 @@ def _fold(lines: _Lines, kind: types.FoldingRangeKind | None = None) -> types.Fo
 
 
 def _statements(document: Document) -> Iterator[_Lines]:
-    """The declarations but for imports, and the clauses in blocks."""
+    """Yield the lines of declarations other than imports, and of the clauses in blocks."""
     for declaration in document.module.declarations:
         if isinstance(declaration, Import):
             continue
@@ -53,7 +58,7 @@ def _is_alone(document: Document, span: Span) -> bool:
 
 
 def _runs(pieces: Iterable[_Lines]) -> Iterator[_Lines]:
-    """The lines of those that follow each other, together."""
+    """Merge the lines of adjacent pieces."""
     run: _Lines | None = None
     for first, last in pieces:
         if run is not None and first <= run[1] + 1:

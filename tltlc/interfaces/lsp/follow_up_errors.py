@@ -1,4 +1,4 @@
-"""Messages that may only be there because a part of a text could not be read: nobody wants them while typing it."""
+"""Find follow-up errors, which may only exist because a part of the text could not be parsed."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
 
 @record
 class Unread:
-    """What may stand in the parts of a broken text that could not be read.
+    """What the unparsed parts of a broken text may contain.
 
-    ``declared`` are names that those parts may declare; ``imports`` and ``clock`` say whether there may be an import or
-    a clock in them; ``tests`` are the spans that stand for a whole test in messages.
+    ``declared`` has the names that they may declare. ``imports`` and ``clock`` are whether they may
+    contain an import or a clock. ``tests`` has the spans that stand for a whole test in
+    diagnostics.
     """
 
     declared: frozenset[str]
@@ -33,9 +34,9 @@ class Unread:
     source: SourceFile
 
     def may_mend(self, diagnostic: Diagnostic) -> bool:
-        """Whether what a message misses may stand in a part that could not be read."""
+        """Whether a part that could not be parsed may contain what a diagnostic misses."""
         if diagnostic.code == _NO_SUCH_ATOM:
-            # It may be one of a clause that is being written.
+            # The atom may belong to a clause that is being written.
             return True
         if diagnostic.code == _NO_CLOCK:
             return self.clock
@@ -43,7 +44,7 @@ class Unread:
         if label is None:
             return False
         if diagnostic.code == _WRONG_TEST:
-            # A message about the whole test says that it expects nothing: that may be what is being written.
+            # A label on the whole test means that it has no `expect`, which may be what is being written.
             return label.span in self.tests
         if diagnostic.code not in _NO_SUCH_NAME:
             return False
@@ -51,20 +52,20 @@ class Unread:
 
 
 def unread(module: Module, tokens: Sequence[Token]) -> Unread:
-    """What may stand in the unread parts of a text that is broken somewhere, by its declarations and its tokens."""
+    """Collect what the unparsed parts may contain, from the parsed declarations and the tokens."""
     words = [token.text for token in tokens]
-    read = sum(isinstance(each, Import) for each in module.declarations)
+    imports_read = sum(isinstance(declaration, Import) for declaration in module.declarations)
     return Unread(
         frozenset(_declared(tokens)),
-        words.count("import") > read,
+        words.count("import") > imports_read,
         "clock" in words,
-        frozenset(each.spec.span for each in module.declarations if isinstance(each, TestDecl)),
+        frozenset(declaration.spec.span for declaration in module.declarations if isinstance(declaration, TestDecl)),
         module.source,
     )
 
 
 def _declared(tokens: Sequence[Token]) -> Iterator[str]:
-    """The names behind the heads of declarations, as far as the text goes."""
+    """Yield the names after the keywords of declarations, up to the end of the text."""
     head = ""
     for token in tokens:
         if token.text in _HEADS:

@@ -1,4 +1,4 @@
-"""The layout of ``tltlc fmt`` for a document."""
+"""Format a document like ``tltlc fmt``."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from tltlc.tools.fmt import format_source
 
 
 def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None:
-    """The edit that lays a document out in the style of its project; None where its syntax is broken.
+    """Return the edit that formats a document in the style of its project.
+
+    Return None if its syntax is broken.
 
     Raises:
-        TltlError: TLT0004, the text is too large, or would be.
+        TltlError: TLT0004, the text is too large, or would become too large.
     """
     try:
         after = format_source(document.source, document.project.formatting)
     except TltlError as error:
-        if any(each.code == "TLT0004" for each in error.diagnostics):
+        if any(diagnostic.code == "TLT0004" for diagnostic in error.diagnostics):
             raise
         return None
     return [text_edit(document.source, edit, encoding) for edit in difference(document.source, after)]
