@@ -1,4 +1,4 @@
-"""What is to be known of the word under the pointer."""
+"""Describe the word under the pointer."""
 
 from __future__ import annotations
 
@@ -24,40 +24,42 @@ from tltlc.resolve.problem import ResolutionError
 _FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
 _ASKING: Final = ("reach", "keep", "avoid", "require")
 _LARGEST: Final = 2000
-"""Of a formula with more parts, no sentence is made."""
+"""Formulas with more parts get no English sentence."""
 
 
 def hover(document: Document, offset: int, analysis: Analysis | None, encoding: str) -> types.Hover | None:
-    """What is to be known of the name, keyword or operator at an offset."""
-    found = (
+    """Describe the name, operator, duration or keyword at an offset."""
+    description = (
         _name(document, offset, analysis)
         or _operator(document, offset)
         or _duration(document, offset)
         or _keyword(document, offset)
     )
-    if found is None:
+    if description is None:
         return None
-    text, span = found
+    text, span = description
     content = types.MarkupContent(types.MarkupKind.Markdown, text)
     return types.Hover(content, range_of(document.source, span, encoding))
 
 
 def _name(document: Document, offset: int, analysis: Analysis | None) -> tuple[str, Span] | None:
-    found = document.name_at(offset)
-    if found is None:
+    name = document.name_at(offset)
+    if name is None:
         return None
-    symbol = found.symbol
+    symbol = name.symbol
     if isinstance(symbol.declaration, SpecDecl):
-        spec = next((each for each in document.resolution.program.specs if each.name == symbol.name), None)
-        figures = next((each for each in analysis.figures if each.spec == symbol.name), None) if analysis else None
+        spec = next(
+            (candidate for candidate in document.resolution.program.specs if candidate.name == symbol.name), None
+        )
+        figures = next((entry for entry in analysis.figures if entry.spec == symbol.name), None) if analysis else None
         shown = f"{figures_text(figures)}." if figures else None
-        return spec_markdown(symbol.declaration, spec, document.source, shown), found.span
+        return spec_markdown(symbol.declaration, spec, document.source, shown), name.span
     via = None if symbol.source.name == document.source.name else symbol.source.name.rpartition("/")[2]
-    return symbol_markdown(symbol, document.resolution.env, via), found.span
+    return symbol_markdown(symbol, document.resolution.env, via), name.span
 
 
 def _keyword(document: Document, offset: int) -> tuple[str, Span] | None:
-    """The form of a declaration, clause or line of a test, and what this clause asks for."""
+    """Return the form of a declaration, clause or test line, and what this clause asks for."""
     token = document.token_at(offset)
     if token is None or token.text not in _FORMS:
         return None
@@ -76,7 +78,7 @@ def _duration(document: Document, offset: int) -> tuple[str, Span] | None:
 
 
 def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
-    """What the part of a formula means that an operator makes."""
+    """Return the meaning of the part of a formula that the operator at an offset forms."""
     for declaration in document.module.declarations:
         if not isinstance(declaration, SpecDecl) or not declaration.span.start <= offset < declaration.span.end:
             continue
@@ -100,17 +102,17 @@ def _part(document: Document, clause: Clause, offset: int) -> tuple[str, Span] |
 
 def _meaning(document: Document, part: Expr) -> str | None:
     try:
-        found = formulas.formula(part, document.resolution.env)
+        formula = formulas.formula(part, document.resolution.env)
     except ResolutionError:
         return None
-    return _sentence(found)
+    return _sentence(formula)
 
 
 def _meaning_of_clause(document: Document, clause: Clause) -> str | None:
     for spec in document.resolution.program.specs:
-        own = [each.formula for each in spec.parts if clause.span.covers(each.span)]
-        if own and spec.source.name == document.source.name:
-            return _sentence(build.and_(*own), endless=spec.semantics == "infinite")
+        clause_formulas = [part.formula for part in spec.parts if clause.span.covers(part.span)]
+        if clause_formulas and spec.source.name == document.source.name:
+            return _sentence(build.and_(*clause_formulas), endless=spec.semantics == "infinite")
     return None
 
 
@@ -122,5 +124,5 @@ def _sentence(formula: build.Formula, *, endless: bool = False) -> str | None:
 def _clause_at(document: Document, span: Span) -> Clause | None:
     for declaration in document.module.declarations:
         if isinstance(declaration, SpecDecl) and declaration.span.covers(span):
-            return next((each for each in declaration.clauses if each.keyword_span == span), None)
+            return next((clause for clause in declaration.clauses if clause.keyword_span == span), None)
     return None

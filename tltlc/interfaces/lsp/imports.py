@@ -1,4 +1,4 @@
-"""Where the imports of a text lead."""
+"""Resolve the imports of a text to their files."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tltlc.interfaces.lsp.positions import range_of
 
 
 def targets(document: Document) -> Iterator[tuple[Span, SourceFile]]:
-    """What stands behind each ``import`` that leads somewhere, and the file."""
+    """Yield the span and the file of each ``import`` that leads to a file."""
     for declaration, loaded in document.resolution.modules[-1].imports:
         yield declaration.target_span, loaded.module.source
 
 
 def links(document: Document, encoding: str, uri_of: Callable[[str], str]) -> list[types.DocumentLink]:
-    """The imports as links."""
+    """Return the imports as links."""
     return [
         types.DocumentLink(range_of(document.source, span, encoding), target=uri_of(source.name))
         for span, source in targets(document)

@@ -1,4 +1,4 @@
-"""Find where a JSON object or array ends while its bytes come in, so that its length need not be known."""
+"""Find the end of a JSON object or array while its bytes arrive, without knowing its length."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Final
 
 _OUTSIDE: Final = re.compile(rb'["\[\]{}]')
 _INSIDE: Final = re.compile(rb'[^"\\]*(?:\\.[^"\\]*)*', re.DOTALL)
-"""A string up to its closing quotation mark, or as far as its bytes have come."""
+"""A string up to its closing quotation mark, or up to the last byte so far."""
 _QUOTE: Final = ord('"')
 
 
 class JsonEnd:
-    """Follows the brackets of one JSON text; it looks at each byte once, and checks nothing else."""
+    """Follows the brackets of one JSON text. Looks at each byte once, and checks nothing else."""
 
     def __init__(self) -> None:
         self._at = 0
@@ -20,9 +20,10 @@ class JsonEnd:
         self._in_string = False
 
     def find(self, data: bytearray, limit: int) -> int | None:
-        """Return the offset behind the bracket that closes the first one; None if it is not in ``data[:limit]``.
+        """Return the offset after the bracket that closes the first one.
 
-        The next call takes the same bytes and more.
+        Return None if it is not in ``data[:limit]``. Each call must pass the same bytes as the last
+        one, plus any new ones.
         """
         limit = min(limit, len(data))
         while self._at < limit:
@@ -30,16 +31,19 @@ class JsonEnd:
                 if not self._leave_string(data, limit):
                     return None
                 continue
-            found = _OUTSIDE.search(data, self._at, limit)
-            self._at = found.end() if found else limit
-            if found and self._follow(found[0]):
+            mark = _OUTSIDE.search(data, self._at, limit)
+            self._at = mark.end() if mark else limit
+            if mark and self._follow(mark[0]):
                 return self._at
         return None
 
     def _leave_string(self, data: bytearray, limit: int) -> bool:
-        """Whether the string ends; if not, the next call goes on where its bytes end, or at half an escape."""
-        found = _INSIDE.match(data, self._at, limit)
-        self._at = found.end() if found else limit
+        """Whether the string ends.
+
+        If not, the next call resumes at the end of the bytes, or at half an escape.
+        """
+        match = _INSIDE.match(data, self._at, limit)
+        self._at = match.end() if match else limit
         if self._at == limit or data[self._at] != _QUOTE:
             return False
         self._at += 1

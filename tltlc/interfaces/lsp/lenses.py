@@ -1,4 +1,4 @@
-"""Specs in numbers, above their declarations: states, distance, and how their tests ended."""
+"""Show numbers above each spec: its states, its distance, and the results of its tests."""
 
 from __future__ import annotations
 
@@ -12,33 +12,33 @@ from tltlc.interfaces.lsp.analysis import Analysis, Figures
 from tltlc.interfaces.lsp.positions import range_of
 
 RUN_TESTS: Final = "tltlc.runTests"
-"""The command behind the lens of tests; its arguments are the URI and the name of the spec."""
+"""The command of the test lens; its arguments are the URI and the name of the spec."""
 
 
 def lenses(document: Document, uri: str, analysis: Analysis, encoding: str) -> list[types.CodeLens]:
-    """Two lenses for each spec: its size, and its tests where it has some."""
-    figures = {each.spec: each for each in analysis.figures}
-    found = []
+    """Return two lenses for each spec: its size and, if it has tests, their results."""
+    figures = {entry.spec: entry for entry in analysis.figures}
+    result = []
     for declaration in document.module.declarations:
         if not isinstance(declaration, SpecDecl) or declaration.name not in figures:
             continue
-        own = figures[declaration.name]
+        spec_figures = figures[declaration.name]
         at = range_of(document.source, declaration.name_span, encoding)
-        found.append(types.CodeLens(at, command=types.Command(figures_text(own), "")))
-        if own.passed or own.failed:
-            command = types.Command(tests_text(own), RUN_TESTS, arguments=[uri, declaration.name])
-            found.append(types.CodeLens(at, command=command))
-    return found
+        result.append(types.CodeLens(at, command=types.Command(figures_text(spec_figures), "")))
+        if spec_figures.passed or spec_figures.failed:
+            command = types.Command(tests_text(spec_figures), RUN_TESTS, arguments=[uri, declaration.name])
+            result.append(types.CodeLens(at, command=command))
+    return result
 
 
 def figures_text(figures: Figures) -> str:
-    """``7 states, distance 3``."""
+    """Return a text such as ``7 states, distance 3``."""
     states = f"{figures.states} state{'' if figures.states == 1 else 's'}"
     return f"{states}, " + ("cannot be met" if figures.distance is None else f"distance {figures.distance}")
 
 
 def tests_text(figures: Figures) -> str:
-    """``3 tests pass``, ``1 of 3 tests fails``."""
+    """Return a text such as ``3 tests pass`` or ``1 of 3 tests fails``."""
     count = figures.passed + figures.failed
     tests = f"{count} test{'' if count == 1 else 's'}"
     if figures.failed:

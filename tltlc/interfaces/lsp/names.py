@@ -1,4 +1,4 @@
-"""Every place of a module where a name stands, and what it stands for."""
+"""Find every name in a module and the declaration that it refers to."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tltlc.resolve.scope import Binding, Declared, Scope
 
 Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
 MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
-"""Of these, declarations of one name in several files of a program are one."""
+"""If several files of a program declare one name of these kinds, the declarations count as one."""
 
 _FORMULAS = ("reach", "keep", "avoid", "require")
 
 
 @record
 class Symbol:
-    """What a name stands for, and where it is declared: ``span`` of ``source``."""
+    """The declaration that a name refers to; ``span`` is the place of the name in ``source``."""
 
     kind: Kind
     name: str
@@ -32,11 +32,11 @@ class Symbol:
 
     @property
     def key(self) -> tuple[str, str, int]:
-        """The same for all uses of one declaration."""
+        """A key that all uses of one declaration share."""
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both stand for one thing, where the files of both are parts of one program."""
+        """Whether both are the same thing, given that their files are parts of one program."""
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key
@@ -44,7 +44,10 @@ class Symbol:
 
 @record
 class Occurrence:
-    """A place where a name stands; ``span`` covers what is declared, without the alias of an import in front."""
+    """A use or declaration of a name.
+
+    ``span`` covers the declared name, without an import alias before it.
+    """
 
     span: Span
     symbol: Symbol
@@ -52,15 +55,15 @@ class Occurrence:
 
 
 def occurrences(scope: Scope, tokens: Sequence[Token]) -> tuple[Occurrence, ...]:
-    """Every name of a module that stands for something, in the order of the text."""
+    """Return every name of a module that refers to a declaration, in the order of the text."""
     walk = _Walk(scope, tokens)
     for declaration in scope.module.declarations:
         walk.declaration(declaration)
-    return tuple(sorted(walk.found, key=lambda each: each.span.start))
+    return tuple(sorted(walk.found, key=lambda occurrence: occurrence.span.start))
 
 
 def symbol_of(binding: Binding) -> Symbol:
-    """What a visible name stands for."""
+    """Return the symbol of a visible name."""
     return Symbol(binding.kind, binding.name, binding.declaration, binding.scope.source, binding.span)
 
 
@@ -76,13 +79,15 @@ class _Walk:
         self._starts = {token.start: index for index, token in enumerate(tokens)}
         self._tokens = tokens
         self._visible: Mapping[str, Binding] = scope.names
-        self._unaliased = {each.name: each for each in scope.names.values()}
+        self._unaliased = {binding.name: binding for binding in scope.names.values()}
         self._label_start: int | None = None
-        """In the label of a state, where its text begins: the spans of its formula count from there."""
+        """The offset of the label that is being read: the spans of its formula count from there."""
         self._specs: dict[str, Symbol] = {}
-        for each in scope.module.declarations:
-            if isinstance(each, tree.SpecDecl):
-                self._specs.setdefault(each.name, Symbol("spec", each.name, each, scope.source, each.name_span))
+        for declaration in scope.module.declarations:
+            if isinstance(declaration, tree.SpecDecl):
+                self._specs.setdefault(
+                    declaration.name, Symbol("spec", declaration.name, declaration, scope.source, declaration.name_span)
+                )
 
     def declaration(self, declaration: tree.Declaration) -> None:
         """Collect the names of a declaration."""
@@ -115,7 +120,7 @@ class _Walk:
                         self._label(item)
 
     def _head(self, declaration: tree.SignalDecl | tree.ParamDecl | tree.PredicateDecl | tree.LetDecl) -> None:
-        """The parameters, the range, and the value or body."""
+        """Collect names in the parameters, the range, and the value or body."""
         local: dict[str, Symbol] = {}
         for parameter in () if isinstance(declaration, tree.ParamDecl) else declaration.parameters:
             if parameter.default is not None:
@@ -132,7 +137,10 @@ class _Walk:
             self._expressions([declaration.body], local)
 
     def _label(self, item: tree.TestExpect) -> None:
-        """The names in the label of a state: a formula where it is no English, in which no aliases stand."""
+        """Collect the names in the label of a state if it is a formula, not English.
+
+        Labels use no import aliases.
+        """
         text = self._tokens[self._starts[item.span.start] + 2]
         formula, _ = parse_formula(SourceFile(self._scope.source.name, text.text[1:-1]))
         if formula is not None:
@@ -143,34 +151,37 @@ class _Walk:
     def _expressions(self, expressions: Iterable[tree.Expr], local: _Locals = EMPTY) -> None:
         waiting = [(expression, local) for expression in expressions]
         while waiting:
-            part, around = waiting.pop()
+            part, visible = waiting.pop()
             if isinstance(part, tree.Name):
-                self._used(part.name, part.span, around)
+                self._used(part.name, part.span, visible)
             elif isinstance(part, tree.Call):
-                self._used(part.name, part.name_span, around)
+                self._used(part.name, part.name_span, visible)
                 self._keywords(part)
             elif isinstance(part, tree.Quantified):
                 for name in part.entities:
-                    self._used(name.name, name.span, around)
-                around = self._with_variable(part, around)
-            waiting += [(child, around) for child in children(part)]
+                    self._used(name.name, name.span, visible)
+                visible = self._with_variable(part, visible)
+            waiting += [(child, visible) for child in children(part)]
 
-    def _with_variable(self, part: tree.Quantified, around: _Locals) -> _Locals:
-        """The local names in the body of a quantifier, whose variable is the token behind its first one."""
+    def _with_variable(self, part: tree.Quantified, local: _Locals) -> _Locals:
+        """Return the local names in the body of a quantifier.
+
+        Its variable is the token after its first one.
+        """
         index = self._starts.get(part.span.start) if self._label_start is None else None
         if index is None or index + 1 >= len(self._tokens):
-            return around
+            return local
         span = self._tokens[index + 1].span
         symbol = Symbol("variable", part.variable, part, self._scope.source, span)
         self._note(span, symbol, declares=True)
-        return {**around, part.variable: symbol}
+        return {**local, part.variable: symbol}
 
     def _keywords(self, call: tree.Call) -> None:
         binding = self._visible.get(call.name)
         declaration = binding.declaration if binding else None
         if binding is None or not isinstance(declaration, (tree.SignalDecl, tree.PredicateDecl, tree.LetDecl)):
             return
-        parameters = {each.name: each for each in declaration.parameters}
+        parameters = {parameter.name: parameter for parameter in declaration.parameters}
         for argument in call.arguments:
             parameter = parameters.get(argument.name or "")
             if parameter is not None:

@@ -1,6 +1,8 @@
-"""Offsets of characters as the positions of the protocol: lines from 0, columns in units of the agreed encoding.
+"""Convert between character offsets and positions of the protocol.
 
-A position takes logarithmic time: which signs of a text count more than one unit is found out once.
+Lines count from 0, columns in units of the agreed encoding.
+
+A conversion takes logarithmic time, because the wide characters of a text are located only once.
 """
 
 from __future__ import annotations
@@ -17,41 +19,42 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 
 UTF_16: Final = "utf-16"
-"""The encoding where nothing is agreed upon: signs beyond the BMP (𝒰) count two."""
+"""The default encoding; characters beyond the BMP (𝒰) count two units."""
 
 _WIDE: Final = {"utf-8": re.compile("[^\x00-\x7f]"), UTF_16: re.compile("[^\x00-\uffff]")}
-"""The signs that count more than one unit; in UTF-32 there are none."""
+"""The characters that count more than one unit; in UTF-32 there are none."""
 _TEXTS: Final = 16
-"""How many texts are kept with their wide signs: a request looks at few of them in turn."""
+"""How many texts are cached with their wide characters; a request looks at few texts in turn."""
 
 
 @record
 class _Wide:
-    """The offsets of the signs of a text that count more than one unit, in order, and how many units more.
+    """The offsets of wide characters in a text, in order, and their extra units.
 
-    ``extra[i]`` is the sum for the first ``i`` of them.
+    A wide character counts more than one unit. ``extra[i]`` is the sum of the extra units of the
+    first ``i`` wide characters.
     """
 
     offsets: tuple[int, ...]
     extra: tuple[int, ...]
 
     def units(self, start: int, end: int) -> int:
-        """How many units the characters from ``start`` to ``end`` count."""
+        """Return how many units the characters from ``start`` to ``end`` count."""
         first, last = bisect_left(self.offsets, start), bisect_left(self.offsets, end)
         return end - start + self.extra[last] - self.extra[first]
 
 
 @lru_cache(maxsize=_TEXTS)
 def _wide(text: str, encoding: str) -> _Wide:
-    # A text that is asked about again is the same object: then neither its hash nor its comparison takes long.
+    # Repeated calls pass the same text object, so its hash is cached and comparing it is fast.
     if encoding not in _WIDE or text.isascii():
         return _Wide((), (0,))
-    found = [(each.start(), _units(each[0], encoding) - 1) for each in _WIDE[encoding].finditer(text)]
-    return _Wide(tuple(at for at, _ in found), tuple(accumulate((more for _, more in found), initial=0)))
+    wide = [(match.start(), _units(match[0], encoding) - 1) for match in _WIDE[encoding].finditer(text)]
+    return _Wide(tuple(at for at, _ in wide), tuple(accumulate((extra for _, extra in wide), initial=0)))
 
 
 def position(source: SourceFile, offset: int, encoding: str = UTF_16) -> types.Position:
-    """The position of a character; within a line end, that of its beginning."""
+    """Return the position of a character; inside a line end, that is the start of the line end."""
     at = min(max(0, offset), len(source.text))
     if at and source.text[at - 1 : at + 1] == "\r\n":
         at -= 1
@@ -60,17 +63,17 @@ def position(source: SourceFile, offset: int, encoding: str = UTF_16) -> types.P
 
 
 def range_of(source: SourceFile, span: Span, encoding: str = UTF_16) -> types.Range:
-    """The range that a span covers."""
+    """Return the range that a span covers."""
     return types.Range(position(source, span.start, encoding), position(source, span.end, encoding))
 
 
 def whole(source: SourceFile, encoding: str = UTF_16) -> types.Range:
-    """The range of the whole text."""
+    """Return the range of the whole text."""
     return range_of(source, Span(0, len(source.text)), encoding)
 
 
 def offset(source: SourceFile, at: types.Position, encoding: str = UTF_16) -> int:
-    """The character at a position; the nearest one where the text has no such place."""
+    """Return the offset of the character at a position, or of the nearest one in the text."""
     last, _ = source.position(len(source.text))
     if at.line >= last:
         return len(source.text)
@@ -80,7 +83,7 @@ def offset(source: SourceFile, at: types.Position, encoding: str = UTF_16) -> in
 
 
 def _start(source: SourceFile, line: int) -> int:
-    """The offset of the first character of a line that is there, from 0."""
+    """Return the offset of the first character of an existing line, counted from 0."""
     low, high = 0, len(source.text)
     while low < high:
         middle = (low + high) // 2
@@ -92,5 +95,5 @@ def _start(source: SourceFile, line: int) -> int:
 
 
 def _units(sign: str, encoding: str) -> int:
-    """How many units a wide sign counts."""
+    """Return how many units a wide character counts."""
     return len(sign.encode(errors="surrogatepass")) if encoding == "utf-8" else 2

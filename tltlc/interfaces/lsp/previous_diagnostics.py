@@ -1,4 +1,4 @@
-"""What was found of an earlier state of a text, where it stands unchanged: remarks do not come and go at each key."""
+"""Keep earlier diagnostics at unchanged places of a text, so they do not flicker with each key."""
 
 from __future__ import annotations
 
@@ -10,21 +10,24 @@ from tltlc.interfaces.lsp.analysis import Analysis
 from tltlc.interfaces.lsp.edits import difference
 
 
-def kept(before: Document, found: Analysis, now: Document) -> tuple[Diagnostic, ...]:
-    """What only the automata told of a document as it was, less what is said of places that have been edited."""
+def kept(before: Document, analysis: Analysis, now: Document) -> tuple[Diagnostic, ...]:
+    """Return earlier diagnostics that need automata, moved to their new places.
+
+    Leaves out diagnostics whose places were edited, and those that the new text has anyway.
+    """
     edits = difference(before.source, now.source.text)
-    told = {_without_fixes(each) for each in now.said}
-    moved = (_moved(each, edits, now.source) for each in found.said if each not in before.said)
-    return tuple(each for each in moved if each is not None and each not in told)
+    reported = {_without_fixes(diagnostic) for diagnostic in now.said}
+    moved = (_moved(diagnostic, edits, now.source) for diagnostic in analysis.said if diagnostic not in before.said)
+    return tuple(diagnostic for diagnostic in moved if diagnostic is not None and diagnostic not in reported)
 
 
 def _without_fixes(diagnostic: Diagnostic) -> Diagnostic:
-    """The diagnostic alone: the edits of its fixes are for another text."""
+    """Return the diagnostic without its fixes: their edits are for another text."""
     return replace(diagnostic, fixes=())
 
 
 def _moved(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Diagnostic | None:
-    """The diagnostic at its new place; None where that was edited."""
+    """Return the diagnostic at its new place, or None if that place was edited."""
     labels: list[Label] = []
     for label in diagnostic.labels:
         if label.source.name != source.name:

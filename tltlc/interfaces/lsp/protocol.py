@@ -1,4 +1,7 @@
-"""What an editor sends, also where it is wrong: requests are answered, all else is logged, and what follows counts."""
+"""Handle the messages of an editor, even malformed ones.
+
+Requests get an answer and everything else is logged; a bad message does not affect the next one.
+"""
 
 from __future__ import annotations
 
@@ -20,16 +23,16 @@ from pygls.protocol import LanguageServerProtocol
 from tltlc.interfaces.lsp.frames import Fault, Frame
 
 LOG: Final = logging.getLogger("tltlc.interfaces.lsp")
-"""Goes to standard error, which editors show in a log of the server."""
+"""Logs to standard error, which editors show as the server's log."""
 _ANSWERS: Final = {"result", "error"}
 _OF_NOTEBOOKS: Final = "notebookDocument/"
 
 
 class Protocol(LanguageServerProtocol):
-    """The library's protocol, which looks at a message as a whole, so that it can answer those that are wrong."""
+    """The protocol of pygls; it checks whole messages, so that it can answer malformed ones."""
 
     def take(self, frame: Frame) -> None:
-        """Have a message answered, or say what is wrong with one."""
+        """Handle a message, or report a fault."""
         if isinstance(frame, Fault):
             if frame.is_answered:
                 self.refuse(None, JsonRpcInvalidRequest(frame.text))
@@ -39,28 +42,28 @@ class Protocol(LanguageServerProtocol):
         try:
             message = json.loads(frame.data)
         except (ValueError, RecursionError) as error:
-            # ValueError is that of broken JSON, of bytes that are no text, and of numbers with thousands of digits.
+            # ValueError: broken JSON, bytes that are not text, or numbers with thousands of digits.
             self.refuse(None, JsonRpcParseError.of(error))
         else:
             self.handle_message(message)
 
     def handle_message(self, message: Any) -> None:
-        """Have a message answered."""
+        """Check a message and handle it."""
         try:
-            understood = self._understood(message)
+            structured = self._understood(message)
         except JsonRpcException as error:
             self.refuse(message, error)
         else:
-            super().handle_message(understood)
+            super().handle_message(structured)
 
     def refuse(self, message: Any, error: JsonRpcException) -> None:
-        """Say what is wrong with a message: to who waits for an answer, or cannot be known; else in the log."""
+        """Log an error, and answer with it if the sender waits for an answer or may do so."""
         content = message if isinstance(message, dict) else {}
         LOG.warning("a message was refused (method: %s): %s", content.get("method"), error)
         if ("id" in content or "method" not in content) and not content.keys() & _ANSWERS:
             number = content.get("id")
-            told = {"code": error.code, "message": error.message}
-            self._send_data({"jsonrpc": self.VERSION, "id": number if _is_id(number) else None, "error": told})
+            error_content = {"code": error.code, "message": error.message}
+            self._send_data({"jsonrpc": self.VERSION, "id": number if _is_id(number) else None, "error": error_content})
 
     def _understood(self, message: Any) -> Any:
         if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
@@ -72,20 +75,20 @@ class Protocol(LanguageServerProtocol):
         elif "id" not in message or not message.keys() & _ANSWERS:
             raise JsonRpcInvalidRequest("this is neither a request nor an answer")
         try:
-            understood = self.structure_message(message)
+            structured = self.structure_message(message)
         except JsonRpcException as error:
             raise JsonRpcInvalidParams("; ".join(transform_error(error.__cause__ or error))) from None
-        if isinstance(understood, types.ExecuteCommandRequest) and understood.params.arguments is None:
-            # So that the library counts them.
-            understood.params.arguments = []
-        if isinstance(understood, types.DidChangeTextDocumentNotification):
-            uri = understood.params.text_document.uri
+        if isinstance(structured, types.ExecuteCommandRequest) and structured.params.arguments is None:
+            # The library needs a list to count them.
+            structured.params.arguments = []
+        if isinstance(structured, types.DidChangeTextDocumentNotification):
+            uri = structured.params.text_document.uri
             if uri not in self.workspace.text_documents:
                 raise JsonRpcInvalidParams(f"a document was changed that is not open: {uri}")
-        return understood
+        return structured
 
     def _check_request(self, message: dict[str, Any]) -> None:
-        """Whether a request, or what an editor tells, has a form, and comes at a time, at which it can be looked at."""
+        """Raise if a request or notification has a wrong form, or comes at a wrong time."""
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")
@@ -100,7 +103,7 @@ class Protocol(LanguageServerProtocol):
         if method != types.EXIT and self._shutdown:
             raise JsonRpcInvalidRequest(f"`{method}` came after `{types.SHUTDOWN}`")
         if self.get_message_type(method) is None:
-            # What is unknown may have none, and the library says that it is unknown.
+            # Unknown messages may lack params; the library then reports that the method is unknown.
             message.setdefault("params", None)
 
 

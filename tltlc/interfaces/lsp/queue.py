@@ -1,4 +1,7 @@
-"""Which document is analysed next: the one that the user looked at last, and what takes long gives way to it."""
+"""Choose the document to analyse next: the one that the user looked at last.
+
+Long analyses give way to it.
+"""
 
 from __future__ import annotations
 
@@ -9,22 +12,26 @@ from typing import Final
 from tltlc.interfaces.lsp.analysis import Analysis
 
 LONG_S: Final = 0.5
-"""An analysis that takes so many seconds gives way to what the user has looked at since, and begins anew after it.
+"""Seconds after which an analysis gives way to a document that the user looked at since.
 
-Far more than that of a small file takes, and than it costs to start the process again.
+The analysis restarts afterwards. This limit is much longer than the analysis of a small file, and
+than a restart of the process.
 """
 
 
 class Queue:
-    """What waits to be analysed, one after another; ``analyse`` does it, and ends early once ``give_up`` is called."""
+    """Analyses documents one after another.
+
+    ``analyse`` does the work, and ends early after ``give_up`` is called.
+    """
 
     def __init__(self, analyse: Callable[[str, bool], Awaitable[Analysis | None]], give_up: Callable[[], None]) -> None:
         self._analyse = analyse
         self._give_up = give_up
         self._waiting: dict[str, bool] = {}
-        """What is to be analysed, and whether it is although an analysis is known."""
+        """The documents to analyse, and whether to do so even if an analysis is known."""
         self._looks: dict[str, int] = {}
-        """When the user looked at a document last, as the number of that look."""
+        """The number of the last look at each document; later looks have greater numbers."""
         self._working: str | None = None
         self._working_since = 0.0
         self._task: asyncio.Task[None] | None = None
@@ -32,19 +39,22 @@ class Queue:
         self._asked: dict[str, list[asyncio.Future[Analysis | None]]] = {}
 
     def looked_at(self, uri: str) -> None:
-        """The user is at a document: what waits for it comes first."""
+        """Record that the user is at a document, which is then analysed before others."""
         self._looks[uri] = max(self._looks.values(), default=0) + 1
         self._give_way()
 
     def put(self, uri: str, *, again: bool = False) -> None:
-        """Have a document analysed; also if its analysis is known, where that is asked for."""
+        """Schedule the analysis of a document; with ``again``, even if its analysis is known."""
         self._waiting[uri] = again or self._waiting.get(uri, False)
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._work())
         self._give_way()
 
     async def answer(self, uri: str) -> Analysis | None:
-        """What is found of a document, which comes first; None where it is dropped, or takes too long."""
+        """Return the analysis of a document, which goes first.
+
+        Return None if it is dropped or takes too long.
+        """
         future: asyncio.Future[Analysis | None] = asyncio.get_running_loop().create_future()
         self._asked.setdefault(uri, []).append(future)
         self.looked_at(uri)
@@ -52,7 +62,7 @@ class Queue:
         return await future
 
     def drop(self, uri: str) -> None:
-        """Nothing is to be found of a document as it was."""
+        """Cancel the analysis of a document, whose text is outdated."""
         self._waiting.pop(uri, None)
         if self._working == uri:
             self._give_up()
@@ -60,7 +70,7 @@ class Queue:
             self._tell(uri, None)
 
     def clear(self) -> None:
-        """Nothing is to be found of anything."""
+        """Cancel all analyses."""
         for uri in [*self._waiting]:
             self.drop(uri)
         self._give_up()
@@ -73,20 +83,23 @@ class Queue:
             uri = max(self._waiting, key=self._look)
             again = self._waiting.pop(uri)
             self._working, self._working_since = uri, asyncio.get_running_loop().time()
-            found = None
+            analysis = None
             try:
-                found = await self._analyse(uri, again)
+                analysis = await self._analyse(uri, again)
             finally:
                 self._working = None
                 if uri not in self._waiting:
-                    self._tell(uri, found)
+                    self._tell(uri, analysis)
 
     def _give_way(self) -> None:
-        """Give up what is being done, once it has had its time, if the user has looked at what waits since."""
+        """Give up a long analysis if the user has looked at a waiting document since.
+
+        If the analysis is not long yet, check again when it is.
+        """
         if self._timer is not None:
             self._timer.cancel()
         working = self._working
-        if working is None or all(self._look(each) <= self._look(working) for each in self._waiting):
+        if working is None or all(self._look(uri) <= self._look(working) for uri in self._waiting):
             return
         loop, end = asyncio.get_running_loop(), self._working_since + LONG_S
         if loop.time() < end:
@@ -95,7 +108,7 @@ class Queue:
             self._waiting[working] = True
             self._give_up()
 
-    def _tell(self, uri: str, found: Analysis | None) -> None:
+    def _tell(self, uri: str, analysis: Analysis | None) -> None:
         for future in self._asked.pop(uri, ()):
             if not future.done():
-                future.set_result(found)
+                future.set_result(analysis)

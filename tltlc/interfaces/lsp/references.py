@@ -1,4 +1,4 @@
-"""Where else a name stands, in all files of the workspace, and giving it another one."""
+"""Find all uses of a name in the files of the workspace, and rename it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tltlc.resolve.scope import FUNCTIONS
 
 _LOCAL: Final = ("parameter", "variable")
 _OF_ONE_FILE: Final = ("variable", "spec")
-"""What is local to a formula, and specs, stand in one file."""
+"""Variables of formulas, and specs: they are used in one file only."""
 _NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*\Z")
 _PLAIN: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
@@ -31,51 +31,52 @@ Found = list[tuple[Document, list[Occurrence]]]
 
 
 def references(symbol: Symbol, workspace: Workspace) -> Found:
-    """Every place that stands for what a symbol does, file by file."""
+    """Return every place that refers to the same thing as a symbol, by document."""
     documents = _documents(symbol, workspace)
     programs = _programs(symbol, documents)
-    found = []
+    result = []
     for document in documents:
         if path_of(document.source.name) in programs:
-            places = [each for each in document.names if each.symbol.is_same(symbol)]
+            places = [place for place in document.names if place.symbol.is_same(symbol)]
             if places:
-                found.append((document, places))
-    return found
+                result.append((document, places))
+    return result
 
 
 def may_have_references(symbol: Symbol, text: str) -> bool:
-    """Whether places for a symbol may depend on what a source text declares and imports; its own file aside."""
+    """Whether the uses of a symbol may depend on the declarations and imports of another text."""
     if symbol.kind in _OF_ONE_FILE:
         return False
-    # A signal that two files declare is one where a third one imports both.
+    # A signal that two files declare is the same one in a third file that imports both.
     return symbol.name in text or (symbol.kind in MERGED and may_import(text))
 
 
 def may_refuse_rename(symbol: Symbol, text: str) -> bool:
-    """Whether a new name for a symbol may depend on what a source text declares and imports; its own file aside."""
+    """Whether renaming a symbol may depend on the declarations and imports of another text."""
     return may_have_references(symbol, text) or (symbol.kind not in _LOCAL and may_import(text))
 
 
 def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
-    """The edits that give what a symbol stands for another name, everywhere.
+    """Return the edits that rename a symbol everywhere.
 
-    Errors: TLT0770 where it is declared outside of the workspace, TLT0771 where the new name cannot be used.
+    Raises TltlError: TLT0770 if it is declared outside the workspace, TLT0771 if the new name
+    cannot be used.
     """
     check_renamable(symbol, workspace)
     if name == symbol.name:
         return []
     _check_form(symbol, name)
-    found = references(symbol, workspace)
-    for document, _ in found:
+    matches = references(symbol, workspace)
+    for document, _ in matches:
         if path_of(document.source.name) not in workspace.texts() and not workspace.is_own(document.source.name):
             raise _elsewhere(symbol, document.source.name)
-    changed = [(document, [Edit(each.span, name) for each in _distinct(places)]) for document, places in found]
+    changed = [(document, [Edit(place.span, name) for place in _distinct(places)]) for document, places in matches]
     _check_free(symbol, name, changed, workspace)
     return changed
 
 
 def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
-    """Error TLT0770 where a name is not ours to change."""
+    """Raise TLT0770 if a symbol is declared outside the workspace."""
     if not workspace.is_own(symbol.source.name):
         raise _elsewhere(symbol, symbol.source.name)
     if symbol.kind in MERGED:
@@ -88,44 +89,44 @@ def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
 
 
 def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
-    """Whether a library declares the same signal, param or entity, in a program that has the symbol's file."""
+    """Whether a library declares the same thing, in a program that contains the symbol's file."""
     if path_of(symbol.source.name) not in document.reads:
         return False
     modules = document.resolution.modules
     return any(
-        (type(each), getattr(each, "name", None)) == (type(symbol.declaration), symbol.name)
+        (type(declaration), getattr(declaration, "name", None)) == (type(symbol.declaration), symbol.name)
         for loaded in modules
         if loaded.module.source is source
-        for each in loaded.module.declarations
+        for declaration in loaded.module.declarations
     )
 
 
 def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
-    """The documents in which a symbol may stand, its own first."""
+    """Return the documents that may contain a symbol, its own first."""
     own = workspace.named(path_of(symbol.source.name))
-    others = [] if symbol.kind in _OF_ONE_FILE else [*workspace.all()]
-    others = [each for each in others if may_have_references(symbol, each.source.text)]
-    found = {each.source.name: each for each in others}
+    candidates = [] if symbol.kind in _OF_ONE_FILE else [*workspace.all()]
+    candidates = [document for document in candidates if may_have_references(symbol, document.source.text)]
+    by_name = {document.source.name: document for document in candidates}
     if own is not None:
-        found = {own.source.name: own, **found}
-    return list(found.values())
+        by_name = {own.source.name: own, **by_name}
+    return list(by_name.values())
 
 
 def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
-    """The paths of the files that are parts of one program with the symbol's file."""
+    """Return the paths of the files that are parts of one program with the symbol's file."""
     known = {path_of(symbol.source.name)}
     if symbol.kind not in MERGED:
-        return known | {path_of(each.source.name) for each in documents if each.reads & known}
+        return known | {path_of(document.source.name) for document in documents if document.reads & known}
     while True:
-        # A signal that two files declare is one where a third one imports both.
-        more = set().union(*(each.reads for each in documents if each.reads & known))
-        if more <= known:
+        # A signal that two files declare is the same one in a third file that imports both.
+        connected = set().union(*(document.reads for document in documents if document.reads & known))
+        if connected <= known:
             return known
-        known |= more
+        known |= connected
 
 
 def _distinct(places: list[Occurrence]) -> list[Occurrence]:
-    return list({each.span: each for each in places}.values())
+    return list({place.span: place for place in places}.values())
 
 
 # --- refusals -----------------------------------------------------------------------------------
@@ -142,7 +143,7 @@ def _check_form(symbol: Symbol, name: str) -> None:
 
 
 def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Edit]]], workspace: Workspace) -> None:
-    """Error TLT0771 where the new name would stand for something else, or something else for it."""
+    """Raise TLT0771 if the rename would change what any name refers to, or add errors."""
     texts = workspace.texts()
     for document, edits in changed:
         texts[path_of(document.source.name)] = applied(document.source.text, edits)
@@ -153,7 +154,9 @@ def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Ed
         if _shape(document, edits) != _shape(after, edits, shift=True) or _errors(after) > _errors(document):
             where = document.source.name
             raise _refused(f"`{name}` means something else in `{where}` already", "choose a name that is not taken")
-    importing = [] if symbol.kind in _LOCAL else [each for each in workspace.all() if may_import(each.source.text)]
+    importing = (
+        [] if symbol.kind in _LOCAL else [document for document in workspace.all() if may_import(document.source.text)]
+    )
     for document in importing:
         if any(path_of(other.source.name) in document.reads for other, _ in changed) and not any(
             other.source.name == document.source.name for other, _ in changed
@@ -165,37 +168,40 @@ def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Ed
 
 
 def _shape(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Where the names of a text lead to, in terms of the text before an edit: the same before and after a rename."""
+    """Return where the names of a text lead to, with offsets before the edit.
+
+    A correct rename preserves this.
+    """
     own = document.source.name
     before = _before(edits if shift else [])
-    found = []
-    for each in document.names:
-        symbol = each.symbol
-        # Another file may be edited as well: what counts there is the kind alone.
+    targets = []
+    for occurrence in document.names:
+        symbol = occurrence.symbol
+        # Another file may be edited as well, so compare only the kind and the file there.
         target = before(symbol.span.start) if symbol.source.name == own else 0
-        found.append((before(each.span.start), f"{symbol.kind} {symbol.source.name}", target))
-    return found
+        targets.append((before(occurrence.span.start), f"{symbol.kind} {symbol.source.name}", target))
+    return targets
 
 
 def _before(edits: list[Edit]) -> Callable[[int], int]:
-    """A function from the offset of a character after the edits to the one before them."""
-    ordered = sorted(edits, key=lambda each: each.span.start)
-    moved = [0, *accumulate(len(each.text) - (each.span.end - each.span.start) for each in ordered)]
-    starts = [each.span.start + by for each, by in zip(ordered, moved, strict=False)]
-    return lambda offset: offset - moved[bisect_left(starts, offset)]
+    """Return a function that maps a character offset after the edits to the one before them."""
+    ordered = sorted(edits, key=lambda edit: edit.span.start)
+    shifts = [0, *accumulate(len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered)]
+    starts = [edit.span.start + shift for edit, shift in zip(ordered, shifts, strict=False)]
+    return lambda offset: offset - shifts[bisect_left(starts, offset)]
 
 
 def _errors(document: Document) -> int:
     _, syntax = parse(document.source)
-    return sum(each.severity == "error" for each in (*syntax, *document.resolution.diagnostics))
+    return sum(diagnostic.severity == "error" for diagnostic in (*syntax, *document.resolution.diagnostics))
 
 
 def _elsewhere(symbol: Symbol, name: str) -> TltlError:
     title = f"`{symbol.name}` is declared in `{name}`, outside of this workspace"
-    own = "a `let` of yours may give it another name"
-    way_out = own if symbol.kind in ("predicate", "let") else "change it there, in an editor that shows its folder"
-    return TltlError([Diagnostic("TLT0770", title, help=way_out)])
+    let_help = "a `let` of yours may give it another name"
+    help_ = let_help if symbol.kind in ("predicate", "let") else "change it there, in an editor that shows its folder"
+    return TltlError([Diagnostic("TLT0770", title, help=help_)])
 
 
-def _refused(title: str, way_out: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0771", title, help=way_out)])
+def _refused(title: str, help_: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0771", title, help=help_)])

@@ -1,4 +1,4 @@
-"""The server itself: how it starts and ends, and what editors tell it."""
+"""The server itself: how it starts and ends, and how it handles notifications of editors."""
 
 from __future__ import annotations
 
@@ -27,28 +27,31 @@ from tltlc.interfaces.lsp.protocol import LOG, Protocol
 from tltlc.interfaces.lsp.session import Server
 
 _REFUSED: Final = -32803
-"""The protocol's code of a request that failed for a reason that the user is to read."""
+"""The protocol's error code RequestFailed, for failures whose reason the user should read."""
 _PIECE: Final = 1 << 16
 """Bytes that are read at once."""
 _NOBODY_READS: Final = 141
 
 
 def serve() -> bool:
-    """Speak with an editor over standard input and output until it leaves; whether it took its leave in order."""
-    # Copies of the two: whatever else prints, prints to standard error.
+    """Serve an editor over standard input and output until it exits.
+
+    Return whether it sent ``shutdown`` before.
+    """
+    # Use copies of both streams, and send everything else that is printed to standard error.
     lines_in, lines_out = os.fdopen(os.dup(0), "rb"), _Line(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)
-    # Of the library's log, only faults: editors may cancel what is answered already, and tell what nobody asked for.
+    # Log only errors of the library: editors may cancel answered requests, and send unknown notifications.
     logging.getLogger("pygls").setLevel(logging.ERROR)
     for part in ("pygls.protocol.json_rpc", "pygls.server"):
         logging.getLogger(part).addFilter(_is_unforeseen)
     for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])):
         if signal.getsignal(number) is not signal.SIG_IGN:
-            # A thread waits for the editor's next line, and Python would wait for the thread.
+            # A thread waits for the editor's next line, and a normal exit of Python would wait for that thread.
             signal.signal(number, lambda number, _: os._exit(128 + number))
     server = create()
     cast("Protocol", server.protocol).set_writer(StdoutWriter(cast("BinaryIO", lines_out)))
-    # At the message `exit` the library raises SystemExit.
+    # The library raises SystemExit at the message `exit`.
     with suppress(SystemExit):
         try:
             asyncio.run(_listen(server, lines_in))
@@ -59,7 +62,7 @@ def serve() -> bool:
 
 
 async def _listen(server: Server, file: BufferedReader) -> None:
-    """Take messages until nothing more comes."""
+    """Handle messages until the input ends."""
     frames, protocol = Frames(), cast("Protocol", server.protocol)
     loop = asyncio.get_running_loop()
     data = b"?"
@@ -71,14 +74,14 @@ async def _listen(server: Server, file: BufferedReader) -> None:
             except Exception as error:
                 LOG.exception("a message was not understood")
                 server.report_server_error(error, JsonRpcException)
-            # What a message has begun, such as an answer, goes on before the next one is looked at.
+            # Let handlers run, for example to send an answer, before the next message is handled.
             await asyncio.sleep(0)
 
 
 class _Line:
-    """Output to the editor.  The process ends when the editor has stopped reading.
+    """Output to the editor. The process ends when the editor stops reading.
 
-    After ``exit`` the file is closed; answers that were still being made are dropped.
+    After ``exit`` the file is closed, and answers that are still in progress are dropped.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -102,13 +105,13 @@ class _Line:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether a line of the log is about more than a message that was refused."""
+    """Whether a log record is about more than a refused message."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
 
 def create() -> Server:
-    """A server with all that it answers."""
+    """Create a server with all its handlers."""
     server = Server()
     for method, handler, options in (*_TOLD, *ANSWERS):
         server.feature(method, options)(_guarded(server, handler))
@@ -117,7 +120,10 @@ def create() -> Server:
 
 
 def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[[Any], Any]:
-    """A handler that turns what it refuses into the protocol's answer; the user looks at what it is asked about."""
+    """Wrap a handler: a TltlError becomes an error response.
+
+    A request counts as a look of the user at its document.
+    """
     if iscoroutinefunction(handler):
 
         async def answer_in_steps(params: Any) -> Any:
@@ -138,17 +144,17 @@ def _refusals(server: Server, params: Any) -> Iterator[None]:
     try:
         yield
     except TltlError as error:
-        found = shortened(error.diagnostics[0])
-        text = f"{found.title}; {found.help}" if found.help else found.title
-        raise JsonRpcException(f"{text} ({found.code})", _REFUSED) from None
+        diagnostic = shortened(error.diagnostics[0])
+        text = f"{diagnostic.title}; {diagnostic.help}" if diagnostic.help else diagnostic.title
+        raise JsonRpcException(f"{text} ({diagnostic.code})", _REFUSED) from None
     finally:
-        # Only now: what is closed or changed waits no more, so that nothing gives way to it.
+        # Only now: a document that was closed or changed no longer waits, so nothing gives way to it.
         document = getattr(params, "text_document", None)
         if document is not None:
             server.queue.looked_at(document.uri)
 
 
-# --- what editors tell --------------------------------------------------------------------------
+# --- notifications ------------------------------------------------------------------------------
 
 
 def _initialized(server: Server, _: types.InitializedParams) -> None:
@@ -185,8 +191,8 @@ def _closed(server: Server, params: types.DidCloseTextDocumentParams) -> None:
 
 
 def _watched_files_changed(server: Server, params: types.DidChangeWatchedFilesParams) -> None:
-    # Of what is open, the text in the editor counts, saved or not.
-    if not all(server.texts.is_open(each.uri) for each in params.changes):
+    # For open files, the text in the editor counts, saved or not.
+    if not all(server.texts.is_open(change.uri) for change in params.changes):
         _files_changed(server, params)
 
 
@@ -206,7 +212,7 @@ _TOLD: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
     (types.TEXT_DOCUMENT_DID_CHANGE, _changed, None),
     (types.TEXT_DOCUMENT_DID_CLOSE, _closed, None),
     (types.WORKSPACE_DID_CHANGE_WATCHED_FILES, _watched_files_changed, None),
-    # Of a folder with sources in it that goes, watchers of files are not told.
+    # File watchers are not notified about the sources in a folder that is renamed or deleted.
     (types.WORKSPACE_DID_RENAME_FILES, _files_changed, FILES_AND_FOLDERS),
     (types.WORKSPACE_DID_DELETE_FILES, _files_changed, FILES_AND_FOLDERS),
     (types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS, _folders_changed, None),

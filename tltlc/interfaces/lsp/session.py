@@ -1,4 +1,4 @@
-"""What the server knows of one editor's session, and what it says unasked."""
+"""The state of one editor's session, and the notifications that the server sends."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pygls.server import ServerErrors
 
 SOON_S: Final = 0.01
-"""Seconds from a change to what is said at once: changes that come together are looked at together."""
+"""Seconds from a change to the first diagnostics, which cover all changes until then."""
 LATER_S: Final = 0.4
 """Seconds without a change after which automata are built."""
 
@@ -37,7 +37,7 @@ class Server(LanguageServer):
     """The state of one editor's session."""
 
     def __init__(self) -> None:
-        # Editors count the lines of a text in their own way, so it is sent as a whole.
+        # Editors count lines in different ways, so they must send the whole text.
         full = types.TextDocumentSyncKind.Full
         super().__init__("tltlc", __version__, text_document_sync_kind=full, protocol_cls=Protocol)
         self.texts = Workspace()
@@ -51,72 +51,80 @@ class Server(LanguageServer):
 
     @property
     def encoding(self) -> str:
-        """How columns are counted, as was agreed upon."""
+        """The encoding in which columns are counted, as agreed with the editor."""
         agreed = self.server_capabilities.position_encoding
         return str(getattr(agreed, "value", agreed) or UTF_16)
 
     def analysis(self, document: Document) -> Analysis | None:
-        """What is known of the automata of a document, if that is up to date."""
-        made_of, found = self._analyses.get(document.source.name, (None, None))
-        return found if made_of is document else None
+        """Return the analysis of a document if it is up to date."""
+        made_of, analysis = self._analyses.get(document.source.name, (None, None))
+        return analysis if made_of is document else None
 
     def last_analysis(self, document: Document) -> Analysis | None:
-        """What was last known of the automata of a document, which may have changed since."""
-        _, found = self._analyses.get(document.source.name, (None, None))
-        return found
+        """Return the last analysis of a document, which may have changed since."""
+        _, analysis = self._analyses.get(document.source.name, (None, None))
+        return analysis
 
     def workspace_edit(self, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
-        """Edits by URIs; where the editor can tell versions apart, for those alone that they were made for."""
+        """Return a workspace edit of edits by URI.
+
+        If the editor supports it, the edits apply only to the versions that they were made for.
+        """
         workspace = self.client_capabilities.workspace
         if not (workspace and workspace.workspace_edit and workspace.workspace_edit.document_changes):
             return types.WorkspaceEdit(changes=dict(edits))
         changes = [
-            types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri, self.texts.version(uri)), [*own])
-            for uri, own in edits.items()
+            types.TextDocumentEdit(
+                types.OptionalVersionedTextDocumentIdentifier(uri, self.texts.version(uri)), [*text_edits]
+            )
+            for uri, text_edits in edits.items()
         ]
         return types.WorkspaceEdit(document_changes=[*changes])
 
     def report_server_error(self, error: Exception, source: ServerErrors) -> None:
-        """Log what a message has led to, and show the user nothing: requests are answered with their errors anyway."""
+        """Log the error of a message without showing it; requests get their errors as answers."""
         if source is not FeatureRequestError:
             LOG.error("a message was not understood: %s", error)
 
     # --- changes ------------------------------------------------------------------------------
 
     def changed(self, uris: Iterable[str]) -> None:
-        """These documents have other texts, or import what has."""
+        """Handle documents whose texts, or the texts that they import, have changed."""
         for uri in uris:
             self.queue.drop(uri)
             self._at("now", uri, SOON_S, self._publish, restart=False)
             self._at("later", uri, LATER_S, self._analyse, restart=True)
 
     def used_otherwise(self, uris: Iterable[str]) -> None:
-        """Files that may import these documents have changed: other names of theirs may be unused."""
+        """Handle a change in files that may import these documents.
+
+        Names that those files used may be unused now, or the other way round.
+        """
         for uri in uris:
             if self.texts.is_open(uri):
                 self._at("again", uri, LATER_S, self._analyse_again, restart=True)
 
     def closed(self, uri: str) -> None:
-        """Nothing more is said of a document."""
+        """Forget a closed document, and clear its diagnostics."""
         self.queue.drop(uri)
         self._analyses.pop(name_of(uri), None)
-        for what in ("now", "later", "again"):
-            timer = self._timers.pop((what, uri), None)
+        for task in ("now", "later", "again"):
+            timer = self._timers.pop((task, uri), None)
             if timer is not None:
                 timer.cancel()
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, []))
-        # Its file counts again, which may use other names.
+        # Its file counts again, and may use different names than the closed text.
         self.used_otherwise(dict.fromkeys([*self._imported.pop(uri, []), *self.texts.imported(uri)]))
 
     def shut_down(self) -> None:
-        """Nothing more is said of anything."""
+        """Stop all work and all notifications."""
         self.was_shut_down = True
         for timer in self._timers.values():
             timer.cancel()
         self.queue.clear()
 
-    def _at(self, what: str, uri: str, delay_s: float, then: Callable[[str], None], *, restart: bool) -> None:
-        key = (what, uri)
+    def _at(self, task: str, uri: str, delay_s: float, then: Callable[[str], None], *, restart: bool) -> None:
+        key = (task, uri)
         timer = self._timers.get(key)
         if timer is not None:
             if not restart:
@@ -130,55 +138,73 @@ class Server(LanguageServer):
         self._timers[key] = asyncio.get_running_loop().call_later(delay_s, run)
 
     def _publish(self, uri: str) -> None:
-        """Say what there is to say of a document by now."""
+        """Publish the current diagnostics of a document."""
         document = self.texts.document(uri) if self.texts.is_open(uri) else None
         if document is None:
             return
-        made_of, found = self._analyses.get(document.source.name, (document, None))
-        if found is None:
-            said = document.said
+        made_of, analysis = self._analyses.get(document.source.name, (document, None))
+        if analysis is None:
+            diagnostics = document.said
         elif made_of is document:
-            said = found.said
+            diagnostics = analysis.said
         else:
-            said = (*document.said, *kept(made_of, found, document))
-        remarks = [remark(each, document, self.encoding, self.texts.uri) for each in said]
+            diagnostics = (*document.said, *kept(made_of, analysis, document))
+        remarks = [remark(diagnostic, document, self.encoding, self.texts.uri) for diagnostic in diagnostics]
         version = self.texts.version(uri)
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, remarks, version))
         self._publish_project(document)
 
     def _publish_project(self, document: Document) -> None:
-        """What is wrong with the project file, at that file; also with those that were wrong before."""
-        found = self.texts.project(document.source.name)[1]
-        places = {label.source.name for each in found for label in each.labels}
+        """Publish the diagnostics of the project file.
+
+        Project files that had diagnostics before are updated as well.
+        """
+        errors = self.texts.project(document.source.name)[1]
+        places = {label.source.name for diagnostic in errors for label in diagnostic.labels}
         for name in dict.fromkeys([*self._said_of_project, *sorted(places)]):
-            there = self.texts.project(path_of(name))[1]
-            own = tuple(each for each in there if each.labels and each.labels[0].source.name == name)
+            project_errors = self.texts.project(path_of(name))[1]
+            own = tuple(
+                diagnostic
+                for diagnostic in project_errors
+                if diagnostic.labels and diagnostic.labels[0].source.name == name
+            )
             if self._said_of_project.get(name, ()) != own:
                 self._said_of_project[name] = own
-                remarks = [remark_on_project(each, self.encoding) for each in own]
+                remarks = [remark_on_project(diagnostic, self.encoding) for diagnostic in own]
                 self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(self.texts.uri(name), remarks))
 
     # --- automata -----------------------------------------------------------------------------
 
     def _analyse(self, uri: str) -> None:
-        """Have the automata of a document built; what it imports may have names now that nothing uses, or none."""
+        """Schedule the analysis of a document and of its imports.
+
+        The document may have started or stopped using names of its imports.
+        """
         before, self._imported[uri] = self._imported.get(uri, []), self.texts.imported(uri)
         self.used_otherwise(dict.fromkeys([*before, *self._imported[uri]]))
         self.queue.put(uri)
 
     def _analyse_again(self, uri: str) -> None:
         document = self.texts.document(uri)
-        # Of a file without specs, everything may be used elsewhere.
-        if document is not None and any(isinstance(each, SpecDecl) for each in document.module.declarations):
+        # Names in a file without specs may all be used elsewhere.
+        if document is not None and any(
+            isinstance(declaration, SpecDecl) for declaration in document.module.declarations
+        ):
             self.queue.put(uri, again=True)
 
     async def analysis_of(self, uri: str) -> Analysis | None:
-        """What is found of a document, built if need be; None where it is not there, broken or changing."""
+        """Return the analysis of a document, made if needed.
+
+        Return None if the document is missing, broken or changing.
+        """
         document = self.texts.document(uri)
         return (self.analysis(document) if document else None) or await self.queue.answer(uri)
 
     async def _analyse_now(self, uri: str, again: bool) -> Analysis | None:
-        """Build the automata of a document and say what is found; None where it is not there, broken or changing."""
+        """Analyse a document and publish the result.
+
+        Return None if the document is missing, broken or changing.
+        """
         document = self.texts.document(uri)
         if document is None or not document.is_clean:
             return None
@@ -187,18 +213,21 @@ class Server(LanguageServer):
             return known
         project = document.project
         request = Request(document.source, project.libraries, dict(project.lint), self.texts.texts())
-        found = await self.worker.analyse(request)
-        if found is None or self.texts.document(uri) is not document:
+        analysis = await self.worker.analyse(request)
+        if analysis is None or self.texts.document(uri) is not document:
             return None
-        self._analyses[document.source.name] = (document, found)
-        if found == known:
-            return found
+        self._analyses[document.source.name] = (document, analysis)
+        if analysis == known:
+            return analysis
         self._publish(uri)
         self._ask_to_look_again()
-        return found
+        return analysis
 
     def _ask_to_look_again(self) -> None:
-        """Lenses are made of an analysis, and hints may be made of another file."""
+        """Ask the editor to refresh lenses and hints.
+
+        Lenses show the analysis, and hints may depend on other files.
+        """
         workspace = self.client_capabilities.workspace or types.WorkspaceClientCapabilities()
         if workspace.code_lens and workspace.code_lens.refresh_support:
             self.workspace_code_lens_refresh(None)

@@ -1,4 +1,4 @@
-"""The declarations of a text, for outlines and for the search by name."""
+"""List the declarations of a text, for outlines and for search by name."""
 
 from __future__ import annotations
 
@@ -24,34 +24,37 @@ _KINDS: Final = {
 
 
 def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
-    """The declarations in order; the clauses of a spec below it."""
+    """Return the declarations in order, with the clauses of a spec as its children."""
     source = document.source
-    found = []
+    outline = []
     for declaration in document.module.declarations:
-        below = [_clause(each, document, encoding) for each in _clauses(declaration)]
+        children = [_clause(clause, document, encoding) for clause in _clauses(declaration)]
         head = declaration_text(declaration, source, head=True)
-        for name, kind, span, own in _named(declaration):
-            found.append(
+        for name, kind, span, name_span in _named(declaration):
+            outline.append(
                 types.DocumentSymbol(
                     name,
                     kind,
                     range_of(source, span, encoding),
-                    range_of(source, own, encoding),
+                    range_of(source, name_span, encoding),
                     detail=head if len(head) <= 80 else None,
-                    children=below or None,
+                    children=children or None,
                 )
             )
-    return found
+    return outline
 
 
 def found(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
-    """The declarations whose names have the letters of a query in order; all of them where it is empty."""
+    """Return the declarations whose names contain the letters of a query in order.
+
+    An empty query matches all declarations.
+    """
     source = document.source
     return [
-        types.WorkspaceSymbol(types.Location(uri, range_of(source, own, encoding)), name, kind)
+        types.WorkspaceSymbol(types.Location(uri, range_of(source, name_span, encoding)), name, kind)
         for declaration in document.module.declarations
         if not isinstance(declaration, tree.Import)
-        for name, kind, _, own in _named(declaration)
+        for name, kind, _, name_span in _named(declaration)
         if _has_letters(name.lower(), query.lower())
     ]
 
@@ -62,7 +65,7 @@ def _has_letters(name: str, query: str) -> bool:
 
 
 def _named(declaration: tree.Declaration) -> Iterator[tuple[str, types.SymbolKind, Span, Span]]:
-    """Name, kind, and the spans of the declaration and of its name."""
+    """Yield the name, the kind, and the spans of the declaration and of its name."""
     match declaration:
         case tree.Import():
             yield declaration.target, Kind.Module, declaration.span, declaration.target_span

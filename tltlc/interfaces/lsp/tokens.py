@@ -1,4 +1,4 @@
-"""What each name stands for, so that editors colour it: a grammar of patterns sees names alone."""
+"""Tell editors what each name refers to, so they can colour it; a grammar only sees names."""
 
 from __future__ import annotations
 
@@ -26,27 +26,32 @@ _MODIFIERS: Final = (
     types.SemanticTokenModifiers.Readonly,
     types.SemanticTokenModifiers.DefaultLibrary,
 )
-_NUMBERS: Final = {each: number for number, each in enumerate(dict.fromkeys(_TYPES.values()))}
+_NUMBERS: Final = {token_type: number for number, token_type in enumerate(dict.fromkeys(_TYPES.values()))}
 
-LEGEND: Final = types.SemanticTokensLegend([each.value for each in _NUMBERS], [each.value for each in _MODIFIERS])
+LEGEND: Final = types.SemanticTokensLegend(
+    [member.value for member in _NUMBERS], [member.value for member in _MODIFIERS]
+)
 """What the numbers of types and the bits of modifiers mean."""
 
 
 def tokens(document: Document, encoding: str) -> list[int]:
-    """Five numbers for each name: lines and columns from the one before, length, type and modifiers."""
-    found: list[int] = []
+    """Return five numbers for each name: relative line and column, length, type and modifiers.
+
+    The line is relative to the previous name; so is the column, if both are on one line.
+    """
+    numbers: list[int] = []
     line = column = 0
-    for each in document.names:
-        at = position(document.source, each.span.start, encoding)
+    for name in document.names:
+        at = position(document.source, name.span.start, encoding)
         start = at.character - column if at.line == line else at.character
-        # A name is ASCII: as long in any encoding.
-        length = each.span.end - each.span.start
-        found += [at.line - line, start, length, _NUMBERS[_TYPES[each.symbol.kind]], _modifiers(each)]
+        # A name is ASCII, so it has the same length in any encoding.
+        length = name.span.end - name.span.start
+        numbers += [at.line - line, start, length, _NUMBERS[_TYPES[name.symbol.kind]], _modifiers(name)]
         line, column = at.line, at.character
-    return found
+    return numbers
 
 
 def _modifiers(name: Occurrence) -> int:
     is_of_library = name.symbol.source.name.startswith(STANDARD_LIBRARY_NAME)
-    given = (name.declares, name.symbol.kind == "param", is_of_library)
-    return sum(1 << bit for bit, is_given in enumerate(given) if is_given)
+    flags = (name.declares, name.symbol.kind == "param", is_of_library)
+    return sum(1 << bit for bit, is_set in enumerate(flags) if is_set)

@@ -1,4 +1,7 @@
-"""A process for what takes long: it can be given up at any moment, in the middle of an automaton."""
+"""Run slow analyses in their own process.
+
+It can be killed at any time, even while it builds an automaton.
+"""
 
 from __future__ import annotations
 
@@ -16,22 +19,25 @@ from tltlc.io.limits import COMMAND
 from tltlc.io.resources import limit
 
 LONGEST_S: Final = 60.0
-"""After so many seconds an analysis is given up."""
+"""Seconds after which an analysis is given up."""
 
 
 class Worker:
-    """One analysis at a time, in a process of its own that is started when it is first needed."""
+    """Runs one analysis at a time, in a process of its own that starts when it is first needed."""
 
     def __init__(self) -> None:
         self._process: BaseProcess | None = None
         self._pipe: Connection | None = None
 
     async def analyse(self, request: Request) -> Analysis | None:
-        """What is to be said of a text; None where that was given up, took too long, or no process can be started."""
+        """Analyse a text.
+
+        Return None if that was given up, took too long, or no process can be started.
+        """
         pipe = None
         try:
             pipe = self._started()
-            # A large text does not fit into the pipe before the process reads from it.
+            # A large text blocks the sender until the process reads from the pipe, so send it in a thread.
             answer = asyncio.get_running_loop().run_in_executor(None, _exchange, pipe, request)
             return await asyncio.wait_for(answer, LONGEST_S)
         except (EOFError, OSError, asyncio.TimeoutError):
@@ -39,16 +45,16 @@ class Worker:
                 self.abandon()
             return None
         except asyncio.CancelledError:
-            # The server ends, and waits for the thread at the pipe.
+            # The server is ending and waits for the thread at the pipe.
             self.abandon()
             raise
 
     def abandon(self) -> None:
-        """Give up what is being done; the next analysis starts a new process."""
+        """Kill the current analysis; the next one starts a new process."""
         if self._process is not None:
             self._process.kill()
             self._process.join()
-        # Whoever waits at the pipe finds it ended, and drops it.
+        # The thread that waits at the old pipe sees its end and releases it.
         self._process = self._pipe = None
 
     def _started(self) -> Connection:
@@ -65,12 +71,12 @@ class Worker:
 
 def _exchange(pipe: Connection, request: Request) -> Analysis | None:
     pipe.send(request)
-    found: Analysis | None = pipe.recv()
-    return found
+    analysis: Analysis | None = pipe.recv()
+    return analysis
 
 
 def answer_all(pipe: Connection) -> None:
-    """Answer requests until nobody asks any more: what the process does."""
+    """Answer requests until the pipe closes; this is the main function of the process."""
     threading.Thread(target=_end_with_server, daemon=True).start()
     limit("RLIMIT_DATA", COMMAND.memory)
     from tltlc.interfaces.lsp.analysis import analyse
@@ -85,7 +91,10 @@ def answer_all(pipe: Connection) -> None:
 
 
 def _end_with_server() -> None:
-    """End the process as soon as the server has ended, be it killed, and be it in the middle of an automaton."""
+    """End this process as soon as the server ends, even if the server is killed.
+
+    It ends even in the middle of an automaton.
+    """
     server = multiprocessing.parent_process()
     if server is not None:
         server.join()

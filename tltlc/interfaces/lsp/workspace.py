@@ -1,4 +1,4 @@
-"""The texts that are open in the editor, and the files around them."""
+"""The open texts of the editor, and the files around them."""
 
 from __future__ import annotations
 
@@ -17,46 +17,58 @@ from tltlc.resolve.imports import standard_library
 
 
 class Workspace:
-    """Open texts by name, and what was made of them; ``folders`` are those that the editor shows."""
+    """The open texts by name, and their documents.
+
+    ``folders`` are the folders that the editor shows.
+    """
 
     def __init__(self) -> None:
         self.folders: list[str] = []
         self._open: dict[str, tuple[str, int | None, str]] = {}
         self._documents: dict[str, Document] = {}
 
-    # --- what the editor tells ----------------------------------------------------------------
+    # --- notifications ------------------------------------------------------------------------
 
     def put(self, uri: str, version: int | None, text: str) -> list[str]:
-        """A text was opened or changed; the URIs of the open documents for which that matters, its own first."""
+        """Record a new or changed text.
+
+        Return the URIs of the open documents that it affects, its own first.
+        """
         name = name_of(uri)
         self._open[name] = (uri, version, text)
         return [uri, *self._forget(name)]
 
     def close(self, uri: str) -> list[str]:
-        """A text was closed: its file counts again; the URIs of open documents for which that matters."""
+        """Forget a closed text, so that its file counts again.
+
+        Return the URIs of affected open documents.
+        """
         name = name_of(uri)
         self._open.pop(name, None)
         return self._forget(name)
 
     def refresh(self) -> list[str]:
-        """Files have changed: the URIs of open documents that are made of one of them."""
-        return self._drop([name for name, made in self._documents.items() if not made.is_current()])
+        """Drop the documents that depend on a changed file.
 
-    # --- what there is ------------------------------------------------------------------------
+        Return the URIs of those that are open.
+        """
+        return self._drop([name for name, document in self._documents.items() if not document.is_current()])
+
+    # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
-        """A document as it stands now: the open one, or the file; None where there is neither."""
+        """Return the current document: the open one, or the file; None if neither exists."""
         return self.named(name_of(uri))
 
     def named(self, name: str) -> Document | None:
-        """As :meth:`document`, by name."""
+        """Like :meth:`document`, by name."""
         opened = self._open.get(name)
-        found = self._documents.get(name)
-        # Of what is open the editor tells; closed files may change unseen.
-        if found is not None and (opened is not None or found.is_current()):
-            return found
+        document = self._documents.get(name)
+        # The editor reports changes of open texts; closed files may change without notice.
+        if document is not None and (opened is not None or document.is_current()):
+            return document
         with noted() as notes:
-            # A named pipe would keep the server waiting for its other end.
+            # Reading a named pipe would block the server until its other end is opened.
             if opened is None and not is_file(name):
                 return None
             try:
@@ -64,39 +76,42 @@ class Workspace:
             except TltlError:
                 return None
             project, _ = self.project(name)
-        found = self._documents[name] = Document(source, project, self.texts(), notes)
-        return found
+        document = self._documents[name] = Document(source, project, self.texts(), notes)
+        return document
 
     def version(self, uri: str) -> int | None:
-        """The version of an open document."""
+        """Return the version of an open document."""
         opened = self._open.get(name_of(uri))
         return opened[1] if opened else None
 
     def uri(self, name: str) -> str:
-        """The URI of a file, as the editor writes it where it is open."""
+        """Return the URI of a file; if it is open, as the editor writes it."""
         opened = self._open.get(path_of(name))
         return opened[0] if opened else uri_of(name)
 
     def is_open(self, uri: str) -> bool:
-        """Whether the editor holds the text."""
+        """Whether a document is open in the editor."""
         return name_of(uri) in self._open
 
     def opened(self) -> list[str]:
-        """The URIs of the open documents."""
+        """Return the URIs of the open documents."""
         return [uri for uri, _, _ in self._open.values()]
 
     def imported(self, uri: str) -> list[str]:
-        """The URIs of the other open documents that a document imports, directly or through others."""
+        """Return the URIs of the other open documents that a document imports, also indirectly."""
         document = self.document(uri)
         names = document.reads - {document.source.name} if document else ()
         return [self._open[name][0] for name in sorted(names) if name in self._open]
 
     def texts(self) -> dict[str, str]:
-        """The texts of the open documents, by path."""
+        """Return the texts of the open documents, by path."""
         return {name: text for name, (_, _, text) in self._open.items()}
 
     def project(self, name: str) -> tuple[Project, tuple[Diagnostic, ...]]:
-        """The project of a file, by its nearest ``tltl.toml``, and what is wrong with that."""
+        """Return the project of a file, and the errors of its project file.
+
+        The project file is the nearest ``tltl.toml``.
+        """
         try:
             with unsaved(self.texts()):
                 return project_for(name if not name.startswith("<") else "-"), ()
@@ -104,7 +119,7 @@ class Workspace:
             return Project(), error.diagnostics
 
     def is_own(self, name: str) -> bool:
-        """Whether a file is one of the workspace, and no library from elsewhere."""
+        """Whether a file belongs to the workspace, and is not a library from elsewhere."""
         path = path_of(name)
         if path.startswith("<"):
             return True
@@ -113,10 +128,10 @@ class Workspace:
         return path in self._open or self._shows(path)
 
     def all(self) -> Iterator[Document]:
-        """The documents of the workspace: open ones, and the files of its folders.
+        """Yield the documents of the workspace: open ones, and the files of its folders.
 
         Raises:
-            TltlError: TLT0004, the folders are too large to look through.
+            TltlError: TLT0004, the folders are too large to search.
         """
         size = 0
         for name in self._names():
@@ -128,12 +143,12 @@ class Workspace:
                 yield document
 
     async def parse(self, is_needed: Callable[[str], bool]) -> None:
-        """Parse the texts of the workspace that are needed, so that :meth:`all` soon gives what is made of them.
+        """Parse the texts that ``is_needed`` selects, so that :meth:`all` is fast afterwards.
 
         Other requests are answered between two files.
 
         Raises:
-            TltlError: TLT0004, there is too much to look through, or to parse.
+            TltlError: TLT0004, there is too much to search or to parse.
         """
         size = 0
         for document in self.all():
@@ -152,7 +167,7 @@ class Workspace:
                 count += len(folders) + len(files)
                 if count > (WORKSPACE.values or 0):
                     raise _too_large(f"{WORKSPACE.values:,} files and folders")
-                folders[:] = sorted(each for each in folders if not each.startswith(".") and each != "node_modules")
+                folders[:] = sorted(name for name in folders if not name.startswith(".") and name != "node_modules")
                 paths = [os.path.join(place, file) for file in sorted(files) if _is_source(file)]  # noqa: PTH118
                 names.update(dict.fromkeys(filter(may_be_file, paths)))
         return [*names]
@@ -161,10 +176,17 @@ class Workspace:
         return any(is_below(path, folder) for folder in self.folders)
 
     def _forget(self, name: str) -> list[str]:
-        """Drop what was made of a text, and of those that import it; the URIs of these."""
+        """Drop the document of a text and those that depend on it.
+
+        Return the URIs of the latter that are open.
+        """
         self._documents.pop(name, None)
         return self._drop(
-            [other for other, made in self._documents.items() if made.depends_on(name) or _is_project(name)]
+            [
+                dependent
+                for dependent, document in self._documents.items()
+                if document.depends_on(name) or _is_project(name)
+            ]
         )
 
     def _drop(self, names: list[str]) -> list[str]:
@@ -177,8 +199,8 @@ def _is_source(file: str) -> bool:
     return file.endswith(".tltl") and not file.startswith(".")
 
 
-def _too_large(what: str) -> TltlError:
-    title = f"the folders in the editor hold more than {what}"
+def _too_large(content: str) -> TltlError:
+    title = f"the folders in the editor hold more than {content}"
     return TltlError([Diagnostic("TLT0004", title, help="open a smaller folder in the editor")])
 
 
