@@ -1,3 +1,6 @@
-"""A page on which one types a spec and sees what it means, from ``tltlc serve`` or in the browser alone."""
+"""A page that shows what a spec means while you type it.
+
+It runs from ``tltlc serve`` or fully in the browser.
+"""
 
 from tltlc.interfaces.playground.page_data import view as view

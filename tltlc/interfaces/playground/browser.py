@@ -1,6 +1,9 @@
-"""Lead a browser to an address without putting it into the browser's arguments, which every user of the machine sees.
+"""Open an address in a browser without passing it as an argument.
 
-The browser opens a file instead, which only its owner can read, and which leads on to the address.
+Every user of the machine can see the arguments of a process.
+
+The browser opens a temporary file instead, which only its owner can read, and which redirects to
+the address.
 """
 
 from __future__ import annotations
@@ -26,9 +29,11 @@ _PAGE: Final = """\
 
 @contextmanager
 def leading_to(address: str) -> Iterator[str]:
-    """Within, the URI of a file that leads to an address, and that only this user can read.
+    """Yield the URI of a temporary file that redirects to an address.
 
-    Raises OSError or TltlError if there is no room for a temporary file.
+    Only this user can read the file, which is removed at the end of the context.
+
+    Raises OSError or TltlError if no temporary file can be written.
     """
     with temporary_folder() as folder:
         path = folder / "open.html"

@@ -1,6 +1,7 @@
-"""The process that answers one request of JSON, from its standard input to its standard output.
+"""The process that answers one JSON request, from its standard input to its standard output.
 
-A compilation cannot be interrupted from within, so that it runs where it can be ended from outside.
+A compilation cannot be interrupted from within, so it runs in a process that can be ended from
+outside.
 """
 
 from __future__ import annotations
@@ -19,14 +20,15 @@ NO_MEMORY: Final = 3
 
 
 def main() -> None:
-    """Load what a compilation needs, then wait for the request.
+    """Load what a compilation needs, then wait for the request and answer it.
 
-    The exit status is :data:`NO_REQUEST` if it is none, :data:`NO_MEMORY` if memory runs out.
+    The exit status is :data:`NO_REQUEST` if the input is not a request, :data:`NO_MEMORY` if memory
+    runs out.
     """
     try:
         _answer_request()
     except MemoryError:
-        # What Python itself prints for it, and its exit status, could mean anything.
+        # Python's own exit status for a MemoryError could mean anything.
         sys.exit(NO_MEMORY)
 
 
@@ -35,25 +37,25 @@ def _answer_request() -> None:
 
     limit_resources()
     request = sys.stdin.buffer.read()
-    # An empty request means that nobody needs this process any more.
+    # An empty request means that this process is no longer needed.
     if not request:
         return
     try:
         with confined(readable_folders()):
-            answered = answer(request.decode("utf-8")).encode("utf-8")
+            response = answer(request.decode("utf-8")).encode("utf-8")
     except (RequestError, UnicodeDecodeError):
         sys.exit(NO_REQUEST)
-    sys.stdout.buffer.write(answered if len(answered) <= ANSWER.size else gave_up_on_size().encode("utf-8"))
+    sys.stdout.buffer.write(response if len(response) <= ANSWER.size else gave_up_on_size().encode("utf-8"))
 
 
 def limit_resources() -> None:
-    """Limit memory and processor time where the system can: this process may outlive the server."""
+    """Limit memory and processor time if possible, because this process may outlive the server."""
     limit("RLIMIT_AS", PLAYGROUND_CHILD.memory)
     limit("RLIMIT_CPU", PLAYGROUND_CHILD.work_s)
 
 
 def readable_folders() -> list[str | os.PathLike[str]]:
-    """The folders that a text may import from: the current one, and the libraries of tltlc."""
+    """Return the folders that a text may import from: the current one and tltlc's libraries."""
     from tltlc.resolve.imports import standard_library
 
     folders: list[str | os.PathLike[str]] = [standard_library()]

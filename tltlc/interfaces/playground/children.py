@@ -1,4 +1,7 @@
-"""Children that answer requests, each one of them, and are ended where that takes too long or nobody waits any more."""
+"""Child processes that answer one request each.
+
+A child is ended if it takes too long or the client has gone.
+"""
 
 from __future__ import annotations
 
@@ -18,18 +21,21 @@ from tltlc.io.limits import ANSWER
 LIMIT_S: Final = 10.0
 MOST_AT_ONCE: Final = 4
 _LOOK_S: Final = 0.1
-"""Between two looks at whether somebody still waits."""
+"""Seconds between two checks whether the client still waits."""
 
 _REPORT: Final = "try again; if it ends again, report it with the text"
 _KILLED: Final = "try again; the system does this if memory is short, and then a smaller spec may help"
 
 
 class AbandonedError(Exception):
-    """Nobody waits for the answer any more."""
+    """The client no longer waits for the answer."""
 
 
 class Children:
-    """Answers requests, at most :data:`MOST_AT_ONCE` at a time; one child is always loaded already."""
+    """Answers requests, at most :data:`MOST_AT_ONCE` at a time.
+
+    Keeps one child loaded in advance.
+    """
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
         self._limit_s = limit_s
@@ -40,9 +46,12 @@ class Children:
         self._closed = False
 
     def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
-        """The answer of :func:`tltlc.interfaces.playground.protocol.answer`, or None for what is no request.
+        """Return a child's answer to a request, or None if it is not a request.
 
-        Raises AbandonedError as soon as nobody waits any more, and OSError where no process can be started.
+        The answer is that of :func:`tltlc.interfaces.playground.protocol.answer`.
+
+        Raises AbandonedError as soon as the client no longer waits, and OSError if no process can
+        be started.
         """
         if not request:
             return None
@@ -51,7 +60,7 @@ class Children:
         try:
             child = self._taken()
             try:
-                said = _answer(child, request, self._limit_s, is_abandoned)
+                response = _answer(child, request, self._limit_s, is_abandoned)
             finally:
                 self._put_back(child)
         except subprocess.TimeoutExpired:
@@ -60,16 +69,16 @@ class Children:
             self._room.release()
         if child.returncode == NO_REQUEST:
             return None
-        if len(said) > ANSWER.size:
+        if len(response) > ANSWER.size:
             return gave_up_on_size()
-        if child.returncode or not said:
-            # Whoever closes this kills the children that work.
+        if child.returncode or not response:
+            # `close` kills the children that are working.
             _check(lambda: self._closed)
             return _failed(child.returncode)
-        return said.decode("utf-8")
+        return response.decode("utf-8")
 
     def close(self) -> None:
-        """End the child that waits, and those that work: their requests are abandoned."""
+        """End all children, waiting or working; the requests of the latter are abandoned."""
         with self._lock:
             self._closed = True
             for child in self._running:
@@ -84,7 +93,7 @@ class Children:
                 raise AbandonedError
             ready, self._ready = self._ready, None
             if ready is not None and ready.poll() is not None:
-                # It ended while it waited.
+                # It ended while it waited for a request.
                 _end(ready)
                 ready = None
             child = ready or _started()
@@ -92,24 +101,24 @@ class Children:
             return child
 
     def _put_back(self, child: subprocess.Popen[bytes]) -> None:
-        """End a child, and have another one ready."""
+        """End a child, and prepare another one."""
         _end(child)
         with self._lock:
             self._running.discard(child)
             if not self._closed and self._ready is None:
-                # Where the system has no room for another process now, the next request tries again.
+                # If the system has no room for another process now, the next request tries again.
                 with suppress(OSError):
                     self._ready = _started()
 
 
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
-    """What a child answers, at most one byte more than an answer may have.
+    """Return the answer of a child, at most one byte more than the limit for an answer.
 
     Raises AbandonedError, and TimeoutExpired after ``limit_s`` seconds.
     """
     end = monotonic() + limit_s
-    answered: list[bytes] = []
-    talk = Thread(target=lambda: answered.append(_exchange(child, request)))
+    responses: list[bytes] = []
+    talk = Thread(target=lambda: responses.append(_exchange(child, request)))
     talk.start()
     try:
         while talk.is_alive():
@@ -121,26 +130,29 @@ def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_a
         if talk.is_alive():
             child.kill()
             talk.join()
-    return answered[0] if answered else b""
+    return responses[0] if responses else b""
 
 
 def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
-    """Send all of a request, then read the answer: a child reads everything before it writes."""
+    """Send the whole request, then read the answer: a child reads everything before it writes."""
     assert child.stdin is not None
     assert child.stdout is not None
     # A child that has ended reads nothing; its exit status says why.
     with suppress(OSError):
         child.stdin.write(request)
         child.stdin.close()
-    answered = child.stdout.read(ANSWER.size + 1)
-    if len(answered) > ANSWER.size:
+    response = child.stdout.read(ANSWER.size + 1)
+    if len(response) > ANSWER.size:
         child.kill()
     child.wait()
-    return answered
+    return response
 
 
 def _failed(status: int) -> str:
-    """The answer where a child ended without one: what it ended with, and no cause that is not known."""
+    """Return the answer for a child that ended without one.
+
+    It names a cause only if that is known.
+    """
     if status == NO_MEMORY:
         return gave_up(TOO_LARGE)
     if status >= 0:
@@ -163,7 +175,7 @@ def _check(is_abandoned: Callable[[], bool]) -> None:
 
 
 def _started() -> subprocess.Popen[bytes]:
-    # It finds modules where this process does, and never in a folder that specs happen to lie in.
+    # Use the same module search path as this process, so that modules never come from the folder of the specs.
     program = f"import sys; sys.path[:] = {sys.path!r}; from tltlc.interfaces.playground.child import main; main()"
     return subprocess.Popen(
         [sys.executable, "-c", program],

@@ -1,10 +1,11 @@
-"""The connections of a small HTTP server: how many, for how long, and what each of them is at.
+"""The connections of a small HTTP server: their number, their time limits and their states.
 
-One thread serves all of them and sleeps until something happens. The server decides what is answered (:class:`Site`).
+One thread serves all of them and sleeps until something happens. A :class:`Site` decides what is
+answered.
 
-A client that sends no more may still wait for its answer, or may have hung up; the system shows both in the same way.
-The server tells them apart by interim answers, which a client that waits passes over: a connection that nobody reads
-refuses them.
+If a client stops sending, it may still wait for its answer, or it may have hung up; the system
+reports both in the same way. The server tells them apart with interim answers: a waiting client
+ignores them, and a closed connection rejects them.
 """
 
 from __future__ import annotations
@@ -22,9 +23,9 @@ from tltlc.interfaces.playground.request_head import Head, RefusedError, read_he
 from tltlc.io.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE, Connections
 
 _MOST_BYTES: Final = REQUEST_HEAD.size + MESSAGE.size
-"""How much may come while a request is answered: as much as the next one can have."""
+"""Bytes that may arrive while a request is being answered: the size of the largest next request."""
 _MOST_HEAD: Final = 2 * REQUEST_HEAD.size + REQUEST_LINE.size + 2
-"""How much of what has come is looked at for a head: empty lines, the first line and headers, and a little more."""
+"""Bytes that are searched for a head: empty lines, first line, headers, and a little more."""
 
 
 _INTERIM: Final = b"HTTP/1.1 100 Continue\r\n\r\n"
@@ -34,7 +35,7 @@ _INTERIM_S: Final = 0.2
 
 @record
 class Response:
-    """What is sent: a status, headers besides those that every answer has, and a body."""
+    """A response: a status, headers in addition to those that every response has, and a body."""
 
     status: HTTPStatus
     headers: Mapping[str, str]
@@ -45,20 +46,26 @@ class Site(Protocol):
     """What a server answers."""
 
     def check(self, head: Head) -> None:
-        """Raise RefusedError where a request is refused, whatever its body."""
+        """Raise RefusedError if a request must be refused whatever its body."""
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
-        """The answer to a request that :meth:`check` let pass; None where nobody waits for it."""
+        """Return the answer to a request that passed :meth:`check`.
+
+        Return None if the client no longer waits.
+        """
 
     def refusal(self, status: HTTPStatus) -> Response:
-        """The answer that says that a request is refused."""
+        """Return the response for a refused request."""
 
 
 class Doing(Enum):
-    """What a connection is at; its value is the order in which connections give way to new ones."""
+    """The state of a connection.
+
+    Its value is the order in which connections are closed to make room.
+    """
 
     LEAVING = 0
-    """The last answer is sent, and the other side is to hang up."""
+    """The last answer is sent, and the client should hang up."""
     IDLE = 1
     READING = 2
     WRITING = 3
@@ -66,7 +73,7 @@ class Doing(Enum):
 
 
 class Open:
-    """The connections that are open."""
+    """The open connections."""
 
     def __init__(self, limits: Connections) -> None:
         self.limits = limits
@@ -76,22 +83,26 @@ class Open:
         return len(self._all)
 
     def add(self, connection: Connection) -> bool:
-        """Whether there is room for a connection; if need be, the oldest one that matters least gives way."""
+        """Add a connection.
+
+        Return False if there is no room, even after closing the least important one.
+        """
         if len(self._all) >= self.limits.most and not self.make_room():
             return False
         self._all[connection] = None
         return True
 
     def make_room(self) -> bool:
-        """Close the connection that matters least.
+        """Close the least important connection, the oldest of its kind.
 
-        None gives way that waits for its answer, or sends the body of a request whose head was good. One that sends no
-        more does, since it may have hung up.
+        Return whether one could be closed. Connections that wait for an answer, or send a body
+        after a good head, stay open. A client that sends no more may have hung up, so its
+        connection may be closed.
         """
-        others = [connection for connection in self._all if connection.gives_way]
-        if not others:
+        candidates = [connection for connection in self._all if connection.gives_way]
+        if not candidates:
             return False
-        min(others, key=lambda connection: (connection.doing.value, connection.since)).abort()
+        min(candidates, key=lambda connection: (connection.doing.value, connection.since)).abort()
         return True
 
     def remove(self, connection: Connection) -> None:
@@ -105,14 +116,17 @@ class Open:
 
 
 def report_failure(task: asyncio.Task[Any]) -> None:
-    """Report what a task failed with, but for a signal, which ends the server and has its own report."""
+    """Report the exception of a task, unless it is a KeyboardInterrupt.
+
+    A KeyboardInterrupt ends the server and has a report of its own.
+    """
     error = None if task.cancelled() else task.exception()
     if error is not None and not isinstance(error, KeyboardInterrupt):
         task.get_loop().call_exception_handler({"message": "a task failed", "exception": error, "task": task})
 
 
 class Connection(asyncio.Protocol):
-    """One connection: it reads a request, has it answered, writes the answer, and then reads the next one."""
+    """One connection: reads a request, writes the answer, and then reads the next request."""
 
     def __init__(self, site: Site, connections: Open) -> None:
         self.doing = Doing.IDLE
@@ -127,21 +141,21 @@ class Connection(asyncio.Protocol):
         self._closes = False
         self._is_old = False
         self._has_ended = False
-        """Whether the other side sends no more."""
+        """Whether the client sends no more."""
 
     @property
     def gives_way(self) -> bool:
-        """Whether it may be closed for a new one."""
+        """Whether this connection may be closed to make room for a new one."""
         is_sending = self.doing is Doing.READING and self._head is not None
         is_waiting = self.doing is Doing.ANSWERING and not self._has_ended
         return not is_sending and not is_waiting
 
-    # --- what asyncio calls -------------------------------------------------------------------
+    # --- callbacks of asyncio -----------------------------------------------------------------
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin; where there is no room, say so."""
+        """Start the connection; refuse it if there is no room."""
         self._transport = cast("asyncio.Transport", transport)
-        # Then `resume_writing` is called once everything is sent.
+        # So asyncio calls `resume_writing` once everything is sent.
         self._transport.set_write_buffer_limits(high=0)
         self._now(Doing.IDLE)
         if not self._open.add(self):
@@ -149,7 +163,7 @@ class Connection(asyncio.Protocol):
             self._close()
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come; after the last answer it counts for nothing."""
+        """Take received data; ignore it after the last answer."""
         if self.doing is Doing.LEAVING:
             return
         self._buffer += data
@@ -159,7 +173,10 @@ class Connection(asyncio.Protocol):
             self.abort()
 
     def eof_received(self) -> bool:
-        """The other side sends no more; whether the connection stays open for the answers to what it has sent."""
+        """Handle a client that sends no more.
+
+        Return whether the connection stays open for pending answers.
+        """
         self._has_ended = True
         if self.doing is Doing.WRITING:
             return True
@@ -170,15 +187,15 @@ class Connection(asyncio.Protocol):
         return False
 
     def resume_writing(self) -> None:
-        """Everything is sent."""
+        """Continue once everything is sent."""
         if self.doing is Doing.WRITING:
             self._sent()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """The other side has hung up, or this one."""
+        """Clean up after either side has closed the connection."""
         self.abort()
 
-    # --- what it is at ------------------------------------------------------------------------
+    # --- states -------------------------------------------------------------------------------
 
     def abort(self) -> None:
         """Close the connection at once."""
@@ -189,26 +206,32 @@ class Connection(asyncio.Protocol):
         self._transport.abort()
 
     def _close(self) -> None:
-        """Close the connection after what was written is sent."""
+        """Close the connection after the written data is sent."""
         self._hung_up.set()
         self._now(Doing.LEAVING)
         self._transport.close()
 
     def _end(self) -> None:
-        """Close after the last answer; a request that is not complete never will be."""
+        """Close after the last answer.
+
+        Refuse an incomplete request, which can never be completed.
+        """
         if self.doing is Doing.READING:
             self._refuse(HTTPStatus.BAD_REQUEST)
         self._close()
 
     def _look_for_a_reader(self) -> None:
-        """Send interim answers until the answer is there: after one that nobody took, the next one fails."""
+        """Send interim answers until the answer is ready.
+
+        If the client is gone, sending the next one fails.
+        """
         if self.doing is not Doing.ANSWERING or self._is_old:
             return
         self._transport.write(_INTERIM)
         self._timer = asyncio.get_running_loop().call_later(_INTERIM_S, self._look_for_a_reader)
 
     def _now(self, doing: Doing) -> None:
-        """Begin something, for which there is so much time."""
+        """Change the state, and start the timer for its time limit."""
         limits = self._open.limits
         seconds = {
             Doing.IDLE: limits.idle_s,
@@ -229,7 +252,7 @@ class Connection(asyncio.Protocol):
             self.abort()
 
     def _advance(self) -> None:
-        """Read as much of a request as has come."""
+        """Read as much of a request as has arrived."""
         if not self._buffer:
             return
         if self.doing is Doing.IDLE:
@@ -254,11 +277,11 @@ class Connection(asyncio.Protocol):
         self._task.add_done_callback(report_failure)
 
     def _read_head(self) -> bool:
-        """Whether the head is complete."""
-        found = read_head(bytes(self._buffer[:_MOST_HEAD]))
-        if found is None:
+        """Try to read the head; return whether it is complete."""
+        result = read_head(bytes(self._buffer[:_MOST_HEAD]))
+        if result is None:
             return False
-        self._head, end = head, _ = found
+        self._head, end = head, _ = result
         self._site.check(head)
         del self._buffer[:end]
         if head.waits and not self._buffer:
@@ -280,7 +303,7 @@ class Connection(asyncio.Protocol):
         self._send(response, with_body=head.method != "HEAD")
 
     def _refuse(self, status: HTTPStatus, head: Head | None = None) -> None:
-        """Say that a request is refused, and close: where the next request begins is not known for sure."""
+        """Refuse a request and close the connection: it is uncertain where the next one starts."""
         self._closes = True
         self._buffer.clear()
         if not self._hung_up.is_set():
@@ -301,7 +324,10 @@ class Connection(asyncio.Protocol):
             self._sent()
 
     def _sent(self) -> None:
-        """Go on with the next request, or let the other side hang up: who closes first may cut off the answer."""
+        """Read the next request, or let the client hang up.
+
+        If the server closed first, the answer could be cut off.
+        """
         if self._closes:
             self._leave()
         else:

@@ -1,4 +1,4 @@
-"""Paths of Bézier curves, drawn on piece by piece."""
+"""Paths of Bézier curves that are extended piece by piece."""
 
 from __future__ import annotations
 
@@ -7,33 +7,33 @@ from typing import Final
 
 Point = tuple[float, float]
 Curve = tuple[Point, ...]
-"""A start, and three points for each cubic piece: two that it is drawn towards, and its end."""
+"""A start, then three points for each cubic piece: its two control points and its end."""
 
 _SHORT: Final = 0.05
-"""Not to be seen, and without a direction."""
+"""A length that is invisible and has no reliable direction."""
 
 
 def straight(curve: Curve, end: Point) -> Curve:
-    """On in a straight line."""
+    """Extend a curve by a straight line, unless that would be too short to see."""
     return (*curve, curve[-1], end, end) if dist(curve[-1], end) > _SHORT else curve
 
 
 def bent(curve: Curve, end: Point) -> Curve:
-    """On to another level: it leaves and arrives level."""
+    """Extend a curve to another level; it leaves and arrives horizontally."""
     x, y = curve[-1]
     half = (end[0] - x) / 2
     return (*curve, (x + half, y), (end[0] - half, end[1]), end)
 
 
 def fallen(curve: Curve, end: Point) -> Curve:
-    """On to a place below: it leaves and arrives upright."""
+    """Extend a curve to a place below; it leaves and arrives vertically."""
     x, y = curve[-1]
     half = (end[1] - y) / 2
     return (*curve, (x, y + half), (end[0], end[1] - half), end)
 
 
 def drawn(curve: Curve) -> str:
-    """The path in SVG, with an arrow at its end."""
+    """Return the curve as an SVG path, with an arrow at its end."""
     start, *rest = curve
     pieces = "".join(
         "C{:.1f} {:.1f} {:.1f} {:.1f} {:.1f} {:.1f}".format(*rest[i], *rest[i + 1], *rest[i + 2])

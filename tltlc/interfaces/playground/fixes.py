@@ -1,4 +1,4 @@
-"""Fixes of errors that the page offers, tried before."""
+"""Fixes of errors that the page offers; each one is tried first."""
 
 from __future__ import annotations
 
@@ -15,17 +15,20 @@ from tltlc.tools.lint import fixes
 from tltlc.tools.lint.fixes import Offer
 
 _LONGEST: Final = 20_000
-"""Characters of a text that is soon read again for each fix."""
+"""In longer texts, trying each fix would take too long."""
 
 
-def of_errors(source: SourceFile, told: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[Offer]:
-    """The fixes of errors of a text that imports from these folders; none of a long text."""
+def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[Offer]:
+    """Return the fixes for errors of a text; ``libraries`` are its import folders.
+
+    Long texts get none.
+    """
     if len(source.text) > _LONGEST:
         return []
 
     def errors(text: SourceFile) -> tuple[Diagnostic, ...]:
-        module, found = parse(text)
-        _, more = resolve(module, ResolveOptions(library_dirs=libraries, proofs=False))
-        return (*found, *more)
+        module, syntax = parse(text)
+        _, resolution = resolve(module, ResolveOptions(library_dirs=libraries, proofs=False))
+        return (*syntax, *resolution)
 
-    return list(fixes.of_errors(told, source, errors))
+    return list(fixes.of_errors(diagnostics, source, errors))

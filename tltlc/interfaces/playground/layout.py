@@ -1,8 +1,9 @@
-"""Places for the states of a small automaton and for the texts of its edges, none of them upon another.
+"""Place the states of a small automaton and the texts of its edges without overlaps.
 
-Between two columns of states is one of texts.  An edge passes each column on a level of its own, above which its text
-stands, so that it runs through no state and no text.  Traps stand in a row below; edges fall down to them from their
-states, or in a lane beside those that stand lower.
+Columns of states alternate with columns of texts. An edge passes each column on a level of its own,
+and its text stands above that level, so the edge crosses no state and no text. Traps stand in a row
+below; edges drop down to them from their states, or in a lane beside the lower states of the
+column.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from tltlc.interfaces.playground.ordering import Ends, Node, chain, columns_of, 
 
 _SWEEPS: Final = 12
 _GAP, _NARROW_GAP = 30.0, 12.0
-"""Between two nodes of a column, where one is a state and where none is."""
+"""Gaps between two nodes of a column: if one of them is a state, and if none is."""
 _LEAST_BEND, _MOST_BEND = 36.0, 110.0
-"""Between two columns, where edges change their levels."""
+"""Least and greatest distance between two columns, where edges change their levels."""
 _LANE: Final = 20.0
 
 Size = tuple[float, float]
@@ -29,9 +30,10 @@ Size = tuple[float, float]
 
 @record
 class Box:
-    """What has to be placed: a state, with what stands over and under it.
+    """A box to place: a state, with the texts over and under it.
 
-    ``span`` is the width of all that, ``below`` says that it belongs in the row below.
+    ``over`` and ``under`` are the heights of those texts, ``span`` is the width of everything, and
+    ``below`` puts the box into the row below.
     """
 
     width: float
@@ -44,7 +46,7 @@ class Box:
 
 @record
 class Layout:
-    """The middles of states and texts, the ways of edges, and the size of it all."""
+    """The centres of states and texts, the curves of edges, and the total size."""
 
     middles: Mapping[int, Point]
     texts: Mapping[Ends, Point]
@@ -54,16 +56,17 @@ class Layout:
 
 
 def layout(boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
-    """Places, from a corner on, for boxes, of which 0 is the first one, and for edges, which have texts of these sizes.
+    """Lay out boxes and edges from a corner on.
 
-    Loops have no places, nor have the texts of edges to what is below: those stand over and under the boxes.  What is
-    below has no edges to others.
+    Box 0 is the first state, and ``texts`` has the text size of each edge. Loops and the texts of
+    edges to the row below get no places, because they stand over and under the boxes. Boxes in the
+    row below have no edges to others.
     """
     return _Places(boxes, texts, corner).layout()
 
 
 class _Places:
-    """Columns from left to right, levels from top to bottom, and then the ways of edges."""
+    """Computes columns from left to right, levels from top to bottom, then the curves of edges."""
 
     def __init__(self, boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point) -> None:
         self.boxes, self.texts = boxes, texts
@@ -82,7 +85,7 @@ class _Places:
         self.row = self._row_below(corner[0])
 
     def layout(self) -> Layout:
-        """All of it."""
+        """Return the complete layout."""
         middles = {state: self._middle(state) for state in self.column} | self.row
         texts = {ends: self._text(ends, nodes[1]) for ends, nodes in self.chains.items()}
         ways = {ends: self._way(ends) for ends in self.chains} | self._falls()
@@ -95,7 +98,7 @@ class _Places:
         return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
 
     def _reach(self, node: Node) -> tuple[float, float]:
-        """How far a node reaches above its level and below."""
+        """Return how far a node extends above and below its level."""
         if len(node) == 1:
             box = self.boxes[node[0]]
             return box.height / 2 + box.over, box.height / 2 + box.under
@@ -103,74 +106,77 @@ class _Places:
         return (self.texts[node[0], node[1]][1] + 5, 3.0) if is_text else (0.0, 0.0)
 
     def _levels(self, top: float) -> dict[Node, float]:
-        """Each node near its neighbours, and clear of the others of its column."""
+        """Return a level for each node, near its neighbours and without overlaps in its column."""
         beside = neighbours(link for nodes in self.chains.values() for link in pairwise(nodes))
-        found: dict[Node, float] = {}
+        levels: dict[Node, float] = {}
         for nodes in self.columns:
-            self._spread(nodes, dict.fromkeys(nodes, 0.0), found)
+            self._spread(nodes, dict.fromkeys(nodes, 0.0), levels)
         for sweep in range(_SWEEPS):
             for nodes in self.columns if sweep % 2 else reversed(self.columns):
-                wanted = {node: mean([found[other] for other in beside.get(node, ())], found[node]) for node in nodes}
-                self._spread(nodes, wanted, found)
+                wanted = {node: mean([levels[other] for other in beside.get(node, ())], levels[node]) for node in nodes}
+                self._spread(nodes, wanted, levels)
         for nodes in sorted(self.chains.values(), key=len, reverse=True):
-            self._straighten(nodes[1:-1], found)
-        shift = top - min(level - self._reach(node)[0] for node, level in found.items())
-        return {node: level + shift for node, level in found.items()}
+            self._straighten(nodes[1:-1], levels)
+        shift = top - min(level - self._reach(node)[0] for node, level in levels.items())
+        return {node: level + shift for node, level in levels.items()}
 
-    def _spread(self, nodes: Sequence[Node], wanted: Mapping[Node, float], found: dict[Node, float]) -> None:
-        """Place a column in order as wanted, or as near as the gaps allow, so that the mean is as wanted."""
+    def _spread(self, nodes: Sequence[Node], wanted: Mapping[Node, float], levels: dict[Node, float]) -> None:
+        """Place the nodes of a column near their wanted levels, in order and with gaps.
+
+        The mean of the levels is the mean of the wanted levels.
+        """
         last: Node = ()
         for node in nodes:
-            found[node] = wanted[node]
+            levels[node] = wanted[node]
             if last:
-                found[node] = max(wanted[node], found[last] + self._apart(last, node))
+                levels[node] = max(wanted[node], levels[last] + self._apart(last, node))
             last = node
-        shift = mean([wanted[node] - found[node] for node in nodes], 0.0)
+        shift = mean([wanted[node] - levels[node] for node in nodes], 0.0)
         for node in nodes:
-            found[node] += shift
+            levels[node] += shift
 
     def _apart(self, upper: Node, lower: Node) -> float:
-        """How far the levels of two nodes of a column are apart at least, one right above the other."""
+        """Return the least distance between the levels of two nodes, one right above the other."""
         gap = _GAP if len(upper) == 1 or len(lower) == 1 else _NARROW_GAP
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
-    def _straighten(self, way: Sequence[Node], found: dict[Node, float]) -> None:
-        """Bring the nodes of an edge to one level, as many as there is room for, and then the next ones."""
+    def _straighten(self, way: Sequence[Node], levels: dict[Node, float]) -> None:
+        """Bring as many nodes of an edge as possible to one level, then repeat with the rest."""
         while way:
-            low, high = self._room(way[0], found)
+            low, high = self._room(way[0], levels)
             number = 1
             for node in way[1:]:
-                top, bottom = self._room(node, found)
+                top, bottom = self._room(node, levels)
                 if max(low, top) > min(high, bottom):
                     break
                 low, high, number = max(low, top), min(high, bottom), number + 1
-            level = min(max(mean([found[node] for node in way[:number]], 0.0), low), high)
-            found.update(dict.fromkeys(way[:number], level))
+            level = min(max(mean([levels[node] for node in way[:number]], 0.0), low), high)
+            levels.update(dict.fromkeys(way[:number], level))
             way = way[number:]
 
-    def _room(self, node: Node, found: Mapping[Node, float]) -> tuple[float, float]:
-        """The least and the greatest level that a node may have between its neighbours."""
+    def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
+        """Return the least and greatest level of a node between its neighbours in the column."""
         nodes = self.columns[self._number(node)]
         place = nodes.index(node)
-        low = found[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf
-        high = found[nodes[place + 1]] - self._apart(node, nodes[place + 1]) if place + 1 < len(nodes) else inf
+        low = levels[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf
+        high = levels[nodes[place + 1]] - self._apart(node, nodes[place + 1]) if place + 1 < len(nodes) else inf
         return low, max(low, high)
 
     def _spans(self, left: float) -> list[tuple[float, float]]:
-        """The left and right end of each column."""
+        """Return the left and right end of each column."""
         rises = [0.0] * len(self.columns)
         for nodes in self.chains.values():
             for one, other in pairwise(nodes):
                 number = min(self._number(one), self._number(other))
                 rises[number] = max(rises[number], abs(self.levels[one] - self.levels[other]))
-        found = []
+        spans = []
         for number, nodes in enumerate(self.columns):
             right = left + max(map(self._width, nodes))
             if number in self.lanes:
                 right += _LANE
-            found.append((left, right))
+            spans.append((left, right))
             left = right + min(max(rises[number] / 3, _LEAST_BEND), _MOST_BEND)
-        return found
+        return spans
 
     def _number(self, node: Node) -> int:
         return self.column[node[0]] if len(node) == 1 else node[2]
@@ -190,22 +196,25 @@ class _Places:
         return (left + right) / 2, self.levels[node] - 5 - self.texts[ends][1] / 2
 
     def _ports(self) -> dict[tuple[Ends, int], Point]:
-        """Where each edge leaves its source and reaches its target, in the order of where they lead to."""
+        """Return where each edge leaves its source and reaches its target.
+
+        The edges at a side are sorted by the level of their next node.
+        """
         sides: dict[tuple[int, bool], list[tuple[float, Ends]]] = {}
         for ends, nodes in self.chains.items():
             for state, beside in ((ends[0], nodes[1]), (ends[1], nodes[-2])):
                 side = state, self._number(beside) > self.column[state]
                 sides.setdefault(side, []).append((self.levels[beside], ends))
-        found = {}
+        ports = {}
         for (state, is_right), leading in sides.items():
             (x, y), box = self._middle(state), self.boxes[state]
             for index, (_, ends) in enumerate(sorted(leading)):
                 share = (index + 1) / (len(leading) + 1) - 0.5
-                found[ends, state] = x + box.width / 2 * (1 if is_right else -1), y + box.height * share
-        return found
+                ports[ends, state] = x + box.width / 2 * (1 if is_right else -1), y + box.height * share
+        return ports
 
     def _way(self, ends: Ends) -> Curve:
-        """From state to state, straight through the columns, and bent between them."""
+        """Return the curve from state to state: straight through columns, and bent between them."""
         nodes = self.chains[ends]
         is_forth = self.column[ends[0]] < self.column[ends[1]]
         start, end = self.ports[ends, ends[0]], self.ports[ends, ends[1]]
@@ -219,21 +228,21 @@ class _Places:
         return curve
 
     def _falls(self) -> dict[Ends, Curve]:
-        """Edges down to what is below, which they reach side by side."""
+        """Return the curves of edges to the row below; they arrive side by side."""
         foot = {a: self._foot(a) for a, _ in self.falls}
-        found = {}
+        curves = {}
         for target, (x, y) in self.row.items():
             box = self.boxes[target]
             sources = sorted((a for a, b in self.falls if b == target), key=lambda a: (foot[a][-1][0], a))
             for index, a in enumerate(sources):
                 share = (index + 1) / (len(sources) + 1) - 0.5
                 port = x + box.width * share, y - box.height / 2
-                # Others of the row may reach as far up as what stands over this one.
-                found[a, target] = straight(fallen(foot[a], (port[0], port[1] - box.over)), port)
-        return found
+                # The texts of other boxes in the row may reach as far up as those of this one.
+                curves[a, target] = straight(fallen(foot[a], (port[0], port[1] - box.over)), port)
+        return curves
 
     def _foot(self, state: int) -> Curve:
-        """From a state down to the lowest level."""
+        """Return the curve from a state down to the lowest level."""
         (x, y), box = self._middle(state), self.boxes[state]
         curve: Curve = ((x, y + box.height / 2),)
         if state in self.in_lanes:
@@ -243,21 +252,21 @@ class _Places:
         return straight(curve, (curve[-1][0], self.bottom))
 
     def _row_below(self, left: float) -> dict[int, Point]:
-        """Places in the row below, each under the middle of the states that lead there."""
+        """Return places in the row below, each under the middle of the states that lead there."""
         wanted = {
             state: mean([self._foot(a)[-1][0] for a, b in self.falls if b == state], 0.0)
             for state, box in self.boxes.items()
             if box.below
         }
-        found: dict[int, Point] = {}
+        places: dict[int, Point] = {}
         reach = max((abs(self._foot(a)[-1][0] - wanted[b]) for a, b in self.falls), default=0.0)
         top = self.bottom + min(max(reach / 8, 2 * _GAP), _MOST_BEND)
         for state in sorted(wanted, key=lambda state: (wanted[state], state)):
             box = self.boxes[state]
             x = max(wanted[state], left + _span(box) / 2)
-            found[state] = x, top + box.over + box.height / 2
+            places[state] = x, top + box.over + box.height / 2
             left = x + _span(box) / 2 + 2 * _GAP
-        return found
+        return places
 
 
 def _span(box: Box) -> float:

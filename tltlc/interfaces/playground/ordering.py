@@ -1,7 +1,8 @@
-"""Columns for a graph from left to right, and an order in each of them with few crossings.
+"""Arrange a graph in columns from left to right, and order each column so that few edges cross.
 
-The method is that of Sugiyama, Tagawa and Toda (1981): edges that close a cycle are turned round, each state stands one
-column behind the last that leads to it, and the nodes of a column are ordered by the mean place of their neighbours.
+The method is that of Sugiyama, Tagawa and Toda (1981): edges that close a cycle are reversed, each
+state stands one column after the last state that leads to it, and the nodes of a column are sorted
+by the mean place of their neighbours.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ _SWEEPS: Final = 12
 Ends = tuple[int, int]
 """The source and the target of an edge."""
 Node = tuple[int, ...]
-"""A state by its number, or ``(source, target, column)`` where an edge passes a column."""
+"""A state number in a tuple, or ``(source, target, column)`` where an edge passes a column."""
 
 
 def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
-    """The column of each state: the longest way to it, along edges that close no cycle."""
+    """Return the column of each state: the longest path to it along edges that close no cycle."""
     after: dict[int, list[int]] = {state: [] for state in states}
     for a, b in edges:
         after[a].append(b)
@@ -33,7 +34,7 @@ def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
 
 
 def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
-    """An edge as nodes, from column to column."""
+    """Return an edge as nodes, one for each column from source to target."""
     source, target = ends
     a, b = column[source], column[target]
     way = range(a + 1, b) if a < b else range(a - 1, b, -1)
@@ -41,11 +42,11 @@ def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
 
 
 def ordered(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list[list[Node]]:
-    """The nodes of each column from top to bottom, with few crossings."""
+    """Return the nodes of each column from top to bottom, ordered so that few edges cross."""
     columns: list[list[Node]] = [[] for _ in range(max(column.values()) + 1)]
     for state, number in column.items():
         columns[number].append((state,))
-    links = [link for each in chains for link in pairwise(each)]
+    links = [link for nodes in chains for link in pairwise(nodes)]
     for node in dict.fromkeys(node for link in links for node in link):
         if len(node) > 1:
             columns[node[2]].append(node)
@@ -64,7 +65,7 @@ def ordered(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list
 
 
 def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
-    """The nodes that each is linked with."""
+    """Return the nodes that each node is linked with."""
     beside: dict[Node, list[Node]] = {}
     for one, other in links:
         beside.setdefault(one, []).append(other)
@@ -73,12 +74,12 @@ def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
 
 
 def mean(values: Sequence[float], default: float) -> float:
-    """The mean, or the default of nothing."""
+    """Return the mean, or the default if there are no values."""
     return sum(values) / len(values) if values else default
 
 
 def _without_cycles(after: Mapping[int, Sequence[int]]) -> tuple[list[int], dict[int, list[int]]]:
-    """The states, those that a search in depth leaves first before the others, and the edges that close no cycle."""
+    """Return the states in depth-first postorder, and the edges that close no cycle."""
     finished: list[int] = []
     entered: set[int] = set()
     open_: set[int] = set()
@@ -108,11 +109,11 @@ def _crossings(columns: Sequence[Sequence[Node]], links: Iterable[tuple[Node, No
     for link in links:
         (left, a), (_, b) = sorted(place[node] for node in link)
         between.setdefault(left, []).append((a, b))
-    found = 0
+    crossings = 0
     for pairs in between.values():
         before: list[tuple[int, int]] = []
         for a, b in sorted(pairs):
-            # Those that begin above, and end below.
-            found += len(before) - bisect_right(before, (b, a))
+            # Count the earlier pairs that start above and end below.
+            crossings += len(before) - bisect_right(before, (b, a))
             insort(before, (b, a))
-    return found
+    return crossings

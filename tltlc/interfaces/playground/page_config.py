@@ -1,4 +1,4 @@
-"""What the page needs before anything is typed: examples, and the words of the language."""
+"""The data that the page needs at its start: examples, and the words of the language."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ EXAMPLES: Final = Path(__file__).with_name("examples")
 
 
 def start() -> dict[str, Any]:
-    """The examples, each with the title that its first line says, and words and units to be coloured."""
+    """Return the examples, and the words and units to colour."""
     tables = load()
-    # A word that is a name in most places keeps the colour of a name.
+    # A soft keyword is a name in most places, so it keeps the colour of a name.
     words = sorted(word for word in tables.words if word.isascii() and word not in tables.soft)
     return {"examples": examples(), "words": words, "units": sorted(tables.units)}
 
 
 def examples() -> list[dict[str, str]]:
-    """The examples in order, ``title`` and ``text``."""
+    """Return the examples in order, each with its ``title`` (from the first line) and ``text``."""
     texts = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.tltl"))]
     return [{"title": text.partition("\n")[0].removeprefix("// "), "text": text} for text in texts]

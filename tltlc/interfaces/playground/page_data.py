@@ -1,4 +1,4 @@
-"""Everything that the page shows of a text, as values that JSON has."""
+"""Everything that the page shows about a text, as JSON values."""
 
 from __future__ import annotations
 
@@ -26,66 +26,66 @@ from tltlc.tools.lint.fixes import Offer, of_findings
 from tltlc.tools.lint.run import findings, view_of
 
 NAME: Final = "<playground>"
-"""What messages call the text; it imports as from the current folder."""
+"""The name of the text in messages; its imports are resolved from the current folder."""
 
 STATE_BUDGET: Final = 5_000
-"""More than anybody can look at, and soon explored."""
+"""More states than anyone can look at, but few enough to explore quickly."""
 
 MOST_MESSAGES: Final = 200
-"""The first of them, where there are more."""
+"""If there are more messages, only the first ones are shown."""
 
 
 def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: Notation = "english") -> dict[str, Any]:
-    """What is to be seen of a text, of one of its specs, and of a trace of that spec.
+    """Return what the page shows about a text, one of its specs, and a trace of that spec.
 
-    ``spec`` is the name of one, the first one where there is none of that name; ``notation`` is that of the picture.
-    The keys of the result:
+    ``spec`` is the name of a spec; if none has that name, the first one is shown. ``notation`` is
+    for the picture. The keys of the result:
 
-    - ``diagnostics``: each with code, severity, title, help, labels and ways_out; their ``start`` and ``end`` are
-      offsets into the text in UTF-16 units, as browsers count, or None in another file.  Failed tests are among them.
-      Ways out are those of :mod:`tltlc.tools.lint.fixes`, each with a title and edits that do not meet.
-    - ``more``: how many messages are left out beyond :data:`MOST_MESSAGES`.
-    - ``specs``: the names of all specs; none where there are errors.
+    - ``diagnostics``: each with code, severity, title, help, labels and ways_out. Their ``start``
+      and ``end`` are offsets into the text in UTF-16 units, as in browsers, or None in another
+      file. Failed tests are included. The ways_out are the fixes of :mod:`tltlc.tools.lint.fixes`,
+      each with a title and edits that do not overlap.
+    - ``more``: how many messages beyond :data:`MOST_MESSAGES` are left out.
+    - ``specs``: the names of all specs; empty if there are errors.
     - ``tests``: the title of each test, its spec, and whether it passed.
-    - ``spec``: None where there are errors, or no spec.  Else its texts, its explanation as of ``tltlc explain``, what
-      breaks it as that says it, its atoms, signals and states, the picture of its automaton
-      (:func:`tltlc.interfaces.playground.picture.picture`), the trace step by step
-      (:func:`tltlc.interfaces.playground.trace.rows`) and some
-      traces to begin with.
+    - ``spec``: None if there are errors or no specs. Otherwise its texts, its explanation as in
+      ``tltlc explain``, the failures from that explanation, its atoms, signals and states, the
+      picture of its automaton (:func:`tltlc.interfaces.playground.picture.picture`), the trace step
+      by step (:func:`tltlc.interfaces.playground.trace.rows`), and some traces to start with.
 
-    Never raises for what a text holds, but takes as long as it takes.
+    Never raises because of the contents of a text, but sets no time limit.
     """
     source = SourceFile(NAME, text)
-    found: dict[str, Any] = {"diagnostics": [], "more": 0, "specs": [], "tests": [], "spec": None}
+    page: dict[str, Any] = {"diagnostics": [], "more": 0, "specs": [], "tests": [], "spec": None}
     libraries: tuple[Path, ...] = ()
     try:
         project = project_for(STDIN)
         libraries = project.libraries
-        seen = view_of(source, CompileOptions(library_dirs=libraries, state_budget=STATE_BUDGET))
+        compiled = view_of(source, CompileOptions(library_dirs=libraries, state_budget=STATE_BUDGET))
     except TltlError as error:
         offers = of_errors(source, error.diagnostics, libraries)
-        return {**found, **_told(error.diagnostics, source, offers)}
-    remarks = findings(seen, project.lint)
-    results = run_tests(seen.program, (each.fspa for each in seen.specs))
-    said = [*(each.diagnostic for each in remarks), *(result.failure for result in results if result.failure)]
-    found.update(_told(said, source, list(of_findings(remarks[:MOST_MESSAGES], seen.module))))
-    found["specs"] = [each.spec.name for each in seen.specs]
-    found["tests"] = [
+        return {**page, **_messages(error.diagnostics, source, offers)}
+    remarks = findings(compiled, project.lint)
+    results = run_tests(compiled.program, (spec_view.fspa for spec_view in compiled.specs))
+    messages = [*(finding.diagnostic for finding in remarks), *(result.failure for result in results if result.failure)]
+    page.update(_messages(messages, source, list(of_findings(remarks[:MOST_MESSAGES], compiled.module))))
+    page["specs"] = [spec_view.spec.name for spec_view in compiled.specs]
+    page["tests"] = [
         {"title": result.test.title, "spec": result.test.spec, "passed": result.passed} for result in results
     ]
-    if seen.specs:
-        shown = next((each for each in seen.specs if each.spec.name == spec), seen.specs[0])
-        found["spec"] = _spec(shown.fspa, explain(shown.fspa, shown.spec.formula), letters, notation)
-    return found
+    if compiled.specs:
+        shown = next((spec_view for spec_view in compiled.specs if spec_view.spec.name == spec), compiled.specs[0])
+        page["spec"] = _spec(shown.fspa, explain(shown.fspa, shown.spec.formula), letters, notation)
+    return page
 
 
-def _told(said: Sequence[Diagnostic], source: SourceFile, offers: Sequence[Offer]) -> dict[str, Any]:
-    shown = [diagnostic(each, source, offers) for each in said[:MOST_MESSAGES]]
-    return {"diagnostics": shown, "more": len(said) - len(shown)}
+def _messages(messages: Sequence[Diagnostic], source: SourceFile, offers: Sequence[Offer]) -> dict[str, Any]:
+    shown = [diagnostic(message, source, offers) for message in messages[:MOST_MESSAGES]]
+    return {"diagnostics": shown, "more": len(messages) - len(shown)}
 
 
-def _spec(fspa: Fspa, explained: Explanation, letters: Iterable[Letter], notation: Notation) -> dict[str, Any]:
-    explanation = values(explained)
+def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter], notation: Notation) -> dict[str, Any]:
+    explanation = values(source_explanation)
     drawn, note = picture(fspa, notation)
     leads = {row["id"]: row["leads"] for row in explanation["states"]}
     return {
@@ -93,7 +93,7 @@ def _spec(fspa: Fspa, explained: Explanation, letters: Iterable[Letter], notatio
         "doc": fspa.doc,
         "formula": _texts(fspa.formula),
         "explanation": explanation,
-        "failures": list(failure_texts(explained)),
+        "failures": list(failure_texts(source_explanation)),
         "atoms": [{"name": atom.name, "doc": atom.doc} for atom in fspa.atoms],
         "exclusive": [[fspa.atoms[index].name for index in group] for group in fspa.exclusive],
         "signals": signal_values(fspa),
@@ -120,19 +120,20 @@ def _texts(text: Text) -> dict[str, str]:
     return {"ascii": text.ascii, "unicode": text.unicode, "english": text.english}
 
 
-def diagnostic(said: Diagnostic, source: SourceFile | None = None, offers: Iterable[Offer] = ()) -> dict[str, Any]:
-    """A message as the page takes it; ``source`` is the text, of which the page can show places.
+def diagnostic(message: Diagnostic, source: SourceFile | None = None, offers: Iterable[Offer] = ()) -> dict[str, Any]:
+    """Return a message as the page expects it.
 
-    Of the fixes that are offered it takes those of this very message.
+    ``source`` is the text in which the page can show places. Of ``offers``, only the fixes of this
+    very message are included.
     """
-    short = shortened(said)
+    short = shortened(message)
     return {
         "code": short.code,
         "severity": short.severity,
         "title": short.title,
         "help": short.help,
         "labels": [_label(label, source) for label in short.labels],
-        "ways_out": [_way_out(each.fix, source) for each in offers if source and each.diagnostic is said],
+        "ways_out": [_way_out(offer.fix, source) for offer in offers if source and offer.diagnostic is message],
     }
 
 
@@ -159,5 +160,5 @@ def _way_out(fix: Fix, source: SourceFile) -> dict[str, Any]:
 
 
 def _units(text: str, offset: int) -> int:
-    """An offset in characters as one in units of UTF-16."""
+    """Convert an offset in characters to UTF-16 units."""
     return len(text[:offset].encode("utf-16-le", "surrogatepass")) // 2

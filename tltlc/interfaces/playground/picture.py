@@ -1,4 +1,4 @@
-"""The automaton as an SVG picture for the page, which colours it, and lights the current state."""
+"""Draw the automaton as an SVG picture; the page colours it and highlights the current state."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tltlc.interfaces.playground.ordering import Ends
 
 MOST_STATES: Final = 40
 MOST_EDGES: Final = 120
-"""Beyond, nothing can be read."""
+"""Beyond these numbers, nothing can be read."""
 
-# Widths of characters and heights of lines; the fonts have one width.
+# Widths of characters and heights of lines, for monospaced fonts.
 _LABEL_CHARACTER, _LABEL_LINE = 7.3, 17.0
 _GUARD_CHARACTER, _GUARD_LINE = 6.7, 14.0
 _LABEL, _GUARD, _WIDE_GUARD = 26, 22, 30
-"""Characters in a line; words that are longer may take twice as many."""
+"""Characters in a line; longer words may take twice as many."""
 _MOST_LINES: Final = 6
 _LOOP: Final = 26.0
 """Height of a loop beside its state."""
@@ -34,11 +34,14 @@ _START: Final = 26.0
 
 
 def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
-    """The picture, and notes on it and what it leaves out; of an automaton too large to look at the note alone.
+    """Return the picture, and notes about it and what it leaves out.
 
-    States are groups of the class ``state`` and of their verdict, with ``data-states``, the numbers of the states that
-    they stand for; edges are groups of the class ``edge`` with ``data-source`` and ``data-target``.  Both have their
-    whole text in words as title: of a long one the beginning is drawn.
+    If the automaton is too large, return only a note.
+
+    States are groups with the class ``state`` and the class of their verdict; ``data-states`` has
+    the numbers of the states that they stand for. Edges are groups with the class ``edge``,
+    ``data-source`` and ``data-target``. The title of both is their full text in words; the picture
+    shows only the start of a long text.
     """
     drawing = shown(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
@@ -62,7 +65,7 @@ class _Picture:
         self.placed = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
 
     def svg(self) -> str:
-        """The picture."""
+        """Return the picture."""
         width, height = self.placed.width + _MARGIN, self.placed.height + _MARGIN
         left, y = self._frame(0)[0], self.placed.middles[0][1]
         start = f'<circle cx="{left - _START:.1f}" cy="{y:.1f}" r="3.5"/>'
@@ -77,7 +80,7 @@ class _Picture:
         )
 
     def _lines(self, ends: Ends) -> list[str]:
-        """The text of an edge; over and under a state there is more room."""
+        """Return the text of an edge in lines; texts over and under a state may be wider."""
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shortened(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 
@@ -86,14 +89,14 @@ class _Picture:
         width, height = max(_columns(lines) * _LABEL_CHARACTER + 30, 62.0), len(lines) * _LABEL_LINE + 32
         loop = _size(self.lines.get((state, state), []))
         fall = _size([] if self.trap in (None, state) else self.lines.get((state, self.trap), []))
-        beside, under = (size[1] + more if size[1] else 0.0 for size, more in ((loop, _LOOP + 4), (fall, 12)))
+        beside, under = (size[1] + margin if size[1] else 0.0 for size, margin in ((loop, _LOOP + 4), (fall, 12)))
         if state == self.trap:
             arriving = sum(target == state for _, target in self.lines)
             return Box(max(width, 12.0 * arriving), height, 0.0, beside, loop[0], below=True)
         return Box(width, height, beside, under, max(loop[0], fall[0]))
 
     def _frame(self, state: int) -> tuple[float, float, float, float]:
-        """Left, top, right and bottom of a state."""
+        """Return the left, top, right and bottom of a state."""
         (x, y), box = self.placed.middles[state], self.boxes[state]
         return x - box.width / 2, y - box.height / 2, x + box.width / 2, y + box.height / 2
 
@@ -103,15 +106,15 @@ class _Picture:
         number = span(str(run[0].id), str(run[-1].id))
         distance = span(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
         classes = f"state {state.verdict}{' accepting' if state.accepting else ''}{' folded' if len(run) > 1 else ''}"
-        said = _escaped(f"State {number}, {state.verdict}: {run[0].label.english}")
+        title = _escaped(f"State {number}, {state.verdict}: {run[0].label.english}")
         frame = _rectangle("frame", left, top, right, bottom, 9)
         frame += _rectangle("ring", left + 4, top + 4, right - 4, bottom - 4, 6) if state.accepting else ""
         lines = self.labels[state.id]
-        # The marks take the first line.
+        # The number and the distance take the first line.
         middle = (left + right) / 2, top + 21 + len(lines) * _LABEL_LINE / 2
         return (
-            f'<g class="{classes}" data-states="{" ".join(str(each.id) for each in run)}" tabindex="0" role="button"'
-            f' aria-label="{said}"><title>{said}</title>{frame}'
+            f'<g class="{classes}" data-states="{" ".join(str(state.id) for state in run)}" tabindex="0" role="button"'
+            f' aria-label="{title}"><title>{title}</title>{frame}'
             f'<text class="number" x="{left + 10:.1f}" y="{top + 17:.1f}">{number}</text>'
             f'<text class="distance" x="{right - 10:.1f}" y="{top + 17:.1f}" text-anchor="end">{distance}</text>'
             f"{_text(lines, middle, _LABEL_LINE, 'label')}</g>"
@@ -122,14 +125,14 @@ class _Picture:
         kind = ""
         if source.id != target.id and source.distance is not None:
             kind = " failing" if target.distance is None else " nearer" if target.distance < source.distance else ""
-        said = _escaped(f"From {source.id} to {target.id}: {'; '.join(self.titles[ends])}")
+        title = _escaped(f"From {source.id} to {target.id}: {'; '.join(self.titles[ends])}")
         return (
             f'<g class="edge{kind}" data-source="{ends[0]}" data-target="{ends[1]}" role="img">'
-            f"<title>{said}</title>{self._arrow(ends)}</g>"
+            f"<title>{title}</title>{self._arrow(ends)}</g>"
         )
 
     def _arrow(self, ends: Ends) -> str:
-        """The arrow of an edge, and its text."""
+        """Return the arrow of an edge, and its text."""
         lines = self.lines[ends]
         width, height = _size(lines)
         left, top, right, bottom = self._frame(ends[0])
@@ -142,13 +145,13 @@ class _Picture:
         way = self.placed.ways[ends]
         if ends[1] != self.trap:
             return drawn(way) + _text(lines, self.placed.texts[ends], _GUARD_LINE, "guard")
-        # It passes behind its text.
+        # The arrow passes behind its text.
         behind = _rectangle("behind", x - width / 2, bottom + 5, x + width / 2, bottom + 7 + height, 0)
         return drawn(way) + behind + _text(lines, (x, bottom + 6 + height / 2), _GUARD_LINE, "guard")
 
 
 def _trap(drawing: Drawing) -> int | None:
-    """The state from which nothing leads to success, nor to any other state."""
+    """Return the violated state that no edge leaves, if there is one other than the first state."""
     leaving = {edge.source for edge in drawing.edges if edge.source != edge.target}
     traps = (state.id for state in drawing.states if state.verdict == "violated" and state.id not in leaving)
     return next((state for state in traps if state), None)
@@ -162,7 +165,7 @@ def _label_lines(run: Sequence[State], notation: Notation) -> list[str]:
 
 
 def _shortened(texts: Sequence[str], width: int) -> list[str]:
-    """Texts in lines of about that width; an ellipsis stands for what is left out."""
+    """Wrap texts to lines of about that width; an ellipsis replaces what does not fit."""
     lines = [line for text in texts for line in wrapped(text, width, _MOST_LINES)]
     if len(lines) > _MOST_LINES:
         lines = [*lines[: _MOST_LINES - 1], "…"]

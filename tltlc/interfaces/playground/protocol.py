@@ -1,4 +1,7 @@
-"""What the page asks and is answered, as JSON: the same by the server and in the browser alone."""
+"""The requests of the page and their answers, as JSON.
+
+The server and the browser-only site share them.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +22,15 @@ TOO_LARGE: Final = "this takes more memory than the playground has"
 
 
 class RequestError(ValueError):
-    """What was asked is no request."""
+    """The text is not a request."""
 
 
 @record
 class Question:
-    """What the page asks about a text; ``spec``, ``letters`` and ``notation`` are those of :func:`view`."""
+    """A request of the page about a text.
+
+    ``spec``, ``letters`` and ``notation`` are the parameters of :func:`view`.
+    """
 
     text: str
     spec: str
@@ -33,54 +39,55 @@ class Question:
 
 
 def answer(request: str) -> str:
-    """The answer to a request: what :func:`start` or :func:`view` returns.
+    """Answer a request with the result of :func:`start` or :func:`view`.
 
-    Raises RequestError for anything else than such a request.
+    Raises RequestError if the text is not a request.
     """
-    asked = question(request)
-    if asked is None:
+    parsed = question(request)
+    if parsed is None:
         return _json(start())
     try:
-        return _json(view(asked.text, asked.spec, asked.letters, asked.notation))
+        return _json(view(parsed.text, parsed.spec, parsed.letters, parsed.notation))
     except (MemoryError, RecursionError):
         return gave_up(TOO_LARGE)
     except Exception:
-        # Whoever types has no use for a traceback, and can go on typing.
+        # A traceback does not help the user, who can go on typing.
         return gave_up("a bug in tltlc stopped this", "please report it, with the text")
 
 
 def question(request: str) -> Question | None:
-    """What a request asks by its keys ``text``, ``spec``, ``letters``, ``notation``; None where it asks how to start.
+    """Parse a request with the keys ``text``, ``spec``, ``letters`` and ``notation``.
 
-    Raises RequestError for anything else than such a request.
+    Return None for the request ``{}``, which asks for the start data.
+    Raises RequestError if the text is not a request.
     """
     try:
-        asked = loads(request, MESSAGE)
+        parsed = loads(request, MESSAGE)
     except (ValueError, RecursionError) as error:
         raise RequestError("a request is JSON") from error
-    if asked == {}:
+    if parsed == {}:
         return None
-    if not isinstance(asked, dict) or not isinstance(asked.get("text"), str):
+    if not isinstance(parsed, dict) or not isinstance(parsed.get("text"), str):
         raise RequestError("a request has a `text`")
-    spec, letters = asked.get("spec", ""), asked.get("letters", [])
+    spec, letters = parsed.get("spec", ""), parsed.get("letters", [])
     if not isinstance(spec, str) or not isinstance(letters, list) or len(letters) > MOST_LETTERS:
         raise RequestError(f"`spec` is a name, and `letters` a list of at most {MOST_LETTERS}")
-    notation = asked.get("notation", "english")
+    notation = parsed.get("notation", "english")
     if notation not in get_args(Notation):
         raise RequestError(f"`notation` is one of {', '.join(get_args(Notation))}")
     if not all(map(_is_letter, letters)):
         raise RequestError("a letter is a list of atoms, or an object of numbers by the names of signals")
-    return Question(asked["text"], spec, tuple(letters), notation)
+    return Question(parsed["text"], spec, tuple(letters), notation)
 
 
 def gave_up(why: str, way_out: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
-    """The answer where nothing can be said of a text: TLT0775, and why."""
-    said = Diagnostic("TLT0775", why, help=way_out)
-    return _json({"diagnostics": [diagnostic(said)], "more": 0, "specs": [], "tests": [], "spec": None})
+    """Return the answer if a text cannot be analysed: TLT0775, with the reason."""
+    message = Diagnostic("TLT0775", why, help=way_out)
+    return _json({"diagnostics": [diagnostic(message)], "more": 0, "specs": [], "tests": [], "spec": None})
 
 
 def gave_up_on_size() -> str:
-    """The answer in place of one that is larger than :data:`tltlc.io.limits.ANSWER`."""
+    """Return the answer that replaces one larger than :data:`tltlc.io.limits.ANSWER`."""
     return gave_up(f"the answer is larger than {ANSWER.size >> 20} MiB, and was given up")
 
 

@@ -1,7 +1,7 @@
-"""Read the head of an HTTP/1.1 request (RFC 9112): the first line and the headers, without any input or output.
+"""Parse the head of an HTTP/1.1 request (RFC 9112) without any input or output.
 
-It accepts less than the standard allows: no transfer codings, no continued header lines, no second ``Host``. Whatever
-could be read in two ways is refused.
+It accepts less than the standard allows: no transfer codings, no continued header lines, no second
+``Host``. It refuses everything ambiguous.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tltlc.core.record import record
 from tltlc.io.limits import REQUEST_HEAD, REQUEST_LINE
 
 _TOKEN: Final = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
-# No two neighbouring parts of a pattern here match the same character, so that matching takes linear time.
+# Neighbouring parts of these patterns never match the same character, so matching takes linear time.
 _LINE: Final = re.compile(rb"(%s) ([!-~]+) HTTP/([0-9])\.([0-9])" % _TOKEN)
 _NAME: Final = re.compile(_TOKEN)
 _VALUE: Final = re.compile(rb"[\t -~\x80-\xff]*")
@@ -24,7 +24,10 @@ _END: Final = re.compile(rb"\n\r?\n")
 _BAD_ESCAPE: Final = re.compile(r"%(?![0-9A-Fa-f]{2})")
 _MOST_DIGITS: Final = 18
 _REPEATED: Final = {"accept", "accept-encoding", "accept-language", "cache-control", "connection", "via"}
-"""Headers that may stand there several times: lists, on which nothing depends but whether the connection is kept."""
+"""Headers that may be repeated.
+
+They are lists, and only whether the connection stays open depends on them.
+"""
 
 
 class RefusedError(Exception):
@@ -39,9 +42,10 @@ class RefusedError(Exception):
 class Head:
     """A request without its body.
 
-    ``path`` is the path of its target without escapes and query; ``headers`` have names in lower case; ``length`` is
-    that of the body in bytes, None where the request does not say; ``keeps`` is whether another request may follow;
-    ``is_old`` is whether the other side speaks HTTP/1.0, which has no interim answers.
+    ``path`` is the path of the target, unescaped and without query. ``headers`` have names in lower
+    case. ``length`` is the length of the body in bytes; None if the request does not give it.
+    ``keeps`` is whether another request may follow. ``is_old`` is whether the client speaks
+    HTTP/1.0, which has no interim answers.
     """
 
     method: str
@@ -53,14 +57,15 @@ class Head:
 
     @property
     def waits(self) -> bool:
-        """Whether the other side sends the body only after the server has agreed."""
+        """Whether the client sends the body only after the server has agreed."""
         return "expect" in self.headers
 
 
 def read_head(data: bytes) -> tuple[Head, int] | None:
-    """The head at the start of some bytes, and the offset behind it; None where the head is not complete yet.
+    """Parse the head at the start of some bytes.
 
-    Raises RefusedError as early as it can: 400 for what is no HTTP, 414 and 431 for what is too long, 417 for an
+    Return it and the offset after it, or None if it is incomplete. Raises RefusedError as early as
+    possible: 400 if the bytes are not HTTP, 414 and 431 if something is too long, 417 for an
     unknown expectation, 501 for transfer codings, 505 for another version.
     """
     # Empty lines before a request are allowed (RFC 9112, 2.2).
@@ -84,43 +89,43 @@ def read_head(data: bytes) -> tuple[Head, int] | None:
 
 
 def _first_line(line: bytes) -> tuple[str, str, bool]:
-    """The method, the path, and whether the version is 1.0."""
-    found = _LINE.fullmatch(line)
-    if found is None:
+    """Return the method, the path, and whether the version is 1.0."""
+    match = _LINE.fullmatch(line)
+    if match is None:
         raise RefusedError(HTTPStatus.BAD_REQUEST)
-    if found[3] != b"1":
+    if match[3] != b"1":
         raise RefusedError(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED)
-    target = found[2].decode("ascii").partition("?")[0]
+    target = match[2].decode("ascii").partition("?")[0]
     # The other forms of a target are for proxies.
     if not target.startswith("/") and target != "*":
         raise RefusedError(HTTPStatus.BAD_REQUEST)
-    return found[1].decode("ascii"), _unescaped(target), found[4] == b"0"
+    return match[1].decode("ascii"), _unescaped(target), match[4] == b"0"
 
 
 def _unescaped(path: str) -> str:
     if _BAD_ESCAPE.search(path):
         raise RefusedError(HTTPStatus.BAD_REQUEST)
     try:
-        found = unquote_to_bytes(path).decode("utf-8")
+        text = unquote_to_bytes(path).decode("utf-8")
     except UnicodeDecodeError:
         raise RefusedError(HTTPStatus.BAD_REQUEST) from None
-    if any(ord(character) < ord(" ") or character == "\x7f" for character in found):
+    if any(ord(character) < ord(" ") or character == "\x7f" for character in text):
         raise RefusedError(HTTPStatus.BAD_REQUEST)
-    return found
+    return text
 
 
 def _headers(text: bytes) -> dict[str, str]:
-    found: dict[str, str] = {}
+    headers: dict[str, str] = {}
     for line in text.split(b"\n") if text.strip(b"\r\n") else ():
         name, value = _header(line.removesuffix(b"\r"))
-        if name in found and name not in _REPEATED:
+        if name in headers and name not in _REPEATED:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
-        found[name] = f"{found[name]}, {value}" if name in found else value
-    return found
+        headers[name] = f"{headers[name]}, {value}" if name in headers else value
+    return headers
 
 
 def _header(line: bytes) -> tuple[str, str]:
-    """The name of a header in lower case, and its value without the blanks around it."""
+    """Return the name of a header in lower case, and its value without surrounding blanks."""
     name, colon, value = line.partition(b":")
     if not (colon and _NAME.fullmatch(name) and _VALUE.fullmatch(value)):
         raise RefusedError(HTTPStatus.BAD_REQUEST)

@@ -1,4 +1,4 @@
-"""The page on this machine: the files of the page, and answers to what it asks."""
+"""Serve the page on this machine: its files, and answers to its requests."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ HOST: Final = "127.0.0.1"
 TOKEN_HEADER: Final = "Tltlc-Token"
 
 _NAMES: Final = {HOST, "localhost"}
-"""Under other names a page of somebody else could ask, by an address that leads here."""
+"""Other names are refused: a foreign page could use a domain name that resolves to this address."""
 
 _API: Final = "/api"
 _METHODS: Final = {"GET", "HEAD", "POST"}
 _KNOWN_METHODS: Final = _METHODS | {"OPTIONS", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}
 _AGAIN_S: Final = 1.0
-"""Seconds after which a server that had no room for another connection looks again."""
+"""Seconds after which a server without free descriptors looks for new connections again."""
 
 _OTHER_DESCRIPTORS: Final = 16 + 6 * MOST_AT_ONCE
 """How many descriptors the process itself and the pipes to its children need at most."""
@@ -51,17 +51,17 @@ _HEADERS: Final = {
 
 
 class Page:
-    """What the server answers: ``GET`` of the page's files, and ``POST`` of :data:`_API` with the token."""
+    """Answers ``GET`` of the page's files, and ``POST`` to :data:`_API` with the token."""
 
     def __init__(self, children: Children, token: str) -> None:
         self.files = page_files()
         self._children = children
         self._token = token.encode()
-        # As many threads as connections can wait; the children themselves are fewer.
+        # One thread for each connection that may wait; the children are fewer.
         self._threads = ThreadPoolExecutor(PLAYGROUND.most)
 
     def check(self, head: Head) -> None:
-        """Raise RefusedError for a request that is not from the page itself, or asks for what there is not."""
+        """Raise RefusedError if a request is not from the page, or asks for something unknown."""
         if not _is_own(head):
             raise RefusedError(HTTPStatus.FORBIDDEN)
         if head.method not in _KNOWN_METHODS:
@@ -77,39 +77,39 @@ class Page:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
-        """A file of the page, or the answer to a question; None where the page has hung up."""
+        """Return a file of the page, or the answer to a question; None if the page has hung up."""
         if head.path != _API:
             name = _file_name(head.path)
             kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "text/plain"
             return _response(HTTPStatus.OK, self.files[name], kind)
         loop = asyncio.get_running_loop()
         try:
-            answered = await loop.run_in_executor(self._threads, self._children.answer, body, hung_up.is_set)
+            text = await loop.run_in_executor(self._threads, self._children.answer, body, hung_up.is_set)
         except AbandonedError:
             return None
         except OSError:
             # The system has no room for another process.
             raise RefusedError(HTTPStatus.SERVICE_UNAVAILABLE) from None
-        if answered is None:
+        if text is None:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
-        return _response(HTTPStatus.OK, answered.encode(), "application/json")
+        return _response(HTTPStatus.OK, text.encode(), "application/json")
 
     def refusal(self, status: HTTPStatus) -> Response:
-        """The answer that says that a request is refused."""
+        """Return the response for a refused request."""
         allowed = {"Allow": "GET, HEAD, POST"} if status is HTTPStatus.METHOD_NOT_ALLOWED else {}
         return _response(status, f"{status.phrase}\n".encode(), "text/plain", allowed)
 
     def close(self) -> None:
-        """Wait for nobody any more."""
+        """Stop waiting for answers."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _check_question(self, head: Head) -> None:
-        # Who has no token learns nothing else.
+        # A client without the token learns nothing else.
         if not secrets.compare_digest(head.headers.get(TOKEN_HEADER.lower(), "").encode("latin-1"), self._token):
             raise RefusedError(HTTPStatus.FORBIDDEN)
         if head.method != "POST":
             raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
-        # Pages of others would have to ask the browser first before they send this.
+        # For this content type, pages from elsewhere need a CORS preflight, which this server refuses.
         if head.headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
             raise RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE)
         if head.length is None:
@@ -127,7 +127,7 @@ def _file_name(path: str) -> str:
 
 
 def _is_own(head: Head) -> bool:
-    """Whether a request is for this server, and neither made by a page from elsewhere nor for one."""
+    """Whether a request is meant for this server, and does not come from a foreign page."""
     host = head.headers.get("host", "").lower()
     name, colon, port = host.partition(":")
     if name not in _NAMES or (colon and not (port.isascii() and port.isdecimal())):
@@ -136,12 +136,12 @@ def _is_own(head: Head) -> bool:
         return False
     if head.headers.get("sec-fetch-site", "none") in ("none", "same-origin"):
         return True
-    # A link from elsewhere may lead to the page.
+    # A link on another page may lead to our page.
     return head.path == "/" and head.method == "GET" and head.headers.get("sec-fetch-mode") == "navigate"
 
 
 def _within_descriptors(connections: Connections) -> Connections:
-    """No more connections than the system has descriptors for, beside those that children need."""
+    """Limit the connections to the descriptors that remain after those for children."""
     with suppress(ImportError):
         import resource
 
@@ -158,19 +158,19 @@ def _read_all(reader: socket.socket) -> None:
 
 
 class Server:
-    """Serves the page at :data:`HOST`, and at no other address; port 0 is any that is free.
+    """Serves the page at :data:`HOST` only; port 0 is any free port.
 
-    Raises TltlError, TLT0776, where the port cannot be had.
+    Raises TltlError, TLT0776, if the port is not available.
     """
 
     def __init__(self, port: int, limit_s: float = LIMIT_S, connections: Connections = PLAYGROUND) -> None:
         try:
-            # A port is free again as soon as its server has ended.
+            # This sets SO_REUSEADDR on POSIX, so a port is free again as soon as its server has ended.
             self._listener = socket.create_server((HOST, port))
         except OSError as error:
             title = f"cannot serve at {HOST}:{port}: {reason(error)}"
-            way_out = "give another port, or 0 for any: `--port 0`"
-            raise TltlError([Diagnostic("TLT0776", title, help=way_out)]) from None
+            help_ = "give another port, or 0 for any: `--port 0`"
+            raise TltlError([Diagnostic("TLT0776", title, help=help_)]) from None
         self._listener.setblocking(False)
         self.server_address: tuple[str, int] = self._listener.getsockname()
         self.token = secrets.token_urlsafe(24)
@@ -186,18 +186,20 @@ class Server:
 
     @property
     def address(self) -> str:
-        """Where the page is, with the token in the fragment, which browsers send nowhere."""
+        """The address of the page, with the token in the fragment, which browsers do not send."""
         return f"http://{HOST}:{self.server_address[1]}/#token={self.token}"
 
     def serve_forever(self) -> None:
-        """Answer until :meth:`shutdown` is called, or until Ctrl-C, which raises KeyboardInterrupt."""
-        self._thread = current_thread()
-        try:
-            self._stopped.clear()
-            self._loop.call_soon(self._look)
-            if os.name == "nt":
-                self._loop.call_soon(self._wake)
-            with self._woken_by_signals():
+        """Serve until :meth:`shutdown` is called, or Ctrl-C raises KeyboardInterrupt."""
+        self._stopped.clear()
+        self._loop.call_soon(self._look)
+        if os.name == "nt":
+            self._loop.call_soon(self._wake)
+        with self._woken_by_signals():
+            try:
+                self._loop.run_forever()
+            finally:
+                self._loop.remove_reader(self._listener)
                 try:
                     self._loop.run_forever()
                 finally:
@@ -207,16 +209,13 @@ class Server:
             self._stopped.set()
 
     def shutdown(self) -> None:
-        """Stop :meth:`serve_forever` if it runs in another thread, and wait for its end.
-
-        In the same thread, it has ended; an interrupt may have ended it at any point.
-        """
-        if self._thread is not current_thread() and not self._stopped.is_set():
+        """Stop :meth:`serve_forever`, which runs in another thread, and wait until it ends."""
+        if not self._stopped.is_set():
             self._loop.call_soon_threadsafe(self._loop.stop)
             self._stopped.wait()
 
     def server_close(self) -> None:
-        """Free the port, and end what waits."""
+        """Free the port, and end the children and all pending work."""
         self.children.close()
         self.shutdown()
         self.page.close()
@@ -234,7 +233,7 @@ class Server:
     # --- new connections ----------------------------------------------------------------------
 
     def _look(self) -> None:
-        """Look for new connections, from now on."""
+        """Start looking for new connections."""
         if self._again is not None:
             self._again.cancel()
             self._again = None
@@ -242,30 +241,30 @@ class Server:
 
     def _accept(self) -> None:
         try:
-            accepted, _ = self._listener.accept()
+            client, _ = self._listener.accept()
         except (BlockingIOError, InterruptedError, ConnectionAbortedError):
             return
         except OSError:
             self._wait()
             return
-        accepted.setblocking(False)
-        made = self._loop.connect_accepted_socket(lambda: Connection(self.page, self.open), accepted)
-        task: asyncio.Task[object] = self._loop.create_task(made)
+        client.setblocking(False)
+        connecting = self._loop.connect_accepted_socket(lambda: Connection(self.page, self.open), client)
+        task: asyncio.Task[object] = self._loop.create_task(connecting)
         self._accepted.add(task)
         task.add_done_callback(self._accepted.discard)
         task.add_done_callback(report_failure)
 
     def _wait(self) -> None:
-        """The system has no descriptors left: look again once a connection has given way, or else in a while."""
+        """Wait for free descriptors: until a connection has been closed, or else for a while."""
         self._loop.remove_reader(self._listener)
         if self.open.make_room():
-            # The connection is closed before this is called.
+            # The connection is closed before this callback runs.
             self._loop.call_soon(self._look)
         else:
             self._again = self._loop.call_later(_AGAIN_S, self._look)
 
     async def _end_all(self) -> None:
-        """Close all connections, and end what works for them."""
+        """Close all connections, and cancel the tasks that work for them."""
         self.open.close()
         tasks = asyncio.all_tasks() - {asyncio.current_task()}
         for task in tasks:
@@ -297,5 +296,5 @@ class Server:
                 self._loop.remove_reader(reader)
 
     def _wake(self) -> None:
-        """Windows tells of Ctrl-C only when something else happens, too."""
+        """Keep the loop awake: on Windows, Ctrl-C is noticed only when something else happens."""
         self._loop.call_later(0.5, self._wake)

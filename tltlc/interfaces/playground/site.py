@@ -1,4 +1,4 @@
-"""The page as files: those that the server shows, and those of a site that needs no server of its own."""
+"""The files of the page: those that the server sends, and those of a static site."""
 
 from __future__ import annotations
 
@@ -14,30 +14,32 @@ PAGE: Final = Path(__file__).with_name("page")
 PACKAGE: Final = Path(__file__).parents[2]
 
 PYODIDE: Final = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
-"""The files of Pyodide that a browser loads: Python, for WebAssembly."""
+"""The files of Pyodide, Python for WebAssembly, that a browser loads."""
 
 _BY_SERVER: Final = 'data-compiler="server"'
 _BY_BROWSER: Final = 'data-compiler="browser"'
 _LEFT_OUT: Final = ("cli", "conformance", "hoa", "lsp", "mine", "diff", "fmt", "backends/templates", "stdlib")
-"""Parts of the compiler for which the page has no use."""
+"""Parts of the compiler that the page does not use."""
 _ENDINGS: Final = (".py", ".json", ".lark", ".md", ".tltl")
 
 
 def page_files() -> dict[str, bytes]:
-    """The files of the page, by their names."""
+    """Return the files of the page by name."""
     return {path.name: path.read_bytes() for path in sorted(PAGE.iterdir()) if path.is_file()}
 
 
 def site_files(pyodide: Path) -> dict[str, bytes]:
-    """The files of the site, by their paths: the page, the compiler, and Pyodide from the folder of its npm package.
+    """Return the files of the site by path: the page, the compiler, and Pyodide.
 
-    Raises TltlError, TLT0730, where that folder has not all that is needed.
+    ``pyodide`` is the folder of the npm package of Pyodide.
+
+    Raises TltlError, TLT0730, if that folder lacks a required file.
     """
     missing = [name for name in PYODIDE if not (pyodide / name).is_file()]
     if missing:
         title = f"the site needs Pyodide, and `{pyodide}` has no `{missing[0]}`"
-        way_out = "npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`"
-        raise TltlError([Diagnostic("TLT0730", title, help=way_out)])
+        help_ = "npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`"
+        raise TltlError([Diagnostic("TLT0730", title, help=help_)])
     files = page_files()
     files["index.html"] = files["index.html"].replace(_BY_SERVER.encode(), _BY_BROWSER.encode())
     files["tltlc.zip"] = _archive()
@@ -46,7 +48,7 @@ def site_files(pyodide: Path) -> dict[str, bytes]:
 
 
 def _archive() -> bytes:
-    """The compiler and its libraries; the same bytes whenever they are the same."""
+    """Pack the compiler and its libraries; equal contents give equal bytes."""
     library = standard_library()
     packed = {path.relative_to(PACKAGE.parent): path for path in PACKAGE.rglob("*") if _is_needed(path)}
     packed.update({Path("tltlc/stdlib", path.name): path for path in library.glob("*.tltl")})
@@ -60,5 +62,5 @@ def _archive() -> bytes:
 
 
 def _is_needed(path: Path) -> bool:
-    inside = path.relative_to(PACKAGE).as_posix()
-    return path.suffix in _ENDINGS and path.is_file() and not any(inside.startswith(f"{part}/") for part in _LEFT_OUT)
+    relative = path.relative_to(PACKAGE).as_posix()
+    return path.suffix in _ENDINGS and path.is_file() and not any(relative.startswith(f"{part}/") for part in _LEFT_OUT)

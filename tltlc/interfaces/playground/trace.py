@@ -1,4 +1,4 @@
-"""A trace that one clicks together: what each step makes of the spec, and traces to begin with."""
+"""Run a trace that the user builds step by step, and suggest traces to start with."""
 
 from __future__ import annotations
 
@@ -20,18 +20,19 @@ Letter = Union[Sequence[str], Mapping[str, float]]
 _MOST_WORK: Final = 200_000
 """Steps that the search for an infinite trace may take."""
 _LONGEST: Final = 200
-"""Steps of a trace that is worth a table."""
+"""The most steps of a trace that the page shows in a table."""
 
 
 def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
-    """What the monitor says at each step; the first that it refuses has an ``error``, and is the last.
+    """Return the monitor's output for each step.
 
-    A letter names the atoms that hold, where names of no atom are left out, or gives the signals their values.
-    ``from`` is the state before the step, ``values`` those of the atoms in order, ``signals`` a sample of the letter,
-    or None where none was found.
+    The first step that it refuses has an ``error`` and is the last one. A letter names the atoms
+    that hold, and unknown names are ignored; or it gives the values of the signals. In a row,
+    ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
+    ``signals`` is a sample of signal values for the letter, or None if none was found.
     """
     monitor, realiser = Monitor(fspa), Realiser(fspa)
-    found: list[dict[str, Any]] = []
+    result: list[dict[str, Any]] = []
     for letter in letters:
         before = monitor.state
         try:
@@ -42,9 +43,9 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
                 step = monitor.step_atoms(values(fspa, frozenset(letter)))
                 sample = realiser.letter(frozenset(letter))
         except MonitorError as error:
-            found.append({"error": error.diagnostics[0].title, "help": error.diagnostics[0].help})
+            result.append({"error": error.diagnostics[0].title, "help": error.diagnostics[0].help})
             break
-        found.append(
+        result.append(
             {
                 "from": before,
                 "state": step.state,
@@ -59,11 +60,14 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
                 "signals": sample if isinstance(sample, dict) else None,
             }
         )
-    return found
+    return result
 
 
 def idle(fspa: Fspa) -> dict[str, Any]:
-    """A step at which nothing happens, for a new row: it stays in the first state where that can be, with few atoms."""
+    """Return a step for a new row in which nothing happens.
+
+    It stays in the first state if possible, and few atoms hold.
+    """
 
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
         return sum(polarity for _, polarity in prime)
@@ -81,13 +85,13 @@ def idle(fspa: Fspa) -> dict[str, Any]:
 
 
 def shortest(fspa: Fspa) -> dict[str, Any]:
-    """Shortest traces that succeed and that fail, None where none was found: ``{"succeed": …, "fail": …}``."""
+    """Return shortest traces that succeed and that fail, or None: ``{"succeed": …, "fail": …}``."""
     moves = Moves(fspa)
     try:
-        found = accepting(moves, _MOST_WORK), rejecting(moves, _MOST_WORK)
+        witnesses = accepting(moves, _MOST_WORK), rejecting(moves, _MOST_WORK)
     except OutOfWork:
-        found = None, None
-    return {"succeed": _letters(fspa, found[0]), "fail": _letters(fspa, found[1])}
+        witnesses = None, None
+    return {"succeed": _letters(fspa, witnesses[0]), "fail": _letters(fspa, witnesses[1])}
 
 
 def _letters(fspa: Fspa, witness: Witness | None) -> list[dict[str, Any]] | None:

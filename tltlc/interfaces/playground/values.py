@@ -1,4 +1,4 @@
-"""The signals of a spec as one sets them on the page: a range to slide in, and the unit."""
+"""The signals of a spec as controls of the page: a slider range and a unit."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from tltlc.resolve.spec import Signal
 
 UNITS: Final = {"length": "m", "time": "s", "speed": "m/s", "angle": "rad"}
 _OPEN: Final = 100.0
-"""How far a slider goes where a range is open, in SI units, unless a param of the same type says better."""
+"""The reach of a slider for an open range, in SI units, if no param has the same type."""
 
 
 def signal_values(fspa: Fspa) -> list[dict[str, Any]]:
-    """Of each signal its name, type, unit, documentation, its range (None where it is open) and that of its slider."""
+    """Return for each signal its name, type, unit, documentation, range and slider range.
+
+    The ends of the range are None where it is open.
+    """
     return [
         {
             "name": signal.name,
