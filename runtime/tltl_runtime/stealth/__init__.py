@@ -1,1 +1,4 @@
-"""The stealth game of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024 (sections IV and VI), with levels as data."""
+"""The stealth game, with levels as data.
+
+Source: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, sections IV and VI.
+"""

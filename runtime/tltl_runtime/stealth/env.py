@@ -1,4 +1,4 @@
-"""The game as Gymnasium environments: the bare one, and those with a spec."""
+"""Gymnasium environments of the game, without and with a spec."""
 
 from __future__ import annotations
 
@@ -34,31 +34,32 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import RewardOptions
 
 _CELL: Final = 0.5
-"""Width of the cells of ``info``, in metres."""
+"""The width of the cells of ``info["cell"]``, in metres."""
 
 
 class GameEnv(gymnasium.Env[dict[str, Any], Any]):
-    """A level without a spec: what the agent senses, no reward and no end.
+    """A level without a spec: observations, but no reward and no end.
 
-    Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.snapshot.BRANCHES`; ``action`` is the last
-    one that was played.  Observation: that of :class:`~tltl_runtime.stealth.observation.observation.Senses`.
-    ``level`` is
-    the name of a shipped level or a ``.toml`` file, ``sensors`` what
-    :func:`~tltl_runtime.stealth.observation.sensors.chosen` takes.  ``reset(seed=...)`` reproduces an episode bit for
-    bit;
-    ``game.seed`` is the seed to give for that, drawn where a reset was given none.  ``info["cell"]`` is the number of
-    the cell, half a metre wide in each direction, in which the player stands, -1 in the air.
+    Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.snapshot.BRANCHES`;
+    ``action`` is the last one that was played. Observation: see
+    :class:`~tltl_runtime.stealth.observation.observation.Senses`. ``level`` is the name of a
+    shipped level or a ``.toml`` file. ``sensors`` is passed to
+    :func:`~tltl_runtime.stealth.observation.sensors.chosen`.
 
-    ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), each from 16
-    to 4096 pixels, ``human`` shows them in a window as the episode goes on, a decision taking its time;
+    ``reset(seed=...)`` reproduces an episode bit for bit. ``game.seed`` is the seed of the current
+    episode; a reset without a seed draws one. ``info["cell"]`` is the number of the cell, half a
+    metre wide in each direction, in which the player stands, or -1 in the air.
+
+    With ``render_mode`` ``rgb_array``, :meth:`render` returns pictures of ``render_size`` (width,
+    height), each from 16 to 4096 pixels. With ``human``, a window shows the episode in real time.
     ``render_view`` is one of ``third_person top_down overview``.
 
     Raises:
-        TltlError: what :func:`~tltl_runtime.stealth.levels.file.load_level` finds; TLT0815, where ``sensors`` say what
-            the level does not have.
-        ValueError: there is no such render mode, view or size; of ``step``: there is no such action.
-        TypeError: an argument is of another type; copying or pickling a running game.
-        ClosedEnvironmentError: of ``reset``, ``step`` and ``render`` after ``close``.
+        TltlError: the errors of :func:`~tltl_runtime.stealth.levels.file.load_level`; TLT0815,
+            ``sensors`` names something that the level does not have.
+        ValueError: the render mode, view or size is unknown; from ``step``: the action is invalid.
+        TypeError: an argument has a wrong type; also when a running game is copied or pickled.
+        ClosedEnvironmentError: ``reset``, ``step`` or ``render`` is called after ``close``.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": list(MODES), "render_fps": round(1 / DECISION)}  # type: ignore[misc]
@@ -72,9 +73,9 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         render_view: View = "third_person",
         render_size: tuple[int, int] = (640, 480),
     ) -> None:
-        for name, given in (("level", level), ("variant", variant)):
-            if not isinstance(given, (str, os.PathLike)):
-                raise TypeError(f"a {name} is named by a text, not by {given!r:.60}")
+        for name, value in (("level", level), ("variant", variant)):
+            if not isinstance(value, (str, os.PathLike)):
+                raise TypeError(f"a {name} is named by a text, not by {value!r:.60}")
         self.level = load_level(os.fspath(level), variant)
         self._screen = Screen(self.level, render_mode, render_view, render_size)
         self.render_mode = render_mode
@@ -87,17 +88,20 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self._closed = False
 
     def tltl_params(self) -> dict[str, float]:
-        """The params of specs that the level knows, see :func:`tltl_runtime.stealth.capabilities.vocabulary.params`."""
+        """The params of specs that the level defines.
+
+        See :func:`tltl_runtime.stealth.capabilities.vocabulary.params`.
+        """
         return level_params(self.level)
 
     def tltl_signals(self) -> Signals:
-        """The signals of the game now."""
+        """Return the current signals of the game."""
         return self.game.signals()
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Begin an episode; without a seed, one drawn from the seed before."""
+        """Begin an episode; without a seed, draw one from the generator of the last seed."""
         self._check_open()
         super().reset(seed=seed)
         self.game.reset(int(self.np_random.integers(2**31)) if seed is None else seed)
@@ -113,9 +117,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return self._senses.look(self.game), 0.0, False, False, {"cell": self._cell()}
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The picture of this moment, (height, width, 3), or None where it is shown in a window.
+        """Return the current picture, (height, width, 3), or None if it is shown in a window.
 
-        Without a screen for the window, one warning is given.  Raises TltlError: TLT0730, without pygame.
+        If there is no screen for the window, warn once. Raises TltlError: TLT0730, pygame is
+        missing.
         """
         self._check_open()
         if self.render_mode is None:
@@ -123,7 +128,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return self._screen.render(self.game.snapshot())
 
     def close(self) -> None:
-        """Free the physics and the pictures, and close the window."""
+        """Release the physics and the renderer, and close the window."""
         self._closed = True
         self._screen.close()
         self.game.close()
@@ -133,9 +138,9 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         if not player.grounded:
             return -1
         number = 0
-        for at, least, most in zip(player.position, self.level.bounds.low, self.level.bounds.high, strict=True):
-            width = ceil((most - least) / _CELL)
-            number = number * width + min(max(int((at - least) / _CELL), 0), width - 1)
+        for coordinate, low, high in zip(player.position, self.level.bounds.low, self.level.bounds.high, strict=True):
+            width = ceil((high - low) / _CELL)
+            number = number * width + min(max(int((coordinate - low) / _CELL), 0), width - 1)
         return number
 
     def _check_open(self) -> None:
@@ -148,12 +153,12 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
 
 
 def _numbers(action: Any) -> list[int]:
-    """The numbers of an action: whole ones, one for each branch and in its range."""
-    given = np.asarray(action)
-    numbers: list[int] = given.tolist()
-    if given.dtype.kind not in "iub" or given.shape != (len(BRANCHES),) or tuple(numbers) not in ACTIONS:
-        wanted = "five whole numbers of MultiDiscrete([3 3 2 2 2]): x, y, jump, crouch, sprint"
-        raise ValueError(f"an action is {wanted}; {action!r:.80} is none")
+    """Convert an action to a list; it must hold one whole number per branch, each in range."""
+    array = np.asarray(action)
+    numbers: list[int] = array.tolist()
+    if array.dtype.kind not in "iub" or array.shape != (len(BRANCHES),) or tuple(numbers) not in ACTIONS:
+        expected = "five whole numbers of MultiDiscrete([3 3 2 2 2]): x, y, jump, crouch, sprint"
+        raise ValueError(f"an action is {expected}; {action!r:.80} is none")
     return numbers
 
 
@@ -167,17 +172,21 @@ def make_env(
     params: Mapping[str, float] | None = None,
     **render: Any,
 ) -> TltlEnv:
-    """A level with a spec, by default the one it was made for; options and errors of the two envs that it is made of.
+    """Make a level with a spec, by default the one that the level was made for.
 
-    ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.  Raises TltlError
-    for all that the spec asks of the level and does not get, see
-    :func:`~tltl_runtime.stealth.capabilities.capabilities.check_supply`; TLT0721, where there is no spec at all.
+    The function takes the options of :class:`GameEnv` and :class:`TltlEnv` and raises their errors.
+    ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.
+
+    Raises:
+        TltlError: the spec needs something that the level does not supply, see
+            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_supply`; TLT0721, there is
+            no spec.
     """
     game = GameEnv(level, variant, sensors, **render)
     try:
-        wanted = spec_of(game.level) if spec is None else spec
-        env = TltlEnv(game, wanted, reward=reward, params=params)
-        check_fit(game.level, env.task.fspa, wanted)
+        chosen_spec = spec_of(game.level) if spec is None else spec
+        env = TltlEnv(game, chosen_spec, reward=reward, params=params)
+        check_fit(game.level, env.task.fspa, chosen_spec)
         return env
     except BaseException:
         game.close()
@@ -185,7 +194,7 @@ def make_env(
 
 
 def spec_of(level: Level) -> str:
-    """The path of the spec that a level is made for; raises TltlError, TLT0721, where it is made for none."""
+    """Return the path of a level's default spec; raises TltlError, TLT0721, if it has none."""
     if not level.spec:
         title, help_ = f"the level `{level.name}` is made for no spec", "say which one: `FILE.tltl:NAME`"
         raise TltlError([Diagnostic("TLT0721", title, help=help_)])
@@ -193,14 +202,17 @@ def spec_of(level: Level) -> str:
 
 
 def check_fit(level: Level, fspa: Fspa, spec: str | Path | Fspa) -> None:
-    """Raise as one TltlError what a spec asks of a level and does not get, where it stands in the spec's source."""
+    """Raise one TltlError for everything that a spec needs and a level lacks.
+
+    Its labels point into the spec's source.
+    """
     if _unmet(level, fspa, SpecPlaces(None)):
         raise TltlError(_unmet(level, fspa, SpecPlaces(read_spec(spec)[1])))
 
 
 def _unmet(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
-    return [each for each in check_supply(level, fspa, places) if each.severity == "error"]
+    return [diagnostic for diagnostic in check_supply(level, fspa, places) if diagnostic.severity == "error"]
 
 
-# Gymnasium looks here for the render modes of what makes an environment.
+# Gymnasium reads the render modes of an entry point from its metadata.
 make_env.metadata = GameEnv.metadata  # type: ignore[attr-defined]

@@ -1,6 +1,6 @@
-"""The game: one level, played decision by decision; it knows no spec, no reward and no end.
+"""The game: one level, played decision by decision, without a spec, a reward or an end.
 
-Same level, seed and actions give the same episode, bit for bit.
+The same level, seed and actions give the same episode, bit for bit.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ from tltl_runtime.stealth.world.player import DECISION
 
 
 class Game:
-    """A level that is played: ``reset``, then ``step`` after ``step``.
+    """A level in play: call ``reset``, then ``step`` repeatedly.
 
-    ``health`` is in [0, 1], ``time`` in seconds since the reset; ``active`` and ``open`` say which switches and
-    barriers are.  The game goes on without health: the spec decides what is over.
+    ``health`` is in [0, 1], ``time`` in seconds since the reset; ``active`` and ``open`` list which
+    switches are active and which barriers are open. The game continues at zero health: the spec
+    decides when an episode is over.
 
     Raises:
         WorldError: the level leaves the player no room, or a body leaves the level.
@@ -39,13 +40,13 @@ class Game:
         self.reset(0)
 
     def close(self) -> None:
-        """Give up the physics; the game is of no use afterwards."""
+        """Release the physics; the game cannot be used afterwards."""
         self.world.close()
 
     def reset(self, seed: int) -> None:
         """Begin the episode of this seed."""
         self.seed = seed
-        # Each has its own numbers: what opens does not hang on how often a guard has drawn.
+        # Separate random streams: the barrier that opens must not depend on how often the guards drew.
         start, patrols, self._unlocking = np.random.default_rng(seed).spawn(3)
         self.world.reset(start)
         self.enemies.reset(patrols)
@@ -55,7 +56,10 @@ class Game:
         self.open = [False] * len(self.level.barriers)
 
     def step(self, action: Sequence[int]) -> None:
-        """Play one decision of :data:`~tltl_runtime.stealth.world.player.DECISION` seconds: one number per branch."""
+        """Play one decision, :data:`~tltl_runtime.stealth.world.player.DECISION` seconds long.
+
+        ``action`` has one number per branch.
+        """
         self.world.step(action)
         self.enemies.step(DECISION, player_view(self.world.player), self.world.mover_boxes())
         self.steps += 1
@@ -68,11 +72,11 @@ class Game:
         return self.steps * DECISION
 
     def signals(self) -> Signals:
-        """The signals that specs may use, by name; they stay those of this moment only until the next step."""
+        """Return the signals for specs, by name; they are valid until the next step."""
         return Signals(self)
 
     def snapshot(self) -> Snapshot:
-        """What there is to see now."""
+        """Return the visible state of the game."""
         enemies = self.enemies
         return Snapshot(
             time=self.time,
@@ -88,7 +92,7 @@ class Game:
         )
 
     def _press_switches(self) -> None:
-        """Activate the switches that the player has come to, and open what they open."""
+        """Activate the switches that the player has reached, and open their barriers."""
         feet = self.world.player.position
         pressed = False
         for index, switch in enumerate(self.level.switches):
@@ -98,10 +102,10 @@ class Game:
                 if choices:
                     self._open(self._barriers[choices[int(self._unlocking.integers(len(choices)))]])
         if pressed:
-            self._open_what_is_bound()
+            self._open_barriers()
 
-    def _open_what_is_bound(self) -> None:
-        """Open the barriers all of whose switches are active."""
+    def _open_barriers(self) -> None:
+        """Open the barriers whose switches are all active."""
         active = {switch.name for switch, is_active in zip(self.level.switches, self.active, strict=True) if is_active}
         for index, barrier in enumerate(self.level.barriers):
             if not self.open[index] and barrier.opened_by and active.issuperset(barrier.opened_by):
@@ -113,10 +117,10 @@ class Game:
         self.enemies.set_open(barrier, True)
 
     def _burns(self) -> float:
-        """The health a second that lasers take from where the player's body is."""
+        """Health per second that lasers take from the player at its current position."""
         lasers = [self.level.barriers[index] for index in self._lasers if not self.open[index]]
         if not lasers:
             return 0.0
         player, kind = self.world.player, self.world.kind
         height = kind.crouched_height if player.crouching else kind.height
-        return sum(each.damage for each in lasers if touches(player.position, kind.radius, height, each.box))
+        return sum(laser.damage for laser in lasers if touches(player.position, kind.radius, height, laser.box))

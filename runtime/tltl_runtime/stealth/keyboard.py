@@ -1,4 +1,4 @@
-"""A person plays a level in a window, in real time, and every episode is recorded."""
+"""Let a person play a level in a window in real time, and record every episode."""
 
 from __future__ import annotations
 
@@ -20,31 +20,33 @@ from tltl_runtime.stealth.world.player import DECISION
 
 
 class Recordings(Protocol):
-    """Where episodes go."""
+    """Where the episodes are stored."""
 
     def keep(self, episode: Episode) -> None:
-        """Write an episode that goes on, until it is saved."""
+        """Write an unfinished episode; it is overwritten until the episode is saved."""
 
     def save(self, episode: Episode) -> str:
-        """Write an episode that is over and return the name of its file."""
+        """Write a finished episode and return the name of its file."""
 
 
 _IDLE: Final = (0, 0, 0, 0, 0)
 _STANDING: Final = 0.05
-"""Seconds between two looks at the keys while the game stands still."""
+"""Seconds between two reads of the keys while the game stands still."""
 _KEPT: Final = 33
-"""Decisions, about five seconds, after which what was played is kept."""
+"""The unfinished episode is written every this many decisions, about every five seconds."""
 _SOON: Final = 1 / 60
-"""Seconds between two pictures, at least."""
+"""The shortest time between two frames, in seconds."""
 
 
 class KeyboardPlayer:
-    """Plays episodes of ``env`` in ``window``, drawn by ``renderer``; what was played is handed to ``recordings``.
+    """Plays episodes of ``env`` in ``window`` and passes them to ``recordings``.
 
-    It ends when the player stops, or where it is ``enough`` after an episode.
+    ``renderer`` draws the frames. Play ends when the player stops, or when ``enough()`` is true
+    after an episode.
 
-    Each episode is saved once: at its end, when it is begun again, and when it is stopped in whatever way, an
-    exception such as KeyboardInterrupt included.  While it goes on, what there is is kept every few seconds.
+    Each episode is saved once: at its end, when the player restarts, or when play stops for any
+    reason, including an exception such as KeyboardInterrupt. An unfinished episode is also kept
+    every few seconds.
     """
 
     def __init__(
@@ -74,7 +76,7 @@ class KeyboardPlayer:
             self._save()
 
     def _episode(self, seed: int | None) -> bool:
-        """Play one episode and tell whether another is wanted."""
+        """Play one episode; return whether the player wants another."""
         _, info = self._env.reset(seed=seed)
         snapshot, fspa = self._game.snapshot(), self._env.episode.fspa
         keys = self._still(snapshot, beginning(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
@@ -87,7 +89,7 @@ class KeyboardPlayer:
             if self._game.steps % _KEPT == 0 and not over:
                 self._recordings.keep(self._env.episode)
             keys = self._move(before, snapshot, hud(snapshot, info, fspa), due)
-            # A picture too many is made up for; a machine that is too slow for the game is not waited for.
+            # After a short delay the game catches up. If the machine is too slow, the delay is dropped.
             due = max(due + DECISION, monotonic() - DECISION)
         if over:
             keys = self._end(snapshot, info)
@@ -95,9 +97,10 @@ class KeyboardPlayer:
         return keys.restart and not keys.stop
 
     def _move(self, before: Snapshot, after: Snapshot, shown: Hud, began: float) -> Keys:
-        """Show the way from one snapshot to the next until the decision that ``began`` then is over; the keys then.
+        """Draw the motion between two snapshots until the current decision is over.
 
-        At least one picture is shown, however long it takes.
+        The decision started at ``began``. Return the keys that are then held. At least one frame is
+        shown, however long it takes.
         """
         while True:
             self._show(between(before, after, min(1.0, (monotonic() - began) / DECISION)), shown)
@@ -106,13 +109,16 @@ class KeyboardPlayer:
                 return self._keys()
 
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
-        """The end screen, until the player stops or plays again."""
+        """Show the end screen until the player stops or plays again."""
         episode = self._env.episode
         file = self._save() or ""
         return self._still(snapshot, ending(hud(snapshot, info, episode.fspa), cause(episode), file))
 
     def _still(self, snapshot: Snapshot, shown: Hud, begins: bool = False) -> Keys:
-        """Stand still until the player stops or begins again; where it ``begins``, until any key is held."""
+        """Show a still frame until the player stops or restarts.
+
+        If ``begins``, holding the key of any action ends it, too.
+        """
         view = None
         while True:
             if view != self._view:
@@ -134,10 +140,10 @@ class KeyboardPlayer:
         self._window.show(self._renderer.frame(snapshot, self._view), shown, names)
 
     def _save(self) -> str | None:
-        """Save what was played and is not saved yet."""
+        """Save the episode if it has unsaved decisions; return the name of the file."""
         if not self._unsaved:
             return None
         file = self._recordings.save(self._env.episode)
-        # Not before: where saving is interrupted, it is done again.
+        # Only now: if saving is interrupted, it must be repeated.
         self._unsaved = False
         return file

@@ -1,7 +1,8 @@
-"""A level as data: what stands where, frozen; the code knows no level by name.
+"""The data of a level: frozen records of what stands where. No code depends on a level's name.
 
-Lengths are metres, times seconds, speeds metres a second, angles radians.  x points east, y north, z up;
-a yaw of 0 looks along x and grows towards y.  Boxes are parallel to the axes.
+Lengths are in metres, times in seconds, speeds in metres per second, angles in radians. x points
+east, y north, z up. A yaw of 0 looks along x; the yaw grows towards y. Boxes are parallel to the
+axes.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ Point = tuple[float, float, float]
 
 @record
 class Box:
-    """From ``low`` to ``high``, each side at least a centimetre long."""
+    """A box from corner ``low`` to corner ``high``; each side is at least a centimetre long."""
 
     low: Point
     high: Point
@@ -23,10 +24,11 @@ class Box:
 
 @record
 class Solid:
-    """Something that stands still and lets nobody through.
+    """An object that stands still and blocks bodies.
 
-    ``kind`` is how the agent senses it: a ``low`` obstacle hides who crouches behind it, a ``wall`` hides anybody,
-    a ``platform`` is there to stand on.  Whatever its kind, it stops bodies and sight where its box is.
+    ``kind`` is how the agent senses it: a ``low`` obstacle hides a crouching body, a ``wall`` hides
+    any body, and a ``platform`` is made to stand on. The kind does not change the physics: every
+    solid stops bodies and sight within its box.
     """
 
     name: str
@@ -36,7 +38,7 @@ class Solid:
 
 @record
 class Switch:
-    """Activated, for good, by a player who comes within ``radius`` of ``position``."""
+    """A switch; it becomes active, for good, when the player comes within ``radius`` of it."""
 
     name: str
     position: Point
@@ -45,9 +47,10 @@ class Switch:
 
 @record
 class Barrier:
-    """Shut until all switches in ``opened_by`` are active; ``solid`` ones stop bodies, a ``laser`` burns them.
+    """A barrier; it stays shut until all switches in ``opened_by`` are active.
 
-    A laser stops no sight; it takes ``damage`` health a second from whom it touches.
+    A ``solid`` barrier stops bodies. A ``laser`` takes ``damage`` health per second from a player
+    who touches it, and does not stop sight.
     """
 
     name: str
@@ -59,9 +62,9 @@ class Barrier:
 
 @record
 class Unlock:
-    """When ``switch`` becomes active, one of ``barriers`` opens, each as likely as the others.
+    """A rule: when ``switch`` becomes active, one of ``barriers`` opens at random.
 
-    These barriers have no switch of their own.
+    All are equally likely. These barriers have no switches of their own.
     """
 
     switch: str
@@ -70,9 +73,10 @@ class Unlock:
 
 @record
 class Mover:
-    """A box of ``size`` whose centre goes along ``path`` and back, or round and round where it is ``closed``.
+    """A box of ``size`` whose centre moves along ``path``.
 
-    It starts ``offset`` seconds into its way and rests ``pause`` seconds at each point.
+    It moves there and back, or in a loop if ``closed``. It starts ``offset`` seconds into its cycle
+    and rests ``pause`` seconds at each point.
     """
 
     name: str
@@ -86,33 +90,34 @@ class Mover:
 
 @record
 class EnemyKind:
-    """The numbers of an enemy, a shared asset: one edit changes all levels that use it.
+    """The parameters of a kind of enemy.
 
-    ``branches`` names what its behaviour tree has beside patrol, chase, search and return.
+    It is a shared asset: an edit changes all levels that use it. ``branches`` names the branches of
+    its behaviour tree beside patrol, chase, search and return.
     """
 
     name: str
     sight_range: float
     sight_angle: float
-    """Full angle of the cone of sight."""
+    """The full opening angle of the cone of sight."""
     walk_speed: float
     chase_speed: float
     turn_speed: float
     reaction_time: float
-    """How long the player must be in sight before the chase begins."""
+    """Seconds that the player must be in sight before the chase begins."""
     memory_time: float
-    """How long the enemy still knows where the player is, once out of sight."""
+    """Seconds that the enemy still knows the player's position after losing sight of the player."""
     search_time: float
     search_radius: float
     attack_range: float
     attack_damage: float
-    """Health a second."""
+    """Health per second."""
     branches: tuple[str, ...] = ()
 
 
 @record
 class Enemy:
-    """An enemy on its route, which it walks round and round."""
+    """An enemy, which walks its route in a loop."""
 
     name: str
     kind: EnemyKind
@@ -121,7 +126,7 @@ class Enemy:
 
 @record
 class Exit:
-    """Where the level ends."""
+    """An exit, where the level ends."""
 
     name: str
     position: Point
@@ -129,7 +134,7 @@ class Exit:
 
 @record
 class Region:
-    """A part of a level that reports call by its name."""
+    """A named part of a level, for reports."""
 
     name: str
     box: Box
@@ -137,7 +142,10 @@ class Region:
 
 @record
 class Start:
-    """Where the player begins, on its feet; ``spread`` is the greatest distance by which an episode moves it."""
+    """The player's start pose; ``position`` is at the feet.
+
+    ``spread`` is the greatest distance by which an episode moves the start.
+    """
 
     position: Point
     yaw: float = 0.0
@@ -146,7 +154,10 @@ class Start:
 
 @record
 class MapSensor:
-    """The semantic map: ``extent`` cells (odd) to a side around the agent, each ``cell`` metres wide."""
+    """The semantic map around the agent: ``extent`` by ``extent`` cells of ``cell`` metres.
+
+    ``extent`` is odd.
+    """
 
     types: tuple[str, ...]
     cell: float
@@ -155,7 +166,7 @@ class MapSensor:
 
 @record
 class Sensors:
-    """What the agent senses: vectors to ``entities``, values of ``variables`` (signals), and the map."""
+    """The observations: vectors to ``entities``, values of ``variables`` (signals), the map."""
 
     entities: tuple[str, ...]
     variables: tuple[str, ...]
@@ -164,10 +175,11 @@ class Sensors:
 
 @record
 class Level:
-    """A level in one of its variants.
+    """One variant of a level.
 
-    ``bounds`` hold everything; its diagonal is the param ``level_size`` of specs.  ``files`` are those it was made
-    of, with their SHA-256, so that a report can say what changed.
+    ``bounds`` enclose everything; the length of their diagonal is the param ``level_size`` of
+    specs. ``files`` are the files that the level was read from, with their SHA-256, so that a
+    report can show which of them changed.
     """
 
     name: str
@@ -184,29 +196,32 @@ class Level:
     exits: tuple[Exit, ...]
     sensors: Sensors
     spec: str
-    """The file of the spec that the level is made for, and what it is called there: ``FILE.tltl:NAME``."""
+    """The spec that the level is made for, as ``FILE.tltl:NAME``."""
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
-    """Further names of signals, for specs that call them otherwise: (``open_right``, ``open(right)``)."""
+    """Aliases of signals, for specs that use other names: (``open_right``, ``open(right)``)."""
     regions: tuple[Region, ...] = ()
-    """Those that the level names, then the parts that it uses."""
+    """The regions that the level names, followed by the parts that it uses."""
 
 
 def entity_names(level: Level) -> tuple[str, ...]:
-    """What specs may speak of by name: switches, barriers, exits, enemies and movers, in this order."""
+    """The names of the switches, barriers, exits, enemies and movers, in this order."""
     return (
         *(switch.name for switch in level.switches),
         *(barrier.name for barrier in level.barriers),
-        *(way_out.name for way_out in level.exits),
+        *(exit_.name for exit_ in level.exits),
         *(enemy.name for enemy in level.enemies),
         *(mover.name for mover in level.movers),
     )
 
 
 def fixed_places(level: Level) -> dict[str, Point]:
-    """Where each entity is that stays there, by name; of a barrier it is the middle of the base."""
+    """The positions of the entities that do not move, by name.
+
+    The position of a barrier is the middle of its base.
+    """
     places = {switch.name: switch.position for switch in level.switches}
-    places |= {way_out.name: way_out.position for way_out in level.exits}
+    places |= {exit_.name: exit_.position for exit_ in level.exits}
     for barrier in level.barriers:
         low, high = barrier.box.low, barrier.box.high
         places[barrier.name] = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2])

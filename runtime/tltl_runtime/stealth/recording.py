@@ -1,4 +1,4 @@
-"""Record episodes as they are played."""
+"""Record episodes while they are played."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ from tltlc.monitor import Step
 
 
 class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
-    """Records the episode that is being played; observations, rewards and infos pass through as they are.
+    """Record the current episode; observations, rewards and infos pass through unchanged.
 
-    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one.  ``player`` is the name that the
-    recording gives whoever plays.  With ``folder``, which is made where it is missing, each episode that comes to its
-    end is written to ``LEVEL-VARIANT-SEED.episode.npz`` there; where that is taken, a number follows the seed.
+    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one. ``player`` is the
+    name of the player in the recording. With ``folder``, each finished episode is written there as
+    ``LEVEL-VARIANT-SEED.episode.npz``; if that file exists, a number follows the seed. A missing
+    folder is created.
 
     Raises:
         TypeError: ``env`` has no spec or is not the game.
-        TltlError: TLT0005, nothing can be written to the folder.
+        TltlError: TLT0005, the folder is not writable.
     """
 
     def __init__(
@@ -49,20 +50,20 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
     @property
     def episode(self) -> Episode:
-        """The episode so far, a copy; raises RuntimeError before the first reset."""
+        """A copy of the episode so far; raises RuntimeError before the first reset."""
         if self._rows is None:
             raise RuntimeError("there is no episode before the first reset")
         return self._rows.episode(self._judge, self._player)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begin a new episode; the one before is forgotten."""
+        """Begin a new episode and discard the previous one."""
         observation, info = self.env.reset(seed=seed, options=options)
         self._rows = _Rows(self._game.level, self._game.seed, self._game.snapshot(), self._signals())
         self._over = False
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Play one decision and record it, unless the episode was over before.
+        """Play one decision; record it unless the episode was already over.
 
         Raises:
             RuntimeError: there was no reset before.
@@ -86,7 +87,7 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
 
 class _Rows:
-    """An episode while it grows."""
+    """The data of an episode that is still growing."""
 
     def __init__(self, level: Level, seed: int, snapshot: Snapshot, signals: list[float]) -> None:
         self.level, self.seed = level, seed
@@ -105,7 +106,7 @@ class _Rows:
         step: Step,
         success: bool,
     ) -> None:
-        """Take one decision."""
+        """Append one decision."""
         self.actions.append(action)
         self.snapshots.append(snapshot)
         self.signals.append(signals)
@@ -114,7 +115,7 @@ class _Rows:
         self.success = success
 
     def episode(self, judge: TltlEnv, player: str) -> Episode:
-        """What there is so far."""
+        """Return the episode so far."""
         fspa, steps, count = judge.task.fspa, self.steps, len(self.steps)
         return Episode(
             level=self.level,
@@ -138,7 +139,7 @@ class _Rows:
 
 
 def _end(last: Step | None, success: bool) -> End:
-    """How an episode stands after its last step."""
+    """Classify how an episode ended, from its last step."""
     if last is None or not last.done:
         return "stopped"
     if success:
@@ -154,13 +155,13 @@ def _game_env(env: gymnasium.Env[Any, Any]) -> GameEnv:
 
 
 def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
-    """The wrapper with the spec."""
-    each: gymnasium.Env[Any, Any] = env
-    while not isinstance(each, TltlEnv):
-        if not isinstance(each, gymnasium.Wrapper):
+    """Return the wrapper that holds the spec."""
+    layer: gymnasium.Env[Any, Any] = env
+    while not isinstance(layer, TltlEnv):
+        if not isinstance(layer, gymnasium.Wrapper):
             raise TypeError("an episode is recorded with the judgement of a spec: wrap the game in TltlEnv first")
-        each = each.env
-    return each
+        layer = layer.env
+    return layer
 
 
 def _write(folder: Path, episode: Episode) -> None:
@@ -170,7 +171,7 @@ def _write(folder: Path, episode: Episode) -> None:
 
 
 def writable_folder(folder: Path) -> Path:
-    """The folder, made where it is missing; refused, TLT0005, before an hour is played."""
+    """Return the folder, created if missing; raises TLT0005 now, before an hour of play is lost."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):

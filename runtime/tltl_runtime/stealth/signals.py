@@ -1,4 +1,4 @@
-"""The signals of the game: what specs may speak of, in SI units, each computed when it is asked for."""
+"""The signals of the game: values in SI units for specs, computed when they are read."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
 
 _EYES: Final = 0.15
-"""Metres from the top of the body down to its eyes."""
+"""Metres from the top of the body down to the eyes."""
 
 Reader = Callable[["Game"], float]
 _Place = Callable[["Game"], Point]
 
 
 class Signals(Mapping[str, float]):
-    """The signals of a game at this moment, by the names that specs call them.
+    """The current signals of a game, by name.
 
-    ``health stamina time position.x position.y position.z visible seen crouching grounded``; of each entity
-    ``distance bearing line_of_sight``; ``active(SWITCH)``, ``open(BARRIER)``; and the level's further names.
+    ``health stamina time position.x position.y position.z visible seen crouching grounded``; for
+    each entity ``distance bearing line_of_sight``; ``active(SWITCH)``, ``open(BARRIER)``; and the
+    aliases that the level declares.
     """
 
     __slots__ = ("_game", "_readers")
@@ -45,8 +46,8 @@ class Signals(Mapping[str, float]):
 
 
 def readers(level: Level) -> dict[str, Reader]:
-    """How each signal of a level is read, by name."""
-    found: dict[str, Reader] = {
+    """Return the functions that read the signals of a level from a game, by signal name."""
+    functions: dict[str, Reader] = {
         "health": lambda game: game.health,
         "stamina": lambda game: game.world.player.stamina,
         "time": lambda game: game.time,
@@ -59,37 +60,42 @@ def readers(level: Level) -> dict[str, Reader]:
         "grounded": lambda game: game.world.player.grounded,
     }
     for name, place in entities(level).items():
-        found |= _of_entity(name, place)
+        functions |= _of_entity(name, place)
     for index, switch in enumerate(level.switches):
-        found[f"active({switch.name})"] = _active(index)
+        functions[f"active({switch.name})"] = _active(index)
     for index, barrier in enumerate(level.barriers):
-        found[f"open({barrier.name})"] = _open(index)
-    for name, meant in level.signals:
-        found[name] = found[meant]
-    return found
+        functions[f"open({barrier.name})"] = _open(index)
+    for alias, signal in level.signals:
+        functions[alias] = functions[signal]
+    return functions
 
 
 def described(level: Level) -> str:
-    """The names of a level's signals in words, for messages."""
+    """List the names of a level's signals in words, for messages."""
     plain = [name for name in readers(level) if "(" not in name]
-    found = ", ".join(f"`{name}`" for name in plain)
-    of = {
+    plain_names = ", ".join(f"`{name}`" for name in plain)
+    entities_of = {
         "`distance(…)`, `bearing(…)`, `line_of_sight(…)`": list(entities(level)),
         "`active(…)`": [switch.name for switch in level.switches],
         "`open(…)`": [barrier.name for barrier in level.barriers],
     }
-    return "; ".join([found, *(f"{calls} of {', '.join(names)}" for calls, names in of.items() if names)])
+    return "; ".join(
+        [plain_names, *(f"{calls} of {', '.join(names)}" for calls, names in entities_of.items() if names)]
+    )
 
 
 def entities(level: Level) -> dict[str, _Place]:
-    """Where each entity of a level is, by name: the feet of enemies, the middle of a barrier's base."""
-    found: dict[str, _Place] = {name: _at(place) for name, place in fixed_places(level).items()}
-    found |= {enemy.name: _enemy(index) for index, enemy in enumerate(level.enemies)}
-    found |= {mover.name: _mover(index) for index, mover in enumerate(level.movers)}
-    return found
+    """Functions that read the position of each entity, by name.
+
+    Enemies are located at their feet, barriers at the middle of their base.
+    """
+    places: dict[str, _Place] = {name: _at(place) for name, place in fixed_places(level).items()}
+    places |= {enemy.name: _enemy(index) for index, enemy in enumerate(level.enemies)}
+    places |= {mover.name: _mover(index) for index, mover in enumerate(level.movers)}
+    return places
 
 
-# --- readers, each for one thing of the level -------------------------------------------------------
+# --- readers of single signals and positions --------------------------------------------------------
 
 
 def _of_entity(name: str, place: _Place) -> dict[str, Reader]:
@@ -121,7 +127,10 @@ def _mover(index: int) -> _Place:
 
 
 def _bearing(game: Game, place: Point) -> float:
-    """The angle from where the player looks to a place, from -pi to pi; 0 where the player stands on it."""
+    """The angle from the player's yaw to a place, in [-pi, pi).
+
+    It is 0 if the player stands on the place.
+    """
     player = game.world.player
     x, y = place[0] - player.position[0], place[1] - player.position[1]
     if x == y == 0.0:
@@ -130,7 +139,7 @@ def _bearing(game: Game, place: Point) -> float:
 
 
 def _in_sight(game: Game, place: Point) -> bool:
-    """Whether nothing stands between the player's eyes and a place half a metre above an entity's."""
+    """Whether the line from the player's eyes to the point 0.5 m above ``place`` is free."""
     player, kind = game.world.player, game.world.kind
     x, y, z = player.position
     eyes = (x, y, z + (kind.crouched_height if player.crouching else kind.height) - _EYES)

@@ -1,4 +1,4 @@
-"""What is done in one decision of the game, and what there is to see after it; it needs no physics."""
+"""The action space and the visible state of the game; this module does not load the physics."""
 
 from __future__ import annotations
 
@@ -18,21 +18,24 @@ CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
     "crouch": ("no", "yes"),
     "sprint": ("no", "yes"),
 }
-"""The branches of an action by name, and what their choices are called; greater: towards greater values."""
+"""The branches of an action and the names of their choices.
+
+``greater`` means towards greater coordinates.
+"""
 
 BRANCHES: Final = tuple(map(len, CHOICES.values()))
-"""How many choices each branch has: (3, 3, 2, 2, 2)."""
+"""The number of choices of each branch: (3, 3, 2, 2, 2)."""
 
 ACTIONS: Final = frozenset(product(*map(range, BRANCHES)))
-"""All that there are."""
+"""All valid actions."""
 
 
 @record
 class Snapshot:
-    """What there is to see at one moment, for logs and pictures; tuples are in the level's order.
+    """The visible state at one moment, for logs and pictures; tuples are in the order of the level.
 
-    ``modes`` are those of the enemies (``patrol``, ``chase``, ``search``, ``return``), ``sees`` whether the player is
-    in their sight.
+    ``modes`` are the modes of the enemies (``patrol``, ``chase``, ``search``, ``return``); ``sees``
+    is whether each enemy sees the player.
     """
 
     time: float
@@ -48,19 +51,19 @@ class Snapshot:
 
 
 def places(level: Level, shot: Snapshot) -> dict[str, Point]:
-    """Where each entity of a level is at that moment, by name."""
+    """Return the position of each entity of a level at that moment, by name."""
     enemies = {enemy.name: place for enemy, place in zip(level.enemies, shot.enemies, strict=True)}
     movers = {mover.name: place for mover, place in zip(level.movers, shot.movers, strict=True)}
     return fixed_places(level) | enemies | movers
 
 
 def player_view(player: PlayerState) -> PlayerView:
-    """What enemies can know of the player."""
+    """The part of the player's state that enemies can perceive."""
     head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
     return PlayerView(player.position, head)
 
 
 def touches(feet: Point, radius: float, height: float, box: Box) -> bool:
-    """Whether an upright box around the body meets ``box``."""
+    """Whether the upright bounding box of a body overlaps ``box``."""
     (x, y, z), (x0, y0, z0), (x1, y1, z1) = feet, box.low, box.high
     return x0 - radius < x < x1 + radius and y0 - radius < y < y1 + radius and z0 - height < z < z1

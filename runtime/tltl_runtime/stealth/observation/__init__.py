@@ -1,1 +1,1 @@
-"""What the agent senses."""
+"""The observations of the agent."""

@@ -1,4 +1,4 @@
-"""What the agent senses of the game: vectors to entities, values of variables, and the semantic map."""
+"""The agent's observation: vectors to entities, values of variables, the semantic map."""
 
 from __future__ import annotations
 
@@ -17,21 +17,25 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
 
 _HALF_TIME_S: Final = 60.0
-"""The time that is sensed as 0.5: it has no end, and what is sensed has."""
+"""The time that is observed as 0.5; time is unbounded, but the observation must be bounded."""
 
 
 class Senses:
-    """The senses that a level declares, or ``sensors`` in place of them; ``look`` follows a game of that level.
+    """Computes the observations that a level declares, or that ``sensors`` selects instead.
 
-    ``space`` is a Dict, without the keys of which nothing is declared:
+    Call ``look`` with a game of that level. ``space`` is a Dict; it omits keys for which nothing is
+    declared:
 
-    - ``entities`` float32 (3 n,), the vectors from the player's feet, over the diagonal of the bounds, in [-1, 1];
-    - ``variables`` float32 (n,): truth as 0 or 1, lengths over the diagonal, positions as a share of the bounds,
-      angles over pi, and the time t as t / (t + 60 s); the others as they are, all in [-1, 1];
-    - ``map`` uint8 (types, extent, extent), 1 where a cell is of that type; rows run north, columns east.
+    - ``entities`` float32 (3 n,), the vectors from the player's feet, divided by the diagonal of
+      the bounds, in [-1, 1];
+    - ``variables`` float32 (n,), all in [-1, 1]: truth values as 0 or 1, lengths divided by the
+      diagonal, positions as a fraction of the bounds, angles divided by pi, the time t as
+      t / (t + 60 s), the others unchanged;
+    - ``map`` uint8 (types, extent, extent), 1 where a cell is of that type; rows run north, columns
+      east.
 
     Raises:
-        TltlError: TLT0815, where ``sensors`` say what the level does not have.
+        TltlError: TLT0815, ``sensors`` names something that the level does not have.
     """
 
     def __init__(self, level: Level, sensors: SensorChoice | None = None) -> None:
@@ -42,14 +46,14 @@ class Senses:
         diagonal = dist(level.bounds.low, level.bounds.high)
         sizes = [diagonal] * 3 * len(self._places) + [1.0] * len(self._variables)
         self._sizes = np.array(sizes, dtype=np.float32)
-        # Arrays, because numpy takes three times as long with numbers.
+        # Arrays as limits: numpy's clip takes three times as long with Python floats.
         self._least, self._most = np.full_like(self._sizes, -1.0), np.ones_like(self._sizes)
         self._map = SemanticMap(level, sensors.map) if sensors.map else None
         self._open: list[bool] = []
         self.space = spaces.Dict(self._spaces())
 
     def look(self, game: Game) -> dict[str, Any]:
-        """What is sensed now, in ``space``."""
+        """Return the current observation, an element of ``space``."""
         x, y, z = game.world.player.position
         vectors: list[float] = []
         for place in self._places:
@@ -59,14 +63,14 @@ class Senses:
         row = np.array(vectors + values, dtype=np.float32)
         row /= self._sizes
         row.clip(self._least, self._most, row)
-        found: dict[str, Any] = {}
+        observation: dict[str, Any] = {}
         if vectors:
-            found["entities"] = row[: len(vectors)]
+            observation["entities"] = row[: len(vectors)]
         if values:
-            found["variables"] = row[len(vectors) :]
+            observation["variables"] = row[len(vectors) :]
         if self._map is not None:
-            found["map"] = self._see(game, self._map)
-        return found
+            observation["map"] = self._see(game, self._map)
+        return observation
 
     def _see(self, game: Game, semantic_map: SemanticMap) -> Any:
         if game.open != self._open:
@@ -80,19 +84,22 @@ class Senses:
         return semantic_map.one_hot(ids)
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
-        found: dict[str, spaces.Space[Any]] = {}
+        keys: dict[str, spaces.Space[Any]] = {}
         if self._places:
-            found["entities"] = spaces.Box(-1.0, 1.0, (3 * len(self._places),), np.float32)
+            keys["entities"] = spaces.Box(-1.0, 1.0, (3 * len(self._places),), np.float32)
         if self._variables:
-            found["variables"] = spaces.Box(-1.0, 1.0, (len(self._variables),), np.float32)
+            keys["variables"] = spaces.Box(-1.0, 1.0, (len(self._variables),), np.float32)
         if self._map is not None:
             sensor = self._map.sensor
-            found["map"] = spaces.Box(0, 1, (len(sensor.types), sensor.extent, sensor.extent), np.uint8)
-        return found
+            keys["map"] = spaces.Box(0, 1, (len(sensor.types), sensor.extent, sensor.extent), np.uint8)
+        return keys
 
 
 def _scaled(name: str, level: Level, read: Reader) -> Reader:
-    """How a signal is sensed: as a share of its range; time, which has no end, as what is over of a longer one."""
+    """Scale a signal to the range of observations.
+
+    The time t, which is unbounded, becomes t / (t + 60 s).
+    """
     low, high = level.bounds.low, level.bounds.high
     if name == "time":
         return lambda game: game.time / (game.time + _HALF_TIME_S)

@@ -1,8 +1,8 @@
-"""The semantic map: what is around the agent at the height of its body, cut out of the level's voxels in 2 µs, and
-another for each mover or enemy in it.
+"""The semantic map: the cell types around the agent at the height of its body.
 
-The map does not turn with the agent: its first axis runs north (y), its second east (x), and the agent is in the
-cell in the middle.
+The static part is cut out of the level's voxels in 2 µs; each mover or enemy in the map costs about
+as much again. The map does not turn with the agent: its first axis runs north (y), its second east
+(x), and the agent is in the middle cell.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ _TOUCH: Final = 1e-6
 
 
 class SemanticMap:
-    """The map of a level as its sensors, or ``sensor``, say.  ``reset`` shuts all barriers.
+    """The semantic map of a level, as its sensors or ``sensor`` describe it.
 
-    Raises ValueError where there is no map among the sensors, or one of a type that there is not.
+    Raises ValueError if the level declares no map and ``sensor`` is None, or if a cell type is
+    unknown.
     """
 
     def __init__(self, level: Level, sensor: MapSensor | None = None) -> None:
@@ -65,10 +66,11 @@ class SemanticMap:
         movers: Sequence[Bounds] = (),
         enemies: Sequence[Point] = (),
     ) -> NDArray[np.uint8]:
-        """The ids of types around feet at ``position``, uint8 [extent, extent]: 0, or 1 + the type's index.
+        """Return the type ids around feet at ``position``, uint8 [extent, extent].
 
-        ``movers`` are the corners of their boxes now, ``enemies`` the positions of their feet.  From outside the bounds
-        it is the map of the nearest cell inside.
+        An id is 0, or 1 + the index of the type. ``movers`` are the current corners of the movers'
+        boxes, ``enemies`` the positions of the enemies' feet. For a position outside the bounds,
+        the map of the nearest cell inside is returned.
         """
         x, y, z = position
         x0, y0, z0 = self._origin
@@ -77,31 +79,37 @@ class SemanticMap:
         row = min(max(int((y - y0) * scale) - margin, 0), self._most_row)
         layer = min(max(int((z - z0) / LAYER + 0.5), 0), self._most_layer)
         window = self._layers[crouching][layer][row : row + extent, column : column + extent]
-        found: NDArray[np.uint8] = window.copy()
+        ids: NDArray[np.uint8] = window.copy()
         west, south = x0 + column / scale, y0 + row / scale
         bottom, top = z - BELOW, z + (CROUCHED if crouching else STANDING)
         if self._mover:
             for (a, b, c), (d, e, f) in movers:
                 if c < top and f > bottom:
-                    self._stamp(found, a - west, b - south, d - west, e - south, self._mover)
+                    self._stamp(ids, a - west, b - south, d - west, e - south, self._mover)
         if self._enemy:
             for a, b, c in enemies:
                 if c < top and c + _ENEMY_HEIGHT > bottom:
                     a, b = a - west, b - south
                     self._stamp(
-                        found, a - _ENEMY_RADIUS, b - _ENEMY_RADIUS, a + _ENEMY_RADIUS, b + _ENEMY_RADIUS, self._enemy
+                        ids, a - _ENEMY_RADIUS, b - _ENEMY_RADIUS, a + _ENEMY_RADIUS, b + _ENEMY_RADIUS, self._enemy
                     )
-        return found
+        return ids
 
     def one_hot(self, ids: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """A map of ids as one of layers, uint8 [types, extent, extent], all zero where a cell is of no type."""
-        found: NDArray[np.uint8] = self._rows_of_types.take(ids, axis=1)
-        return found
+        """Convert a map of ids to layers, one per type, uint8 [types, extent, extent].
 
-    def _stamp(self, found: NDArray[np.uint8], a: float, b: float, c: float, d: float, number: int) -> None:
-        """Mark the cells that a rectangle meets, given in metres from the map's south-western corner."""
+        A cell of no type is zero in all layers.
+        """
+        layers: NDArray[np.uint8] = self._rows_of_types.take(ids, axis=1)
+        return layers
+
+    def _stamp(self, ids: NDArray[np.uint8], a: float, b: float, c: float, d: float, number: int) -> None:
+        """Mark the cells that overlap a rectangle.
+
+        The rectangle is in metres from the map's south-west corner.
+        """
         if a < self._side and b < self._side and c > 0.0 and d > 0.0:
             scale = self._per_metre
             west = int(a * scale + _TOUCH) if a > 0.0 else 0
             south = int(b * scale + _TOUCH) if b > 0.0 else 0
-            found[south : ceil(d * scale - _TOUCH), west : ceil(c * scale - _TOUCH)] = number
+            ids[south : ceil(d * scale - _TOUCH), west : ceil(c * scale - _TOUCH)] = number

@@ -1,4 +1,4 @@
-"""What the agent senses, chosen anew beside what its level declares: by a record, a plain mapping, or in part."""
+"""Override the sensors that a level declares, wholly or in part, by a record or a plain mapping."""
 
 from __future__ import annotations
 
@@ -13,21 +13,24 @@ from tltl_runtime.stealth.signals import described, readers
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 SensorChoice = Sensors | Mapping[str, Any]
-"""A record, or a mapping with some of its fields: ``entities``, ``variables`` and ``map``, the latter a mapping too."""
+"""A record, or a mapping with some of its fields; ``map`` may be a mapping, too."""
 
 DEFAULT_MAP: Final = MapSensor(CELL_TYPES, 0.5, 15)
-"""What is not said of the map of a level that has none."""
+"""Defaults for the keys that a mapping leaves out, if the level has no map of its own."""
 
 _CELL: Final = f"give a width from {CELL_WIDTH[0]:g} to {CELL_WIDTH[1]:g} m"
 _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTENT[1]}, so that one is in the middle"
 
 
 def chosen(level: Level, choice: SensorChoice | None = None) -> Sensors:
-    """The sensors of a level with what ``choice`` says in place of its own; without one, its own.
+    """Return the sensors of a level, with the parts that ``choice`` gives replaced.
 
-    A mapping may leave out what stays as it is, ``{"map": None}`` is no map, and ``{"map": {"cell": 1.0}}`` the
-    level's own map with other cells.  Raises TltlError, with one TLT0815 for each thing that is wrong; TypeError,
-    where ``choice`` is neither.
+    A mapping may leave out what stays unchanged. ``{"map": None}`` removes the map;
+    ``{"map": {"cell": 1.0}}`` keeps the level's map but changes its cells.
+
+    Raises:
+        TltlError: one TLT0815 for each mistake.
+        TypeError: ``choice`` is neither a record nor a mapping.
     """
     if choice is None:
         return level.sensors
@@ -42,44 +45,47 @@ def chosen(level: Level, choice: SensorChoice | None = None) -> Sensors:
 
 
 def _read(level: Level, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:
-    """The record that a mapping stands for; stand-ins for what is of another kind."""
-    own = level.sensors
+    """Build the record from a mapping.
+
+    Values of a wrong type are logged and replaced by the level's own.
+    """
+    declared = level.sensors
     _check_names(map(str, choice), Sensors.__match_args__, "sensors have no key", log)
-    map_ = own.map
+    map_ = declared.map
     if "map" in choice:
-        given = choice["map"]
-        if given is None or isinstance(given, MapSensor):
-            map_ = given
-        elif isinstance(given, Mapping):
-            map_ = _read_map(own.map or DEFAULT_MAP, given, log)
+        value = choice["map"]
+        if value is None or isinstance(value, MapSensor):
+            map_ = value
+        elif isinstance(value, Mapping):
+            map_ = _read_map(declared.map or DEFAULT_MAP, value, log)
         else:
-            log.append(_wrong("the map", given, "give its `cell`, `extent` and `types`, or None for no map"))
+            log.append(_wrong("the map", value, "give its `cell`, `extent` and `types`, or None for no map"))
     return Sensors(
-        _names(choice, "entities", own.entities, log),
-        _names(choice, "variables", own.variables, log),
+        _names(choice, "entities", declared.entities, log),
+        _names(choice, "variables", declared.variables, log),
         map_,
     )
 
 
-def _read_map(own: MapSensor, given: Mapping[str, Any], log: list[Diagnostic]) -> MapSensor:
-    _check_names(map(str, given), MapSensor.__match_args__, "a map has no key", log)
-    cell, extent = given.get("cell", own.cell), given.get("extent", own.extent)
-    # Of what is no number, `_check` would have nothing to say but that it cannot be compared.
+def _read_map(defaults: MapSensor, mapping: Mapping[str, Any], log: list[Diagnostic]) -> MapSensor:
+    _check_names(map(str, mapping), MapSensor.__match_args__, "a map has no key", log)
+    cell, extent = mapping.get("cell", defaults.cell), mapping.get("extent", defaults.extent)
+    # Check the types first: `_check` compares the values as numbers.
     if not isinstance(cell, (int, float)) or isinstance(cell, bool):
         log.append(_wrong("`cell`", cell, _CELL))
-        cell = own.cell
+        cell = defaults.cell
     if not isinstance(extent, int) or isinstance(extent, bool):
         log.append(_wrong("`extent`", extent, _EXTENT))
-        extent = own.extent
-    return MapSensor(_names(given, "types", own.types, log), float(cell), extent)
+        extent = defaults.extent
+    return MapSensor(_names(mapping, "types", defaults.types, log), float(cell), extent)
 
 
-def _names(choice: Mapping[str, Any], key: str, own: tuple[str, ...], log: list[Diagnostic]) -> tuple[str, ...]:
-    given = choice.get(key, own)
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        log.append(_wrong(f"`{key}`", given, "give a list of names"))
-        return own
-    return tuple(map(str, given))
+def _names(choice: Mapping[str, Any], key: str, default: tuple[str, ...], log: list[Diagnostic]) -> tuple[str, ...]:
+    value = choice.get(key, default)
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        log.append(_wrong(f"`{key}`", value, "give a list of names"))
+        return default
+    return tuple(map(str, value))
 
 
 def _check(level: Level, sensors: Sensors, log: list[Diagnostic]) -> None:
@@ -97,15 +103,15 @@ def _check(level: Level, sensors: Sensors, log: list[Diagnostic]) -> None:
 def _check_names(
     names: Iterable[str], known: Iterable[str], title: str, log: list[Diagnostic], listed: str | None = None
 ) -> None:
-    names, there = tuple(names), tuple(known)
+    names, known_names = tuple(names), tuple(known)
     twice = sorted({name for name in names if names.count(name) > 1})
     log += [Diagnostic("TLT0815", f"`{name}` is to be sensed twice", help="name it once") for name in twice]
     log += [
-        Diagnostic("TLT0815", f"{title} `{name}`", help=suggestion(name, there, listed))
+        Diagnostic("TLT0815", f"{title} `{name}`", help=suggestion(name, known_names, listed))
         for name in dict.fromkeys(names)
-        if name not in there
+        if name not in known_names
     ]
 
 
-def _wrong(what: str, value: object, expected: str) -> Diagnostic:
-    return Diagnostic("TLT0815", f"wrong value for {what} of what is sensed: {value!r:.40}", help=expected)
+def _wrong(subject: str, value: object, expected: str) -> Diagnostic:
+    return Diagnostic("TLT0815", f"wrong value for {subject} of what is sensed: {value!r:.40}", help=expected)

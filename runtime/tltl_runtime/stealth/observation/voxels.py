@@ -1,9 +1,10 @@
-"""What stands where, as cells of types: the ground of the semantic map.
+"""The static cells that semantic maps are cut from.
 
-A level is cut into square cells and, every quarter of a metre in height, into layers.  A layer tells for each cell
-what meets a body whose feet are at its height, down to what it stands on; there is one set of layers for a standing
-body and one for a crouched one, so a low passage is free in the second alone.  A cell that a thing meets at all is
-of its type; where several meet, of the one that CELL_TYPES names last.
+A level is cut into square cells and, every quarter of a metre in height, into layers. A layer
+contains, for each cell, what a body meets whose feet are at the layer's height, down to the ground
+that the body stands on. There is one set of layers for a standing body and one for a crouched body,
+so a low passage is free only in the second. A cell that an object overlaps at all has the object's
+type; if several objects overlap it, the type that comes last in CELL_TYPES.
 """
 
 from __future__ import annotations
@@ -23,20 +24,23 @@ LAYER: Final = 0.25
 """The height of a layer."""
 STANDING: Final = 1.8
 CROUCHED: Final = 0.9
-"""The heights of the player's body."""
+"""The heights of the player's body, in metres."""
 BELOW: Final = 0.1
-"""How far below its feet a body meets what it stands on."""
+"""How far below its feet a body meets the ground that it stands on, in metres."""
 
 _POINT_HEIGHT: Final = 1.0
 _TOUCH: Final = 1e-6
 
 Layers = tuple[tuple[NDArray[np.uint8], ...], tuple[NDArray[np.uint8], ...]]
-"""For a standing and for a crouched body, the layers from the lowest up, each uint8 [rows, columns]."""
+"""The layers for a standing and for a crouched body.
+
+They go from the lowest up; each is uint8 [rows, columns].
+"""
 
 
 @record
 class Frame:
-    """Where the cells lie: row 0, column 0 begins at ``x``, ``y``; layer 0 is for feet at ``z``."""
+    """The grid: row 0, column 0 begins at ``x``, ``y``; layer 0 is for feet at height ``z``."""
 
     x: float
     y: float
@@ -48,10 +52,10 @@ class Frame:
 
 
 class Voxels:
-    """The layers of a level, one set for each set of barriers that are shut.
+    """The layers of a level, one set for each set of shut barriers.
 
-    Each layer has ``margin`` cells of nothing around the level.  Raises ValueError for a type that is not in
-    CELL_TYPES.
+    Each layer has a margin of ``margin`` empty cells around the level. Raises ValueError for a type
+    that is not in CELL_TYPES.
     """
 
     def __init__(self, level: Level, sensor: MapSensor) -> None:
@@ -75,42 +79,42 @@ class Voxels:
         self._layers: dict[frozenset[int], Layers] = {}
 
     def layers(self, shut: Collection[int]) -> Layers:
-        """The layers while the barriers with these indices are shut; they are made once and not to be changed."""
+        """Return the layers while the given barriers are shut; they are cached and read-only."""
         key = frozenset(shut)
         if key not in self._layers:
             things = sorted(self._things(key), key=lambda thing: CELL_TYPES.index(thing[0]))
             known = [(self.ids[name], box) for name, box in things if name in self.ids]
-            self._layers[key] = (self._drawn(known, STANDING), self._drawn(known, CROUCHED))
+            self._layers[key] = (self._draw(known, STANDING), self._draw(known, CROUCHED))
         return self._layers[key]
 
     def _things(self, shut: Collection[int]) -> Iterator[tuple[str, Box]]:
-        """What stands still, with its type."""
+        """The objects that stand still, with their types."""
         yield from ((solid.kind, solid.box) for solid in self.level.solids)
         yield from (("switch", self._around(switch.position)) for switch in self.level.switches)
-        yield from (("exit", self._around(each.position)) for each in self.level.exits)
+        yield from (("exit", self._around(exit_.position)) for exit_ in self.level.exits)
         for index, barrier in enumerate(self.level.barriers):
             if index in shut:
                 yield "laser" if barrier.kind == "laser" else "barrier", barrier.box
 
     def _around(self, position: Point) -> Box:
-        """A box in the one cell that holds a position."""
+        """A small box in the cell that contains a position."""
         x, y, z = position
         return Box((x, y, z), (x + 10 * _TOUCH, y + 10 * _TOUCH, z + _POINT_HEIGHT))
 
-    def _drawn(self, things: list[tuple[int, Box]], height: float) -> tuple[NDArray[np.uint8], ...]:
+    def _draw(self, things: list[tuple[int, Box]], height: float) -> tuple[NDArray[np.uint8], ...]:
         frame = self.frame
-        drawn = np.zeros((frame.layers, frame.rows, frame.columns), dtype=np.uint8)
+        layers = np.zeros((frame.layers, frame.rows, frame.columns), dtype=np.uint8)
         for number, box in things:
             columns = _covered(box.low[0], box.high[0], frame.x, frame.cell)
             rows = _covered(box.low[1], box.high[1], frame.y, frame.cell)
             for layer in range(frame.layers):
                 feet = frame.z + layer * LAYER
                 if box.high[2] > feet - BELOW + _TOUCH and box.low[2] < feet + height - _TOUCH:
-                    drawn[layer, rows, columns] = number
-        drawn.flags.writeable = False
-        return tuple(drawn)
+                    layers[layer, rows, columns] = number
+        layers.flags.writeable = False
+        return tuple(layers)
 
 
 def _covered(low: float, high: float, origin: float, cell: float) -> slice:
-    """The cells that the inside of an interval meets."""
+    """The cells that overlap the inside of an interval."""
     return slice(max(0, floor((low - origin) / cell + _TOUCH)), max(0, ceil((high - origin) / cell - _TOUCH)))
