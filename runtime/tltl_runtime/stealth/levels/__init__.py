@@ -1,1 +1,1 @@
-"""Level files: read, checked, and changed by overlays."""
+"""Read level files, check them, and apply overlays."""

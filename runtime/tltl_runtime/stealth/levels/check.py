@@ -1,4 +1,4 @@
-"""What must hold of the names in a level: specs can use them, and they stand for something."""
+"""Check the names in a level: specs must be able to use them, and each must refer to something."""
 
 from __future__ import annotations
 
@@ -16,21 +16,24 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 
 
 def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
-    """TLT0804 for each name that a spec could not declare as an entity."""
+    """Return TLT0804 for each name that a spec could not declare as an entity."""
     from tltlc.grammar.parser import parse
 
-    found = []
+    diagnostics = []
     for name in names:
-        good = re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) and not parse(SourceFile("", f"entity {name}\n"))[1]
-        if not good:
+        valid = re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) and not parse(SourceFile("", f"entity {name}\n"))[1]
+        if not valid:
             help_ = "a name is one word of letters, digits and _, and no word of the language, e.g. `north_door`"
-            found.append(Diagnostic("TLT0804", f"no spec could speak of `{name}`", places.named(name), help_))
-    return found
+            diagnostics.append(Diagnostic("TLT0804", f"no spec could speak of `{name}`", places.named(name), help_))
+    return diagnostics
 
 
 def check_references(level: Level, places: Places) -> list[Diagnostic]:
-    """TLT0805 for each name that stands for nothing, and for barriers that nothing or too much opens."""
-    # What a further name of a signal stands for is itself among the names to be checked.
+    """Return TLT0805 for names that refer to nothing.
+
+    Also for barriers that nothing opens, or that two things open.
+    """
+    # Leave out the aliases: their targets are among the names to check.
     signals = readers(replace(level, signals=()))
     known = {
         "switch": [switch.name for switch in level.switches],
@@ -39,17 +42,17 @@ def check_references(level: Level, places: Places) -> list[Diagnostic]:
         "cell type": list(CELL_TYPES),
         "signal": [name for name in signals if "(" not in name],
     }
-    there = {kind: frozenset(names) for kind, names in known.items()} | {"signal": frozenset(signals)}
-    found: list[Diagnostic] = []
+    known_names = {kind: frozenset(names) for kind, names in known.items()} | {"signal": frozenset(signals)}
+    diagnostics: list[Diagnostic] = []
     for kind, name, label in places.references:
-        if name not in there[kind]:
-            way_out = suggestion(name, known[kind]) if len(found) < MOST_SUGGESTIONS else None
-            found.append(Diagnostic("TLT0805", f"there is no {kind} `{name}`", (label,), way_out))
+        if name not in known_names[kind]:
+            hint = suggestion(name, known[kind]) if len(diagnostics) < MOST_SUGGESTIONS else None
+            diagnostics.append(Diagnostic("TLT0805", f"there is no {kind} `{name}`", (label,), hint))
     unlocked = Counter(name for unlock in level.unlocks for name in unlock.barriers)
     for barrier in level.barriers:
         ways = bool(barrier.opened_by) + unlocked[barrier.name]
         if ways != 1:
             title = f"{'two things open' if ways else 'nothing opens'} the barrier `{barrier.name}`"
             help_ = "name its switches in `opened_by`, or the barrier in one `[[unlock]]`"
-            found.append(Diagnostic("TLT0805", title, places.named(barrier.name), help_))
-    return found
+            diagnostics.append(Diagnostic("TLT0805", title, places.named(barrier.name), help_))
+    return diagnostics

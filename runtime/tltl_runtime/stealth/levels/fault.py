@@ -1,4 +1,4 @@
-"""What makes a level unfit to be drawn and played, where it comes from elsewhere than a level file."""
+"""Check that a level that does not come from a level file can be drawn and played."""
 
 from __future__ import annotations
 
@@ -13,22 +13,25 @@ from tltl_runtime.stealth.signals import readers
 from tltlc.core.record import replace
 
 _THINNEST: Final = 1e-3
-"""Metres that a box measures at least."""
+"""The smallest side of a box, in metres."""
 
 
 def fault(level: Level) -> str | None:
-    """The first thing that is wrong, None for a level that is fit; names and room are the business of level files."""
+    """Return the first fault of a level, or None if it is fit.
+
+    Names and room are checked for level files only.
+    """
     return next(_faults(level), None)
 
 
 def _faults(level: Level) -> Iterator[str]:
     boxes = [("the bounds", level.bounds)]
-    boxes += [(f"the solid `{each.name}`", each.box) for each in level.solids]
-    boxes += [(f"the barrier `{each.name}`", each.box) for each in level.barriers]
+    boxes += [(f"the solid `{solid.name}`", solid.box) for solid in level.solids]
+    boxes += [(f"the barrier `{barrier.name}`", barrier.box) for barrier in level.barriers]
     yield from (f"{name}: no box within {FARTHEST:g} m" for name, box in boxes if not _is_box(box))
     for mover in level.movers:
-        good = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
-        if not good or min(mover.pause, mover.offset) < 0.0:
+        valid = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
+        if not valid or min(mover.pause, mover.offset) < 0.0:
             yield f"the mover `{mover.name}` has no way"
     if level.enemies and is_too_large(level.bounds):
         yield "the bounds are too large for enemies"
@@ -39,13 +42,13 @@ def _faults(level: Level) -> Iterator[str]:
         yield from (f"the enemy `{enemy.name}` has a branch `{name}`, which there is not" for name in sorted(unknown))
     places = [level.start.position]
     places += [switch.position for switch in level.switches]
-    places += [each.position for each in level.exits]
+    places += [exit_.position for exit_ in level.exits]
     yield from (f"{place} is no place within {FARTHEST:g} m" for place in places if not _is_place(place))
     yield from _wrong_references(level)
 
 
 def _wrong_references(level: Level) -> Iterator[str]:
-    switches, barriers = {each.name for each in level.switches}, {each.name for each in level.barriers}
+    switches, barriers = {switch.name for switch in level.switches}, {barrier.name for barrier in level.barriers}
     opening = {name for barrier in level.barriers for name in barrier.opened_by}
     opening |= {unlock.switch for unlock in level.unlocks}
     opened = {name for unlock in level.unlocks for name in unlock.barriers}
@@ -53,10 +56,10 @@ def _wrong_references(level: Level) -> Iterator[str]:
     yield from (f"there is no barrier `{name}`" for name in sorted(opened - barriers))
     yield from (f"`{unlock.switch}` unlocks nothing" for unlock in level.unlocks if not unlock.barriers)
     signals = set(readers(replace(level, signals=())))
-    for name, meant in level.signals:
-        if meant not in signals:
-            yield f"there is no signal `{meant}`"
-        signals.add(name)
+    for alias, target in level.signals:
+        if target not in signals:
+            yield f"there is no signal `{target}`"
+        signals.add(alias)
 
 
 def _is_box(box: Box) -> bool:

@@ -1,7 +1,7 @@
-"""Level files: TOML that a designer writes, read into a :class:`Level` (``docs/levels.md`` describes every key).
+"""Read level files: TOML files written by designers (``docs/levels.md`` describes every key).
 
-A level lies in ``NAME.toml``, beside it ``assets/`` and ``overlays/``; what is not there is looked for among the
-levels that come with the package.
+A level is a file ``NAME.toml`` with the folders ``assets/`` and ``overlays/`` beside it. Files that
+are missing there are looked up among the levels that come with the package.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ from tltlc.io.resources import bounded
 from tltlc.io.spec_file import is_plain_name
 
 _MOST_FAULTS: Final = 1_000
-"""A level with more faults is not read to its end."""
+"""Stop reading a level after this many faults."""
 
 
 def level_names() -> tuple[str, ...]:
-    """The levels that come with the package."""
+    """Return the names of the levels that come with the package."""
     return tuple(sorted(path.stem for path in LEVELS.glob("*.toml")))
 
 
 @bounded()
 def variants(name_or_path: str) -> tuple[str, ...]:
-    """The variants of a level, in the order of its file; errors as :func:`load_level` has them."""
+    """Return the variants of a level, in the order of its file; errors as in :func:`load_level`."""
     loading = _Loading(level_path(name_or_path))
     loading.check()
     return tuple(loading.variants)
@@ -50,45 +50,58 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 
 @bounded()
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
-    """What the overlays of a variant say that they change, in their order; errors as :func:`load_level` has them."""
+    """Return the descriptions of a variant's overlays, in their order.
+
+    Errors are as in :func:`load_level`.
+    """
     return level_and_changes(name_or_path, variant)[1]
 
 
 @bounded()
 def level_and_changes(name_or_path: str, variant: str) -> tuple[Level, tuple[str, ...]]:
-    """A level as :func:`load_level` reads it, and its :func:`changes`."""
+    """Return a level as :func:`load_level` reads it, and its :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
 
 @bounded()
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
-    """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
+    """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
-    ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on: one of those that variants name, or the path of
-    its ``.toml`` file (:func:`~tltl_runtime.stealth.levels.place.overlays_of`).
+    ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on. The overlay is one that
+    variants name, or the path of a ``.toml`` file
+    (:func:`~tltl_runtime.stealth.levels.place.overlays_of`).
 
-    :func:`read_level` also tells what looks like a mistake and is none.
+    :func:`read_level` also returns warnings.
 
-    Errors (:class:`TltlError`): all that is wrong, as far as it can be told at once.  TLT0006 too many things or
-    overlays; TLT0800 no such level or variant, or overlay to add; TLT0801 a file is no TOML; TLT0802 an unknown key;
-    TLT0803 a missing key, a value of the wrong kind or out of range; TLT0804 a name that is taken or that specs cannot
-    use; TLT0805 a name that stands for nothing; TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay
-    changes what is not there; and those of :func:`tltlc.io.files.read_source`.
+    Raises:
+        TltlError: all errors that can be found in one pass. TLT0006, too many things or overlays;
+            TLT0800, unknown level, variant or added overlay; TLT0801, a file is not TOML; TLT0802,
+            an unknown key; TLT0803, a missing key, or a value of a wrong type or out of range;
+            TLT0804, a name that is taken or that specs cannot use; TLT0805, a name that refers to
+            nothing; TLT0806, outside the bounds; TLT0807, inside a solid; TLT0808, an overlay
+            changes something that does not exist; and the errors of
+            :func:`tltlc.io.files.read_source`.
     """
     return _Loading(level_path(name_or_path)).level(variant)
 
 
 @bounded()
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
-    """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover or an enemy has an odd way."""
+    """Return a level as :func:`load_level` does, and warnings.
+
+    TLT0809: a mover or an enemy has an odd path.
+    """
     loading = _Loading(level_path(name_or_path))
     level = loading.level(variant)
     return level, check_ways(level, loading.places)
 
 
 def level_path(name_or_path: str) -> Path:
-    """The file of a level, whether it is there or not; TLT0800 where no shipped level has that name."""
+    """Return the path of a level's file, which may not exist.
+
+    Raises TltlError: TLT0800, no shipped level has that name.
+    """
     if name_or_path.endswith(".toml"):
         return Path(name_or_path)
     if name_or_path in level_names():
@@ -105,13 +118,13 @@ def level_path(name_or_path: str) -> Path:
 
 
 def shared_names(level: Path, folder: str) -> tuple[str, ...]:
-    """The names of the ``assets`` or ``overlays`` that the level in a file can use: beside it, or in the package."""
+    """Return the names of ``assets`` or ``overlays`` beside a level's file and in the package."""
     places = (level.parent / folder, LEVELS / folder)
     return tuple(sorted({path.stem for place in places for path in place.glob("*.toml")}))
 
 
 class _Loading:
-    """A level file on its way to a :class:`Level`: the files read so far, and what is wrong with them."""
+    """The state of loading a level file: the files read so far, and the diagnostics."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -124,7 +137,7 @@ class _Loading:
         self.variants = self._variants()
 
     def level(self, variant: str) -> Level:
-        """The level in a variant, with the overlays that are added to it."""
+        """Return the level in a variant, with the overlays that are added to it."""
         base, added = overlays_of(variant)
         if base not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{base}`"
@@ -182,13 +195,16 @@ class _Loading:
         return level
 
     def check(self) -> None:
-        """Raise what is known to be wrong so far."""
+        """Raise the diagnostics that are logged so far."""
         if self.log:
             raise TltlError(self.log)
 
     def _check_count(self, *groups: Sequence[object]) -> None:
-        """Raise TltlError, TLT0006, where a level has more things than :data:`tltlc.io.limits.LEVEL` allows."""
-        points = sum(len(getattr(each, "path", ())) + len(getattr(each, "route", ())) for each in chain(*groups))
+        """Raise TltlError, TLT0006, if a level has too many things.
+
+        The limit is :data:`tltlc.io.limits.LEVEL`.
+        """
+        points = sum(len(getattr(thing, "path", ())) + len(getattr(thing, "route", ())) for thing in chain(*groups))
         if sum(map(len, groups)) + points > (LEVEL.values or 0):
             title = f"the level `{self.path.stem}` holds more than {LEVEL.values:,} things"
             help_ = (
@@ -198,27 +214,27 @@ class _Loading:
 
     def _read(self, path: Path, name: str) -> Entry:
         source = read_source(path, shown(path))
-        # Version control writes the line ends of the machine that it is on.
+        # Git may convert line ends; the hash must not depend on that.
         text = source.text.replace("\r\n", "\n")
         self.files.append((name, hashlib.sha256(text.encode()).hexdigest()))
         return Entry(read_tree(source), Label(source, _first_line(source)))
 
     def _variants(self) -> dict[str, tuple[str, ...]]:
-        """The overlays of each variant; ``v0`` alone where the file says nothing."""
+        """Return the overlays of each variant; by default only ``v0``, without overlays."""
         table = self.table.table("variants", needed=False)
         if table is None:
             return {"v0": ()}
-        found = {key: table.names(key) for key in table.entries}
-        if not found:
+        overlays = {key: table.names(key) for key in table.entries}
+        if not overlays:
             help_ = "give one, e.g. `v0 = []`, or leave `[variants]` out"
             self.log.append(Diagnostic("TLT0803", "the level has no variants", (table.label,), help_))
-        for key in found:
+        for key in overlays:
             if not is_plain_name(key):
                 title = f"no command could speak of the variant `{key}`"
                 help_ = "a name is one word of letters, digits and _, e.g. `very_hard`"
                 self.log.append(Diagnostic("TLT0804", title, (table.place(key),), help_))
         self.check()
-        return found
+        return overlays
 
     def _bounds(self) -> Box:
         table = self.table.table("bounds")
@@ -233,16 +249,16 @@ class _Loading:
         return box
 
     def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[Table], dict[str, Table]]:
-        """The level's uses of parts, and its assets by name, with the overlays of the variant and those added to it."""
+        """Return the level's uses of parts, and its assets by name, with all overlays applied."""
         uses = self.table.tables("use")
-        wanted = [(use, "asset") for use in uses]
-        wanted += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
-        found: dict[str, Entry] = {}
-        for table, key in wanted:
+        references = [(use, "asset") for use in uses]
+        references += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
+        entries: dict[str, Entry] = {}
+        for table, key in references:
             name = table.text(key)
-            if name and name not in found and (path := self._shared("assets", name, table.place(key))):
-                found[name] = self._read(path, f"assets/{name}.toml")
-        trees: dict[str, Tree] = {name: entry.value for name, entry in found.items()}
+            if name and name not in entries and (path := self._shared("assets", name, table.place(key))):
+                entries[name] = self._read(path, f"assets/{name}.toml")
+        trees: dict[str, Tree] = {name: entry.value for name, entry in entries.items()}
         named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
         names = self.variants[variant]
         overlays = [(name, self._shared("overlays", name, named)) for name in names[: OVERLAYS + 1]]
@@ -257,24 +273,28 @@ class _Loading:
                 trees = overlay.apply(change.value, trees, self.log)
         self.check()
         assets = {
-            name: Table(Entry(tree, found[name].label), f"the asset `{name}`", self.log) for name, tree in trees.items()
+            name: Table(Entry(tree, entries[name].label), f"the asset `{name}`", self.log)
+            for name, tree in trees.items()
         }
         for table in assets.values():
             table.text("doc")
         return uses, assets
 
     def _listed(self, key: str) -> list[Entry]:
-        """The tables under a key, if they are any."""
+        """Return the tables under a key, or an empty list."""
         entry = self.root.value.get(key)
         items = entry.value if entry is not None and isinstance(entry.value, list) else []
         return [item for item in items if isinstance(item, Entry)]
 
     def _added(self, name: str) -> Path | None:
-        """The file of an overlay that is added to a variant."""
+        """Return the file of an overlay that is added to a variant."""
         return Path(name) if name.endswith(".toml") else self._shared("overlays", name)
 
     def _shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
-        """The file of an asset or overlay, beside the level or in the package; without a label an argument names it."""
+        """Find the file of an asset or overlay, beside the level or in the package.
+
+        ``label`` is where the name stands in a file; without one, the name is an argument.
+        """
         for place in (self.path.parent / folder, LEVELS / folder):
             if is_file(path := place / f"{name}.toml") and path.parent == place:
                 return path
@@ -287,7 +307,7 @@ class _Loading:
     def _used(
         self, uses: list[Table], assets: dict[str, Table], kinds: dict[str, EnemyKind]
     ) -> tuple[list[Solid], list[Mover], list[Region]]:
-        """What the parts that the level uses bring with them."""
+        """Return the solids, movers and regions of the parts that the level uses."""
         solids: list[Solid] = []
         prefixes: dict[str, Table] = {}
         movers: list[Mover] = []
@@ -305,16 +325,16 @@ class _Loading:
             if asset in kinds:
                 self.log.append(wrong(use.entries["asset"], "asset", 'the name of an asset with `type = "part"`'))
                 continue
-            its = parts.solids(assets[asset], self.places, shift, prefix)
+            still = parts.solids(assets[asset], self.places, shift, prefix)
             moving = parts.movers(assets[asset], self.places, shift, prefix)
             assets[asset].done()
-            solids += its
+            solids += still
             movers += moving
             self._check_count(solids, movers)
-            # Each use repeats what is wrong with its asset.
+            # Each use of an asset repeats its faults.
             if len(self.log) > _MOST_FAULTS:
                 self.check()
-            regions += part_regions(prefix[:-1], its, moving)
+            regions += part_regions(prefix[:-1], still, moving)
         for enemy in self._listed("enemy"):
             kind = enemy.value.get("kind")
             if kind is not None and kind.value in [name for name in assets if name not in kinds]:
@@ -325,13 +345,13 @@ class _Loading:
         table = self.table.table("signals", needed=False)
         if table is None:
             return ()
-        found = tuple((key, table.text(key)) for key in table.entries)
-        for key, signal in found:
+        aliases = tuple((key, table.text(key)) for key in table.entries)
+        for key, signal in aliases:
             self.places.refer("signal", table, key, (signal,))
-        return found
+        return aliases
 
 
 def _first_line(source: SourceFile) -> Span:
-    """The first line of a text that says something: where messages about the whole file point."""
-    found = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
-    return Span(*found.span()) if found else Span(0, 0)
+    """The first line with content; diagnostics about the whole file point to it."""
+    match = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
+    return Span(*match.span()) if match else Span(0, 0)

@@ -1,4 +1,4 @@
-"""Where levels lie, and the specs that they are made for."""
+"""The folders of levels, and the specs that levels are made for."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""
 
 SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
-"""Where their specs lie: in an installed package, and in a checkout."""
+"""The folders of the levels' specs: in an installed package, and in a checkout."""
 
 
 def made_for(table: Table, level: Path) -> str:
-    """The spec under the key ``spec`` of a level's file: ``FILE:NAME``, the file beside the level or of the package.
+    """Return the spec under the key ``spec`` of a level as ``FILE:NAME``.
 
-    It is empty where there is none, or where something is wrong with it: TLT0803, TLT0805.
+    The file is beside the level or in the package. Return an empty text if there is no spec, or if
+    it is wrong (TLT0803, TLT0805).
     """
     text = table.text("spec", "")
     file, _, name = text.rpartition(":")
@@ -42,12 +43,12 @@ def made_for(table: Table, level: Path) -> str:
 
 
 def comes_with_the_package(spec: str) -> bool:
-    """Whether a file of specs is one that shipped levels are made for."""
+    """Whether a spec file is one that shipped levels are made for."""
     return Path(spec).resolve().parent in [folder.resolve() for folder in SPECS]
 
 
 def shown(path: Path) -> str:
-    """The path, relative to the current folder where it lies inside."""
+    """Return the path, relative to the current folder if it is inside."""
     try:
         return str(path.absolute().relative_to(Path.cwd()))
     except ValueError:
@@ -55,7 +56,7 @@ def shown(path: Path) -> str:
 
 
 def _specs(path: Path) -> list[str]:
-    """The names of the specs in a file, whatever else is wrong with it."""
+    """Return the names of the specs in a file, even if the file has other errors."""
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import SpecDecl
 

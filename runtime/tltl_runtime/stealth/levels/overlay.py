@@ -1,4 +1,7 @@
-"""Overlays: small changes to the assets that levels share, kept beside them and named by the variants of levels."""
+"""Overlays: small changes to the shared assets of levels.
+
+They are stored beside the levels, and variants list them.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 
 
 def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict[str, Tree]:
-    """The assets, by name, with an overlay's changes; what it says of things that are not there goes to ``log``.
+    """Apply the changes of an overlay to the assets, by name.
 
-    ``[change.ASSET]`` gives keys of an asset another value, ``[change.ASSET.THING]`` keys of a thing in it;
-    ``[add.ASSET]`` appends to its lists.  Neither makes a key that the asset does not have (TLT0808), so that a
-    change cannot go wrong unseen.
+    Changes to things that do not exist are reported in ``log``. ``[change.ASSET]`` replaces values
+    of keys of an asset, ``[change.ASSET.THING]`` values of a thing in it, and ``[add.ASSET]``
+    appends to its lists. Neither creates a key that the asset does not have (TLT0808), so that a
+    misspelled change cannot pass unnoticed.
     """
     changed = dict(assets)
     for key, entry in overlay.items():
@@ -28,12 +32,12 @@ def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict
             if name not in assets or not isinstance(part.value, dict):
                 log.append(_missing(f"the level uses no asset `{name}`", part.label, name, assets))
             else:
-                put = _changed if key == "change" else _extended
-                changed[name] = put(changed[name], part.value, f"the asset `{name}`", log)
+                apply_part = _with_changes if key == "change" else _with_additions
+                changed[name] = apply_part(changed[name], part.value, f"the asset `{name}`", log)
     return changed
 
 
-def _changed(target: Tree, changes: Tree, what: str, log: list[Diagnostic]) -> Tree:
+def _with_changes(target: Tree, changes: Tree, description: str, log: list[Diagnostic]) -> Tree:
     things = {
         item.value["name"].value: (key, number)
         for key, entry in target.items()
@@ -46,24 +50,24 @@ def _changed(target: Tree, changes: Tree, what: str, log: list[Diagnostic]) -> T
         if key in things and isinstance(entry.value, dict):
             kind, number = things[key]
             items = list(result[kind].value)
-            inside = _changed(items[number].value, entry.value, f"`{key}` of {what}", log)
+            inside = _with_changes(items[number].value, entry.value, f"`{key}` of {description}", log)
             items[number] = Entry(inside, items[number].label)
             result[kind] = Entry(items, result[kind].label)
         elif key in target and key != "name" and not _is_tables(target[key].value):
             result[key] = entry
         else:
             known = [known for known in (*target, *things) if known != "name"]
-            log.append(_missing(f"{what} has no `{key}` to change", entry.label, key, known))
+            log.append(_missing(f"{description} has no `{key}` to change", entry.label, key, known))
     return result
 
 
-def _extended(target: Tree, additions: Tree, what: str, log: list[Diagnostic]) -> Tree:
+def _with_additions(target: Tree, additions: Tree, description: str, log: list[Diagnostic]) -> Tree:
     result = dict(target)
     for key, entry in additions.items():
         old = target[key].value if key in target else None
         if not isinstance(old, list) or not isinstance(entry.value, list) or _is_tables(old) != _is_tables(entry.value):
             lists = [known for known in target if isinstance(target[known].value, list)]
-            log.append(_missing(f"{what} has no list `{key}` of this kind to add to", entry.label, key, lists))
+            log.append(_missing(f"{description} has no list `{key}` of this kind to add to", entry.label, key, lists))
         else:
             result[key] = Entry([*old, *entry.value], entry.label)
     return result

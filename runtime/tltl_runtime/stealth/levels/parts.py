@@ -1,4 +1,4 @@
-"""From the tables of level files to the records of a level: one function per kind of thing."""
+"""Convert the tables of level files to the records of a level: one function per kind of thing."""
 
 from __future__ import annotations
 
@@ -26,37 +26,37 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 
 _OUTER_WALL: Final = 0.2
-"""How thick the walls around a level are, in metres."""
+"""The thickness of the walls around a level, in metres."""
 
 _MAX_RISE: Final = 0.25
-"""The highest step of stairs that the player walks up, in metres."""
+"""The highest step of stairs that the player can walk up, in metres."""
 
 CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
-"""What a cell of the semantic map can hold, beside nothing; where several meet, it holds the last of them."""
+"""What a cell of the semantic map can contain; where several meet, the last one wins."""
 
 _SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
 
 CELL_WIDTH: Final = (0.1, 5.0)
-"""The least and the greatest width of a cell of the semantic map, in metres."""
+"""The least and greatest width of a cell of the semantic map, in metres."""
 
 MAP_EXTENT: Final = (3, 63)
-"""The least and the greatest number of cells to a side of it; the number is odd."""
+"""The least and greatest number of cells along a side of the semantic map; the number is odd."""
 
 _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "seen")
-"""What the player senses where a level does not say."""
+"""The variables that the agent observes if the level does not list any."""
 
 
 @record
 class Places:
-    """Where things were said, for the checks that come later: names by thing, positions by thing, references."""
+    """Labels of names, positions and references in the level's files, for later checks."""
 
     names: dict[str, Label]
     spots: dict[str, Label]
     references: list[tuple[str, str, Label]]
-    """What kind of thing is meant, its name, and where."""
+    """The kind of thing that a reference names, the name, and the label of the reference."""
 
     def put(self, name: str, table: Table, spot: str) -> None:
-        """Remember a thing; a second one of that name is an error (TLT0804)."""
+        """Record the labels of a thing; a name that is already taken is an error (TLT0804)."""
         label = table.place("name")
         if name in self.names:
             title = f"two things are called `{name}`"
@@ -65,45 +65,45 @@ class Places:
         self.spots.setdefault(name, table.place(spot))
 
     def named(self, name: str) -> tuple[Label, ...]:
-        """Where a thing is named."""
+        """Return the label of a thing's name, if there is one."""
         return (self.names[name],) if name in self.names else ()
 
     def at(self, *names: str) -> tuple[Label, ...]:
-        """Where it was said where things stand; the outer walls are said nowhere."""
+        """Return the labels of the positions of things; the outer walls have none."""
         return tuple(self.spots[name] for name in names if name in self.spots)
 
     def refer(self, kind: str, table: Table, key: str, names: tuple[str, ...]) -> None:
-        """Remember that a key speaks of things of a kind."""
+        """Record that a key refers to things of a kind."""
         self.references.extend((kind, name, table.place(key)) for name in names)
 
 
 def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
-    """The walls, low obstacles, platforms and stairs of a level or a part."""
-    found = []
+    """Read the walls, low obstacles, platforms and stairs of a level or a part."""
+    solids = []
     for kind in _SOLIDS:
         for number, item in enumerate(table.tables(kind), 1):
             name = prefix + item.text("name", f"{kind}_{number}")
-            found.append(Solid(name, kind, box(item, shift)))
+            solids.append(Solid(name, kind, box(item, shift)))
             places.put(name, item, "at")
             item.done()
     for number, item in enumerate(table.tables("stairs"), 1):
         name = prefix + item.text("name", f"stairs_{number}")
-        its = _stairs(item, name, shift)
-        found += its
+        steps = _stairs(item, name, shift)
+        solids += steps
         places.put(name, item, "from")
-        places.spots.update({solid.name: item.place("from") for solid in its})
+        places.spots.update({solid.name: item.place("from") for solid in steps})
         item.done()
-    return found
+    return solids
 
 
 def box(table: Table, shift: Point = (0.0, 0.0, 0.0)) -> Box:
-    """The box whose base has its middle at ``at`` and which is ``size`` large."""
+    """Read a box from ``at``, the middle of its base, and ``size``."""
     (x, y, z), (dx, dy, dz) = _moved(table.point("at"), shift), table.size()
     return Box(_rounded((x - dx / 2, y - dy / 2, z)), _rounded((x + dx / 2, y + dy / 2, z + dz)))
 
 
 def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
-    """Boxes, one a step, that reach down to the height at which the stairs begin."""
+    """Return one box per step, each reaching down to the height at which the stairs begin."""
     foot, top = _moved(table.point("from"), shift), _moved(table.point("to"), shift)
     width = table.number("width", low=0.7, high=50.0)
     steps = table.whole("steps", low=1, high=40)
@@ -119,21 +119,21 @@ def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
         label = table.place("to")
         table.log.append(Diagnostic("TLT0803", f"nobody walks up `{name}`", (label,), f"expected stairs {problem}"))
         return []
-    found = []
+    boxes = []
     for number in range(steps):
-        begin, end = (foot[axis] + (top[axis] - foot[axis]) * (number + more) / steps for more in (0, 1))
+        begin, end = (foot[axis] + (top[axis] - foot[axis]) * (number + side) / steps for side in (0, 1))
         low, high = list(foot), list(foot)
         low[axis], high[axis] = min(begin, end), max(begin, end)
         low[1 - axis] -= width / 2
         high[1 - axis] += width / 2
         high[2] = foot[2] + rise * (number + 1)
-        found.append(Solid(f"{name}_{number + 1}", "platform", Box(_rounded(low), _rounded(high))))
-    return found
+        boxes.append(Solid(f"{name}_{number + 1}", "platform", Box(_rounded(low), _rounded(high))))
+    return boxes
 
 
 def movers(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
-    """The moving boxes of a level or a part; in files, paths are those of the middle of the base."""
-    found = []
+    """Read the movers of a level or a part; in files, a path is that of the middle of the base."""
+    movers = []
     for item in table.tables("mover"):
         name, size = prefix + item.text("name"), item.size()
         up = (shift[0], shift[1], shift[2] + size[2] / 2)
@@ -141,40 +141,40 @@ def movers(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix:
         speed = item.number("speed", low=0.01, high=10.0, unit="m/s")
         pause = item.number("pause", 0.0, low=0.0, high=600.0, unit="s")
         offset = item.number("offset", 0.0, low=0.0, high=600.0, unit="s")
-        found.append(Mover(name, size, path, speed, pause, offset, item.flag("closed")))
+        movers.append(Mover(name, size, path, speed, pause, offset, item.flag("closed")))
         places.put(name, item, "path")
         item.done()
-    return found
+    return movers
 
 
 def switches(table: Table, places: Places) -> list[Switch]:
-    """The switches of a level."""
-    found = []
+    """Read the switches of a level."""
+    switches = []
     for item in table.tables("switch"):
         name = item.text("name")
-        found.append(Switch(name, item.point("at"), item.number("radius", 1.0, low=0.1, high=10.0)))
+        switches.append(Switch(name, item.point("at"), item.number("radius", 1.0, low=0.1, high=10.0)))
         places.put(name, item, "at")
         item.done()
-    return found
+    return switches
 
 
 def barriers(table: Table, places: Places) -> list[Barrier]:
-    """The barriers and lasers of a level."""
-    found = []
+    """Read the barriers and lasers of a level."""
+    barriers = []
     for kind, key in (("solid", "barrier"), ("laser", "laser")):
         for item in table.tables(key):
             name, opened_by = item.text("name"), item.names("opened_by", ())
             damage = item.number("damage", 0.5, low=0.0, high=100.0, unit="a second") if kind == "laser" else 0.0
-            found.append(Barrier(name, cast(Literal["solid", "laser"], kind), box(item), opened_by, damage))
+            barriers.append(Barrier(name, cast(Literal["solid", "laser"], kind), box(item), opened_by, damage))
             places.put(name, item, "at")
             places.refer("switch", item, "opened_by", opened_by)
             item.done({"damage": "[[laser]]"})
-    return found
+    return barriers
 
 
 def unlocks(table: Table, places: Places) -> list[Unlock]:
-    """What opens at random."""
-    found = []
+    """Read the random unlocks of a level."""
+    unlocks = []
     for item in table.tables("unlock"):
         unlock = Unlock(item.text("switch"), item.names("barriers"))
         if len(set(unlock.barriers)) < max(2, len(unlock.barriers)):
@@ -184,35 +184,35 @@ def unlocks(table: Table, places: Places) -> list[Unlock]:
         places.refer("switch", item, "switch", (unlock.switch,))
         places.refer("barrier", item, "barriers", unlock.barriers)
         item.done()
-        found.append(unlock)
-    return found
+        unlocks.append(unlock)
+    return unlocks
 
 
 def exits(table: Table, places: Places) -> list[Exit]:
-    """The exits of a level."""
-    found = []
+    """Read the exits of a level."""
+    exits = []
     for item in table.tables("exit"):
         name = item.text("name")
-        found.append(Exit(name, item.point("at")))
+        exits.append(Exit(name, item.point("at")))
         places.put(name, item, "at")
         item.done()
-    return found
+    return exits
 
 
 def enemies(table: Table, kinds: dict[str, EnemyKind], places: Places) -> list[Enemy]:
-    """The enemies of a level; ``kinds`` are those that could be read, by the name of their asset."""
-    found = []
+    """Read the enemies of a level; ``kinds`` are the valid enemy kinds, by asset name."""
+    enemies = []
     for item in table.tables("enemy"):
         name, kind, route = item.text("name"), item.text("kind"), item.points("route", 1)
         if kind in kinds:
-            found.append(Enemy(name, kinds[kind], route))
+            enemies.append(Enemy(name, kinds[kind], route))
         places.put(name, item, "route")
         item.done()
-    return found
+    return enemies
 
 
 def enemy_kind(table: Table, name: str) -> EnemyKind:
-    """An asset of type ``enemy``; angles are degrees in files."""
+    """Read an asset of type ``enemy``; angles are in degrees in files."""
     kind = EnemyKind(
         name=name,
         sight_range=table.number("sight_range", low=0.0, high=100.0),
@@ -238,21 +238,21 @@ def enemy_kind(table: Table, name: str) -> EnemyKind:
 
 
 def start(table: Table) -> Start:
-    """Where the player begins."""
-    found = Start(
+    """Read the player's start."""
+    start = Start(
         table.point("at"),
         math.radians(table.number("yaw", 0.0, low=-360.0, high=360.0, unit="degrees")),
         table.number("spread", 0.0, low=0.0, high=10.0),
     )
     table.done()
-    return found
+    return start
 
 
 def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> Sensors:
-    """What the agent senses; every entity, `_VARIABLES` and no map where nothing is said."""
+    """Read the agent's sensors; by default every entity, `_VARIABLES` and no map."""
     if table is None:
         return Sensors(entities, _VARIABLES, None)
-    found_map = None
+    map_sensor = None
     if (map_ := table.table("map", needed=False)) is not None:
         extent = map_.whole("extent", low=MAP_EXTENT[0], high=MAP_EXTENT[1])
         if extent % 2 == 0:
@@ -261,17 +261,17 @@ def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> S
             map_.log.append(Diagnostic("TLT0803", title, (map_.place("extent"),), help_))
         types = map_.names("types", CELL_TYPES)
         places.refer("cell type", map_, "types", types)
-        found_map = MapSensor(types, map_.number("cell", low=CELL_WIDTH[0], high=CELL_WIDTH[1]), extent)
+        map_sensor = MapSensor(types, map_.number("cell", low=CELL_WIDTH[0], high=CELL_WIDTH[1]), extent)
         map_.done()
-    found = Sensors(table.names("entities", entities), table.names("variables", _VARIABLES), found_map)
-    places.refer("entity", table, "entities", found.entities)
-    places.refer("signal", table, "variables", found.variables)
+    sensors = Sensors(table.names("entities", entities), table.names("variables", _VARIABLES), map_sensor)
+    places.refer("entity", table, "entities", sensors.entities)
+    places.refer("signal", table, "variables", sensors.variables)
     table.done()
-    return found
+    return sensors
 
 
 def enclosure(bounds: Box) -> list[Solid]:
-    """The floor, whose top is at height 0, and the walls around a level."""
+    """Return the floor, whose top is at height 0, and the walls around a level."""
     (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
     walls = {
         "outer_west": Box((x0, y0, 0.0), (x0 + _OUTER_WALL, y1, z1)),
@@ -286,11 +286,11 @@ def enclosure(bounds: Box) -> list[Solid]:
 
 
 def _moved(point: Point, shift: Point) -> Point:
-    """A point of a part, where the part stands."""
+    """Shift a point of a part to the position of the part."""
     return (point[0] + shift[0], point[1] + shift[1], point[2] + shift[2])
 
 
 def _rounded(point: list[float] | Point) -> Point:
-    """To the micrometre: boxes that a designer makes touch do touch."""
+    """Round to the micrometre, so that boxes that should touch do touch."""
     x, y, z = (round(value, 6) + 0.0 for value in point)
     return (x, y, z)

@@ -1,4 +1,4 @@
-"""A level and a variant as arguments of commands name them: ``LEVEL``, ``LEVEL:VARIANT``, ``LEVEL:VARIANT+OVERLAY``."""
+"""Levels and variants in arguments: ``LEVEL``, ``LEVEL:VARIANT``, ``LEVEL:VARIANT+OVERLAY``."""
 
 from __future__ import annotations
 
@@ -13,44 +13,50 @@ _OVERLAY: Final = re.compile(r"\+([^+/\\]*(?=\+|\Z)|.+?\.toml(?=\+|\Z)|[^+]*)", 
 
 
 def level_place(argument: str) -> tuple[str, str | None]:
-    """The level and the variant of an argument, as :func:`~tltl_runtime.stealth.levels.file.load_level` takes them.
+    """Split an argument into level and variant.
 
-    The variant is None where the argument has none.  A path that exists, or a drive letter, is never split.
+    The result is for :func:`~tltl_runtime.stealth.levels.file.load_level`. The variant is None if
+    the argument has none. A path that exists is never split, nor is a drive letter.
     """
-    found = _PLACE.match(argument)
-    if not found or os.path.exists(argument):  # noqa: PTH110
+    match = _PLACE.match(argument)
+    if not match or os.path.exists(argument):  # noqa: PTH110
         return argument, None
-    level, variant = found.groups()
+    level, variant = match.groups()
     if len(level) == 1 and level.isalpha() and os.name == "nt":
         return argument, None
     return level, variant
 
 
 def with_overlays(variant: str, overlays: Iterable[str]) -> str:
-    """The variant with overlays added to it, as :func:`overlays_of` tells them: names, or paths of ``.toml`` files.
+    """Add overlays to a variant: names, or paths of ``.toml`` files; see :func:`overlays_of`.
 
-    Paths that have a ``+`` are made absolute.
+    Paths that contain a ``+`` are made absolute.
     """
     has_plus = re.compile(r".*\+.*\.toml\Z", re.DOTALL).match
-    return "+".join((variant, *(str(Path(each).absolute()) if has_plus(each) else each for each in overlays)))
+    return "+".join(
+        (variant, *(str(Path(overlay).absolute()) if has_plus(overlay) else overlay for overlay in overlays))
+    )
 
 
 def overlays_of(variant: str) -> tuple[str, tuple[str, ...]]:
-    """The variant without what is added to it, and the overlays that are, in their order.
+    """Return the variant without its added overlays, and these overlays in order.
 
-    A path may have a ``+`` from its second part on: ``v0+/home/c++/wider.toml`` is ``v0`` and one overlay.
+    A path may contain a ``+`` after its first part: ``v0+/home/c++/wider.toml`` is ``v0`` and one
+    overlay.
     """
     base, plus, added = variant.partition("+")
     return base, tuple(_OVERLAY.findall(plus + added))
 
 
 def shown_variant(variant: str) -> str:
-    """The variant as reports call it, with the names of its overlays wherever these lie."""
+    """Return the variant as reports show it, with the overlays' names without their folders."""
     base, added = overlays_of(variant)
-    return "+".join((base, *(Path(each).stem if each.endswith(".toml") else each for each in added)))
+    return "+".join((base, *(Path(overlay).stem if overlay.endswith(".toml") else overlay for overlay in added)))
 
 
 def absolute_variant(variant: str) -> str:
-    """The variant with the paths of its overlays made absolute, for whoever loads it from another folder."""
+    """Return the variant with absolute overlay paths, for loading from another folder."""
     base, added = overlays_of(variant)
-    return "+".join((base, *(str(Path(each).absolute()) if each.endswith(".toml") else each for each in added)))
+    return "+".join(
+        (base, *(str(Path(overlay).absolute()) if overlay.endswith(".toml") else overlay for overlay in added))
+    )

@@ -1,4 +1,4 @@
-"""The regions of a level, by whose names reports say where something happened."""
+"""The named regions of a level, which reports use to say where something happened."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from tltl_runtime.stealth.levels.table import Table
 
 
 def named_regions(table: Table) -> tuple[Region, ...]:
-    """Those that the level itself names, under ``[[region]]``."""
-    found = []
+    """Return the regions that the level itself names, under ``[[region]]``."""
+    regions = []
     for item in table.tables("region"):
-        found.append(Region(item.text("name"), box(item)))
+        regions.append(Region(item.text("name"), box(item)))
         item.done()
-    return tuple(found)
+    return tuple(regions)
 
 
 def part_regions(name: str, solids: Sequence[Solid], movers: Sequence[Mover]) -> Iterator[Region]:
-    """The region of a part that a level uses: the least box around what it brings; none where that is nothing."""
+    """Yield the region of a part: the bounding box of its solids and movers, if it has any."""
     boxes = [solid.box for solid in solids] + [_at(mover, point) for mover in movers for point in mover.path]
     if boxes:
-        lows, highs = zip(*(each.low for each in boxes), strict=True), zip(*(each.high for each in boxes), strict=True)
+        lows, highs = zip(*(box.low for box in boxes), strict=True), zip(*(box.high for box in boxes), strict=True)
         (x, y, z), (east, north, top) = map(min, lows), map(max, highs)
         yield Region(name, Box((x, y, z), (east, north, top)))
 

@@ -1,4 +1,4 @@
-"""What must hold of the room in a level: everything is inside, and stands where it can."""
+"""Check that everything in a level is inside the bounds, and that nothing stands in a solid."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _Boxes = list[tuple[str, Box]]
 
 
 def check_room(level: Level, places: Places, start: Label) -> list[Diagnostic]:
-    """TLT0806 for what is outside the bounds, TLT0807 for who or what stands inside something that stops it."""
+    """Return TLT0806 for what is outside the bounds, TLT0807 for what stands inside an obstacle."""
     solids = [(solid.name, solid.box) for solid in level.solids]
     barriers = [(barrier.name, barrier.box) for barrier in level.barriers]
     goals = [(switch.name, switch.position) for switch in level.switches]
@@ -36,7 +36,7 @@ def check_room(level: Level, places: Places, start: Label) -> list[Diagnostic]:
 def _outside(
     level: Level, boxes: _Boxes, goals: list[tuple[str, Point]], places: Places, start: Label
 ) -> Iterator[Diagnostic]:
-    """What is outside the bounds, each thing once."""
+    """Report what is outside the bounds, each thing once."""
     moving = [(mover.name, Box(*around(point, mover.size))) for mover in level.movers for point in mover.path]
     points = [*goals, *((enemy.name, point) for enemy in level.enemies for point in enemy.route)]
     spots = [(name, Box(point, point)) for name, point in points]
@@ -51,7 +51,7 @@ def _outside(
 
 
 def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
-    """What is where the player begins, movers included where they begin."""
+    """Report what overlaps the player's start, including movers at their initial positions."""
     begins = [(mover.name, Box(*around(Way(mover).at(mover.offset), mover.size))) for mover in level.movers]
     for name, box in (*boxes, *begins):
         if _overlap(_player(level), box):
@@ -60,7 +60,7 @@ def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterato
 
 
 def _goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
-    """For each goal, the first solid that it is inside."""
+    """Report the goals that are inside a solid, with the first such solid."""
     for goal, point in goals:
         if name := _first_around(_body(point, 0.01, 0.1), solids):
             title = f"`{goal}` is inside `{name}`, where nobody reaches it"
@@ -68,7 +68,7 @@ def _goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> It
 
 
 def _routes(level: Level, solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
-    """For each point of a route, the first solid that is there."""
+    """Report the points of routes that are blocked, with the first solid there."""
     for enemy in level.enemies:
         for point in enemy.route:
             if name := _first_around(_body(point, RADIUS), solids):
@@ -78,17 +78,17 @@ def _routes(level: Level, solids: _Boxes, places: Places) -> Iterator[Diagnostic
 
 
 def _first_around(body: Box, solids: _Boxes) -> str | None:
-    """The name of the first solid that takes some of the room of a body."""
+    """The name of the first solid that overlaps a body, or None."""
     return next((name for name, box in solids if _overlap(body, box)), None)
 
 
 def _player(level: Level) -> Box:
-    """All the room that the player may take where it begins."""
+    """The space that the player may take at the start, including the spread."""
     return _body(level.start.position, _PLAYER.radius + level.start.spread)
 
 
 def _body(feet: Point, radius: float, height: float = _PLAYER.height) -> Box:
-    """The room that somebody takes; a little above the floor, so that standing on something is no overlap."""
+    """The bounding box of a body, raised slightly, so that standing on something is no overlap."""
     x, y, z = feet
     return Box((x - radius, y - radius, z + 0.01), (x + radius, y + radius, z + height))
 
@@ -107,5 +107,5 @@ def _overlap(one: Box, other: Box) -> bool:
 
 
 def shown(point: Point) -> str:
-    """A point as level files write it."""
+    """Format a point as level files write it."""
     return f"[{', '.join(f'{value:g}' for value in point)}]"

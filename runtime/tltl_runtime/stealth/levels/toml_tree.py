@@ -1,4 +1,7 @@
-"""TOML with places: every value knows the text that it came from, so that overlays keep their own places."""
+"""TOML with labels: every value knows the text that it comes from.
+
+Diagnostics about overlays can thus point into the overlay's file.
+"""
 
 from __future__ import annotations
 
@@ -22,45 +25,45 @@ _VALUE_PART: Final = re.compile(
 
 @record
 class Entry:
-    """A value and its place: a scalar, a list, a :data:`Tree`, or a list of trees."""
+    """A value and its label: a scalar, a list, a :data:`Tree`, or a list of trees."""
 
     value: Any
     label: Label
 
 
 Tree = dict[str, Entry]
-"""A table: what its keys stand for."""
+"""The entries of a table, by key."""
 
 
 def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> Tree:
-    """The tables of a TOML text; raises TltlError with ``code`` and ``help_`` where it is none.
+    """Parse a TOML text; raises TltlError with ``code`` and ``help_`` if it is invalid.
 
-    What stands in an inline table has the place of the key before it.
+    Values inside an inline table have the span of the key before the table.
     """
     data = parse(source, code, help_)
     return _tree(data, (), _places(source.text), Label(source, Span(0, 0)))
 
 
 def _tree(data: dict[str, Any], path: tuple[str | int, ...], places: dict[Any, Span], around: Label) -> Tree:
-    found: Tree = {}
+    tree: Tree = {}
     for key, value in data.items():
         here = (*path, key)
         label = Label(around.source, places[here]) if here in places else around
         if isinstance(value, dict):
-            found[key] = Entry(_tree(value, here, places, label), label)
+            tree[key] = Entry(_tree(value, here, places, label), label)
         elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
             tables = []
             for number, item in enumerate(value):
                 place = Label(around.source, places.get((*here, number), label.span))
                 tables.append(Entry(_tree(item, (*here, number), places, place), place))
-            found[key] = Entry(tables, label)
+            tree[key] = Entry(tables, label)
         else:
-            found[key] = Entry(value, label)
-    return found
+            tree[key] = Entry(value, label)
+    return tree
 
 
 def _places(text: str) -> dict[tuple[str | int, ...], Span]:
-    """Where the keys and the headers of tables stand in a text that is known to be TOML."""
+    """Find the spans of the keys and table headers in a text that is valid TOML."""
     places: dict[tuple[str | int, ...], Span] = {}
     counts: dict[tuple[str | int, ...], int] = {}
     table: tuple[str | int, ...] = ()
@@ -88,7 +91,10 @@ def _places(text: str) -> dict[tuple[str | int, ...], Span]:
 def _inside(
     dotted: str, around: tuple[str | int, ...], counts: dict[tuple[str | int, ...], int]
 ) -> tuple[str | int, ...]:
-    """The path of a dotted key inside the table ``around``; what it passes of lists of tables is their last one."""
+    """The path of a dotted key in the table ``around``.
+
+    A list of tables in the path stands for its last table.
+    """
     path = around
     keys = re.findall(_KEY, dotted)
     for number, key in enumerate(keys):
@@ -99,12 +105,12 @@ def _inside(
 
 
 def _end(pattern: re.Pattern[str], text: str, position: int) -> int:
-    found = pattern.match(text, position)
-    return found.end() if found else position
+    match = pattern.match(text, position)
+    return match.end() if match else position
 
 
 def _value_end(text: str, position: int) -> int:
-    """The end of the line that a value ends on."""
+    """Return the end of the line on which a value ends."""
     depth = 0
     while position < len(text):
         part = _VALUE_PART.match(text, position)

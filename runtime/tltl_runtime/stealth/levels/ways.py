@@ -1,4 +1,4 @@
-"""What is allowed in a level and hardly meant: warnings about the ways of movers and enemies (TLT0809)."""
+"""Warn about paths of movers and enemies that are valid but probably mistakes (TLT0809)."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 
 _EPSILON: Final = 1e-6
 _MOST_EACH: Final = 10
-"""At most this many warnings are given of one mover or enemy."""
+"""The most warnings about one mover or enemy."""
 
 
 def check_ways(level: Level, places: Places) -> tuple[Diagnostic, ...]:
-    """A warning for each mover that rests where it should go or goes through a solid, and for enemies.
+    """Return warnings about movers and enemies.
 
-    Those are warned of that begin in reach of the player, and that do not get to a point of their route.
+    A mover is reported if two neighbouring points of its path are equal, or if it passes through a
+    solid; an enemy, if it begins within reach of the player or cannot reach a point of its route.
     """
-    found = [warning for mover in level.movers for warning in islice(_mover(mover, level, places), _MOST_EACH)]
-    found += [warning for enemy in level.enemies for warning in islice(_enemy(enemy, level, places), _MOST_EACH)]
-    return tuple(found)
+    warnings = [warning for mover in level.movers for warning in islice(_mover(mover, level, places), _MOST_EACH)]
+    warnings += [warning for enemy in level.enemies for warning in islice(_enemy(enemy, level, places), _MOST_EACH)]
+    return tuple(warnings)
 
 
 def _mover(mover: Mover, level: Level, places: Places) -> Iterator[Diagnostic]:
@@ -35,12 +36,12 @@ def _mover(mover: Mover, level: Level, places: Places) -> Iterator[Diagnostic]:
         title = f"two neighbouring points in the path of `{mover.name}` are the same"
         yield _warning(title, places, mover.name, help_="for a rest, give a `pause`; else move one of the points")
     for solid in level.solids:
-        # The box meets the solid where its centre meets the solid that is larger by half of it.
+        # The box meets the solid if its centre is inside the solid grown by half the box's size.
         larger = (
             *(a - side / 2 + _EPSILON for a, side in zip(solid.box.low, mover.size, strict=True)),
             *(b + side / 2 - _EPSILON for b, side in zip(solid.box.high, mover.size, strict=True)),
         )
-        # Nothing stops a mover but a player, so a door may well slide into a wall; more often it is a mistake.
+        # Only the player stops a mover, so a door may slide into a wall; more often this is a mistake.
         if any(blocked(start, end, [cast(Corners, larger)]) for start, end in pairwise(stops)):
             help_ = "where that is not meant, shorten its `path`, or move one of them"
             yield _warning(f"`{mover.name}` runs into `{solid.name}`", places, mover.name, solid.name, help_=help_)
@@ -64,7 +65,7 @@ def _enemy(enemy: Enemy, level: Level, places: Places) -> Iterator[Diagnostic]:
 
 
 def _way(level: Level, start: Point, end: Point, *, shut: bool) -> bool:
-    """Whether an enemy can walk between two points of its route, while all barriers are shut or open."""
+    """Whether an enemy can walk between two points, with all barriers shut or all open."""
     floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
     stands = floor.entry(start[:2]) is not None and floor.entry(end[:2]) is not None
     return stands and floor.area(start[:2]) == floor.area(end[:2])

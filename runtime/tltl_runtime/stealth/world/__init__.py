@@ -1,1 +1,1 @@
-"""The bodies of a level in the physics, and what the player's can do."""
+"""The physics of the game: the bodies of a level, and the motion of the player."""

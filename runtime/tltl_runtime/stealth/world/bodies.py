@@ -1,4 +1,4 @@
-"""Bodies in pybullet, made so that none of its silent traps is met; ``physics`` says which they are."""
+"""Create pybullet bodies in ways that avoid its silent traps; ``physics`` lists the traps."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import Bounds
 
 COMPOUND = 16
-"""The children of a compound shape that Bullet keeps."""
+"""The most children that Bullet keeps in a compound shape."""
 RAY, PLAYER, PARKED, WORLD = 1, 2, 4, 8
-"""Groups of collision; Bullet puts rays in the first."""
+"""Collision groups; Bullet puts rays into the first one."""
 STOPS = RAY | PLAYER
-"""What the world stops: not itself."""
+"""The groups that the world stops: not the world itself."""
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
-    """One static body of at most 16 boxes, in the group of the world."""
+    """Create one static body of at most 16 boxes, in the group of the world."""
     if len(boxes) > COMPOUND:
         raise ValueError(f"a compound holds {COMPOUND} boxes, {len(boxes)} were given")
     shape = pybullet.createCollisionShapeArray(
@@ -31,14 +31,17 @@ def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
 
 
 def static_box(client: int, size: Point, place: Point) -> int:
-    """A static body of one box with its centre at ``place``, in the group of the world; it can be put elsewhere."""
+    """Create a static body of one box centred at ``place``, in the group of the world.
+
+    It can be moved later.
+    """
     half = [side / 2 for side in size]
     shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
     return _static(client, shape, place)
 
 
 def capsule(client: int, radius: float, height: float, place: Point) -> int:
-    """A dynamic capsule of 1 kg that neither turns nor rubs, parked at ``place``."""
+    """Create a dynamic capsule of 1 kg, without rotation and friction, parked at ``place``."""
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_CAPSULE, radius=radius, height=height - 2 * radius, physicsClientId=client
     )
@@ -60,7 +63,7 @@ def capsule(client: int, radius: float, height: float, place: Point) -> int:
 
 
 def set_filter(client: int, body: int, group: int, mask: int) -> None:
-    """Say which group a body is in, and which groups it meets."""
+    """Set the collision group of a body, and the groups that it collides with."""
     pybullet.setCollisionFilterGroupMask(body, -1, group, mask, physicsClientId=client)
 
 
@@ -74,7 +77,7 @@ def _static(client: int, shape: int, place: Point) -> int:
 
 
 def _unseen(client: int) -> int:
-    """A visual shape too small for a picture; without one, a body looks like its collision shape."""
+    """Create a visual shape too small to see; without one, pybullet draws the collision shape."""
     corners = [[0.0, 0.0, 0.0], [0.001, 0.0, 0.0], [0.0, 0.001, 0.0]]
     shape: int = pybullet.createVisualShape(
         pybullet.GEOM_MESH, vertices=corners, indices=[0, 1, 2], physicsClientId=client

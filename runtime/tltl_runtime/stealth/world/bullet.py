@@ -1,7 +1,7 @@
-"""Pybullet, imported without the line that it writes to standard error, where messages for programs may go.
+"""Import pybullet without the line that it prints on standard error, which programs may parse.
 
-No other module imports pybullet by itself: the first import is the one that speaks, and it does so from C.  Where it is
-not installed, importing this module raises TltlError, TLT0730.
+No other module imports pybullet itself: the line is printed by the first import, from C. If
+pybullet is not installed, importing this module raises TltlError, TLT0730.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def _missing() -> TltlError:
-    way_out = "in the clone of tltlc: pip install -c constraints.txt '.[game]'"
+    help_ = "in the clone of tltlc: pip install -c constraints.txt '.[game]'"
     if sys.version_info >= (3, 12):
-        way_out = "it comes ready to use for Python 3.10 and 3.11 alone: install '.[game]' in the clone with one"
-    return TltlError([Diagnostic("TLT0730", "the game needs `pybullet`, which is not installed", help=way_out)])
+        help_ = "it comes ready to use for Python 3.10 and 3.11 alone: install '.[game]' in the clone with one"
+    return TltlError([Diagnostic("TLT0730", "the game needs `pybullet`, which is not installed", help=help_)])
 
 
 try:

@@ -1,7 +1,8 @@
-"""The player's body in the physics: a standing and a crouched capsule, of which one is played.
+"""The player's body in the physics: a standing and a crouched capsule, one of which is active.
 
-The other touches nothing, falls, and is now and then put back under the level: a Featherstone body that is put to sleep
-falls all the same, and one that rests on a floor costs a quarter of the speed.
+The inactive capsule touches nothing and falls. It is moved back below the level from time to time:
+a sleeping Featherstone body falls all the same, and resting it on a floor would cost a quarter of
+the speed.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ _STILL = (0.0, 0.0, 0.0)
 
 
 class Capsules:
-    """The two capsules, made at ``parking``, with the standing one played: ``body`` is its number in Bullet.
+    """The two capsules, created at ``parking``; the standing one is active at first.
 
-    ``height`` and ``radius`` are those of the capsule that is played, positions those of its feet.
+    ``body`` is the Bullet id of the active capsule; ``height`` and ``radius`` are its size.
+    Positions are at its feet.
     """
 
     def __init__(self, client: int, kind: PlayerKind, parking: Point) -> None:
@@ -29,7 +31,7 @@ class Capsules:
         self._play(False)
 
     def put(self, crouching: bool, feet: Point, velocity: Point) -> bool:
-        """Put the player there, standing or crouched; tells whether that is another capsule than before."""
+        """Move the player to a pose; return whether this switched capsules."""
         changed = self.body != self._bodies[crouching]
         if changed:
             self._play(crouching)
@@ -39,16 +41,16 @@ class Capsules:
         return changed
 
     def speed(self, velocity: Point) -> None:
-        """Give the player a velocity."""
+        """Set the player's velocity."""
         pybullet.resetBaseVelocity(self.body, velocity, _STILL, self._client)
 
     def feet(self) -> Point:
-        """Where the feet are."""
+        """Return the position of the feet."""
         (x, y, z), _ = pybullet.getBasePositionAndOrientation(self.body, self._client)
         return x, y, z - self.height / 2
 
     def velocity(self) -> Point:
-        """How fast the player goes."""
+        """Return the player's velocity."""
         velocity: Point = pybullet.getBaseVelocity(self.body, self._client)[0]
         return velocity
 
@@ -58,14 +60,15 @@ class Capsules:
         return any(contact[7][2] > 0.5 and contact[8] < TOUCH for contact in contacts)
 
     def park(self) -> None:
-        """Put the capsule that is not played back under the level."""
+        """Move the inactive capsule back below the level."""
         pybullet.resetBasePositionAndOrientation(self._parked, self._parking, UPRIGHT, self._client)
         pybullet.resetBaseVelocity(self._parked, _STILL, _STILL, self._client)
 
     def misfiltered(self) -> str | None:
-        """The capsule whose filter is not the one that was set, if any.
+        """Return the name of the capsule whose collision filter is wrong, or None.
 
-        A ray down the played capsule hits it, and one down the parked capsule does not, each in its own group.
+        A ray down through the active capsule must hit it; a ray down through the parked capsule
+        must not.
         """
         for name, body, height in zip(("standing", "crouched"), self._bodies, self._heights, strict=True):
             (x, y, z), _ = pybullet.getBasePositionAndOrientation(body, self._client)

@@ -1,4 +1,4 @@
-"""What a level does to its player in the physics, as a fault of the level."""
+"""Turn physics errors that a level causes into diagnostics of the level."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:
-    """TLT0806 where a player has left the level; None for other errors of the physics, since these are ours."""
-    # Not before it is needed: it loads the physics.
+    """Return TLT0806 if the player has left the level, else None.
+
+    Other errors of the physics are not the level's fault.
+    """
+    # Imported here, because it loads the physics.
     from tltl_runtime.stealth.world.physics import WorldError
 
     if not isinstance(error, WorldError) or error.body != "player":

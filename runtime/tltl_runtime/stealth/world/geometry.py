@@ -1,4 +1,4 @@
-"""Boxes parallel to the axes and upright capsules: how deep they meet, and which boxes lie together."""
+"""Geometry of axis-aligned boxes and upright capsules: overlap depth and grouping of boxes."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from math import floor, sqrt
 from tltl_runtime.stealth.level import Point
 
 Bounds = tuple[Point, Point]
-"""The low and the high corner of a box."""
+"""The low and high corners of a box."""
 TOUCH = 0.02
-"""How far, in metres, a body may reach into another and still count as free of it."""
+"""A body may overlap another by this many metres and still count as free of it."""
 
 
 def parts(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
-    """The boxes in groups of at most ``size`` that lie together: halves along the longer side, again and again."""
+    """Split boxes into groups of at most ``size`` neighbours, by halving along the longer side."""
     if len(boxes) <= size:
         return [boxes] if boxes else []
     middles = [[low[axis] + high[axis] for low, high in boxes] for axis in (0, 1)]
@@ -24,7 +24,7 @@ def parts(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
 
 
 def cells(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bounds]]:
-    """For each square metre, the boxes within ``reach`` of it."""
+    """For each square metre of ground, the boxes within ``reach`` of it."""
     cells: dict[tuple[int, int], list[Bounds]] = {}
     for low, high in boxes:
         for x in range(floor(low[0] - reach), floor(high[0] + reach) + 1):
@@ -34,17 +34,17 @@ def cells(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bound
 
 
 def depth(feet: Point, height: float, radius: float, low: Point, high: Point) -> float:
-    """How far an upright capsule reaches into a box; negative when they are apart."""
+    """How far an upright capsule overlaps a box, in metres; negative if they are apart."""
     return contact(feet, height, radius, low, high)[0]
 
 
 def contact(feet: Point, height: float, radius: float, low: Point, high: Point) -> tuple[float, Point]:
-    """How far an upright capsule reaches into a box, and the direction out of the box in which it is freed."""
+    """Return how far an upright capsule overlaps a box, and the direction out of the box."""
     x, y, z = feet
     bottom, top = z + radius, z + height - radius
     dx = x - min(max(x, low[0]), high[0])
     dy = y - min(max(y, low[1]), high[1])
-    # The point of the axis that is nearest to the box, and the point of the box nearest to it.
+    # Compare the point of the capsule's axis nearest to the box with the point of the box nearest to it.
     if top < low[2]:
         dz = top - low[2]
     elif bottom > high[2]:
@@ -54,8 +54,8 @@ def contact(feet: Point, height: float, radius: float, low: Point, high: Point) 
     distance = sqrt(dx * dx + dy * dy + dz * dz)
     if distance > 0.0:
         return radius - distance, (dx / distance, dy / distance, dz / distance)
-    # The axis is inside the box: out by the nearest side.
-    ways = (
+    # The axis is inside the box: push out through the nearest side.
+    exits = (
         (x - low[0], (-1.0, 0.0, 0.0)),
         (high[0] - x, (1.0, 0.0, 0.0)),
         (y - low[1], (0.0, -1.0, 0.0)),
@@ -63,12 +63,12 @@ def contact(feet: Point, height: float, radius: float, low: Point, high: Point) 
         (top - low[2], (0.0, 0.0, -1.0)),
         (high[2] - bottom, (0.0, 0.0, 1.0)),
     )
-    way, normal = min(ways)
-    return radius + way, normal
+    nearest, normal = min(exits)
+    return radius + nearest, normal
 
 
 def around(centre: Point, size: Point) -> Bounds:
-    """The corners of a box of this ``size``."""
+    """Return the corners of a box of this ``size`` around ``centre``."""
     (x, y, z), (a, b, c) = centre, size
     return (x - a / 2, y - b / 2, z - c / 2), (x + a / 2, y + b / 2, z + c / 2)
 
@@ -79,7 +79,10 @@ def inside(point: Point, low: Point, high: Point) -> bool:
 
 
 def sides(low: Point, high: Point) -> dict[str, tuple[Point, Point]]:
-    """The six sides of a box by name: a point a centimetre outside its middle, and the middle itself."""
+    """The six sides of a box by name.
+
+    Each is a point 1 cm outside the middle of the side, and the middle itself.
+    """
     middle = [(a + b) / 2 for a, b in zip(low, high, strict=True)]
     sides: dict[str, tuple[Point, Point]] = {}
     for axis, name in enumerate("xyz"):

@@ -1,6 +1,7 @@
-"""The moving obstacles of a level: they go their ways, and push the player.
+"""The movers of a level: they follow their paths and push the player.
 
-Bullet sees a box that is put elsewhere, not one that moves, so a push is given to the player as velocity.
+Bullet sees a box that is teleported, not one that moves; so the push is applied as a velocity of
+the player.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ from tltl_runtime.stealth.world.player import DECISION
 from tltl_runtime.stealth.world.way import Way
 
 _REACH = 1.5
-"""How near the player is, on its way of a decision, to what it may meet."""
+"""Distance within which the player can touch a mover during one decision, in metres."""
 _HARDEST_PUSH = 8.0
-"""Greatest speed that a mover gives the player."""
+"""The greatest speed that a mover gives to the player, in metres per second."""
 
 
 class Moving:
-    """One mover, made at its offset: ``place`` is its centre now, ``box`` its corners."""
+    """One mover, created at its offset: ``place`` is its current centre, ``box`` its corners."""
 
     def __init__(self, client: int, mover: Mover) -> None:
         self._client = client
@@ -38,7 +39,7 @@ class Moving:
         self._reach = (width / 2 + reach, depth / 2 + reach, rise / 2 + reach)
 
     def put(self, clock: float) -> None:
-        """Be where it is at a time of its own clock."""
+        """Move to the position at a time of the mover's own clock."""
         self.clock = clock
         place = self._way.at(clock)
         if place != self.place:
@@ -47,7 +48,7 @@ class Moving:
             pybullet.resetBasePositionAndOrientation(self._body, place, UPRIGHT, self._client)
 
     def is_near(self, feet: Point, height: float) -> bool:
-        """Whether a player of this height may meet it in the next decision."""
+        """Whether a player of this height can touch the mover within the next decision."""
         (x, y, z), (a, b, c), (along, across, up) = feet, self.place, self._reach
         return abs(x - a) <= along and abs(y - b) <= across and c - up - height <= z <= c + up
 
@@ -55,10 +56,10 @@ class Moving:
 def push(
     movers: Sequence[Moving], seconds: float, player: Capsules, room: Callable[[Point, float, Moving], bool]
 ) -> None:
-    """Let each mover go on, and push the player; to be followed by the physics step of these ``seconds``.
+    """Advance each mover and push the player; call this before each physics step of ``seconds``.
 
-    A mover waits where the player has no ``room`` to be pushed to, itself left out: a box that went on regardless would
-    press the player through a wall, however slowly.
+    A mover waits if the player would have no ``room`` after the push (the mover itself is ignored):
+    if it moved on, it would press the player through a wall, however slowly.
     """
     x, y, z = feet = player.feet()
     height, radius = player.height, player.radius
@@ -70,7 +71,7 @@ def push(
             continue
         across = sqrt(normal[0] ** 2 + normal[1] ** 2)
         if normal[2] < 0.0 and across > 0.3:
-            # An edge that comes down on the shoulder pushes aside.
+            # An edge that comes down on the player's shoulder pushes sideways.
             deep, normal = deep / across, (normal[0] / across, normal[1] / across, 0.0)
         if not room((x + deep * normal[0], y + deep * normal[1], z + deep * normal[2]), height, mover):
             mover.put(clock)

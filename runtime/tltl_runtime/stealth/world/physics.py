@@ -1,18 +1,21 @@
 """The bodies of a level in pybullet: static boxes, barriers, movers, and the player's capsule.
 
-The player is a dynamic capsule without rotation and friction, whose velocity is set once a decision; Bullet then runs
-nine steps of 1/60 s at once.  What was measured, and must stay so:
+The player is a dynamic capsule without rotation and friction. Its velocity is set once per
+decision; Bullet then runs nine steps of 1/60 s in one call. These measured properties must be kept:
 
-- The player is a Featherstone body (a Bullet rigid body with a zero inertia becomes not-a-number); all else has
-  maximal coordinates, because each further Featherstone body costs as much as the player in every step.
+- The player is a Featherstone body (a Bullet rigid body with zero inertia becomes not-a-number).
+  Everything else uses maximal coordinates, because each further Featherstone body costs as much per
+  step as the player.
 - Bullet keeps 16 children of a compound shape and silently drops the rest.
-- A mass that changes between zero and non-zero resets collision filters, so masses never change.
-- A body that is given no visual shape gets one from its collision shape (``URDF_IGNORE_VISUAL_SHAPES`` or not), so all
-  get a triangle of a millimetre.
+- A change of mass between zero and non-zero resets collision filters, so masses never change.
+- A body without a visual shape gets one from its collision shape (with or without
+  ``URDF_IGNORE_VISUAL_SHAPES``), so every body gets a triangle of one millimetre.
 - Crouching swaps two capsules (``capsules``).
-- Each call of pybullet costs 0.4 to 1.5 µs, a fifth of it for arguments by name: calls of each decision have none.
-- Static bodies that collide with each other (group and mask share a bit) make a step four times slower.
-- Every reset builds the world anew: that is what makes episodes the same bit for bit, whatever went before.
+- Each pybullet call costs 0.4 to 1.5 µs, a fifth of it for keyword arguments: calls that run in
+  every decision use none.
+- Static bodies that collide with each other (their group and mask share a bit) make a step four
+  times slower.
+- Every reset rebuilds the world. This makes episodes bit-for-bit reproducible, whatever ran before.
 """
 
 from __future__ import annotations
@@ -32,36 +35,43 @@ from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS, PlayerKind, Pl
 from tltl_runtime.stealth.world.stairs import lift
 
 _GIVE = 0.2
-"""How far below the bounds the feet may be: a landing reaches up to one physics step of a fall into the floor."""
+"""How far below the bounds the feet may be, in metres.
+
+A landing sinks into the floor by up to one physics step of a fall.
+"""
 _PARKED = 64
-"""Decisions after which the capsule that is not played has fallen far enough, a kilometre."""
+"""Decisions after which the inactive capsule is moved back; by then it has fallen a kilometre."""
 
 
 class Random(Protocol):
-    """What a reset draws from; both ``random.Random`` and ``numpy.random.Generator`` will do."""
+    """The random generator of a reset: ``random.Random`` or ``numpy.random.Generator``."""
 
     def random(self) -> float:
-        """A number in [0, 1)."""
+        """Return a number in [0, 1)."""
 
 
 class WorldError(RuntimeError):
-    """The world is not what its level says, or a body left it: a fault of the level or of the physics."""
+    """The world differs from its level, or a body left it.
 
-    def __init__(self, level: Level, step: int, body: str, what: str) -> None:
-        super().__init__(f"level {level.name} {level.variant}, step {step}, {body}: {what}")
+    The error is in the level or in the physics.
+    """
+
+    def __init__(self, level: Level, step: int, body: str, problem: str) -> None:
+        super().__init__(f"level {level.name} {level.variant}, step {step}, {body}: {problem}")
         self.level, self.variant, self.step, self.body = level.name, level.variant, step, body
-        self._made_of = level, step, body, what
+        self._made_of = level, step, body, problem
 
     def __reduce__(self) -> tuple[type[WorldError], tuple[Level, int, str, str]]:
-        # Its text is not what it is made of; processes send it to each other.
+        # The arguments, not the message, rebuild the error: processes send it to each other.
         return type(self), self._made_of
 
 
 class World:
-    """A level's bodies in one pybullet client of their own.
+    """The bodies of a level, in a pybullet client of their own.
 
-    Barriers and movers go by their index in the level.  Lasers have no body here: they stop neither bodies nor sight.
-    The constructor checks the world (see ``check``) and leaves it reset, with the player at the start itself.
+    Barriers and movers are identified by their index in the level. Lasers have no body here: they
+    stop neither bodies nor sight. The constructor checks the world (see ``check``) and resets it,
+    with the player exactly at the start.
     """
 
     def __init__(self, level: Level, kind: PlayerKind | None = None) -> None:
@@ -69,7 +79,7 @@ class World:
         self.kind = PlayerKind() if kind is None else kind
         self.steps = 0
         self._client = pybullet.connect(pybullet.DIRECT)
-        # Of a world that nobody closes, Python's end of it closes the client: 28 MB each.
+        # A client holds 28 MB; disconnect it if the world is garbage collected without `close`.
         self._disconnect = weakref.finalize(self, pybullet.disconnect, self._client)
         self._open = [False] * len(level.barriers)
         self._boxes = [(solid.box.low, solid.box.high) for solid in level.solids]
@@ -82,18 +92,22 @@ class World:
             raise
 
     def close(self) -> None:
-        """Give the client back; the world is of no use afterwards.  Closing twice does nothing."""
+        """Disconnect the client; the world cannot be used afterwards.
+
+        Closing twice does nothing.
+        """
         self._disconnect()
         self._client = -1
 
     def __reduce__(self) -> NoReturn:
-        way_out = "make another environment, and reset it with the same seed"
-        raise TypeError(f"a running game can be neither copied nor pickled: {way_out}")
+        help_ = "make another environment, and reset it with the same seed"
+        raise TypeError(f"a running game can be neither copied nor pickled: {help_}")
 
     def reset(self, rng: Random | None) -> None:
-        """Begin an episode: barriers shut, movers at their offset, the player within the start's spread.
+        """Begin an episode.
 
-        Without ``rng`` the player is at the start itself.  Raises WorldError where it finds no room there.
+        Barriers are shut, movers are at their offset, and the player is within the start's spread.
+        Without ``rng`` the player is exactly at the start. Raises WorldError if there is no room.
         """
         self.steps = 0
         self._open = [False] * len(self.level.barriers)
@@ -106,7 +120,7 @@ class World:
     def step(self, action: Sequence[int]) -> None:
         """Advance by one decision, 0.15 s.
 
-        Raises WorldError when the player is no longer inside the level's bounds.
+        Raises WorldError if the player leaves the level's bounds.
         """
         self.steps += 1
         old = self._state
@@ -130,10 +144,10 @@ class World:
         self._observe(crouching, wish.yaw, wish.stamina)
 
     def put(self, state: PlayerState) -> None:
-        """Make ``state``, one that ``player`` had, that of the player: for searches that try many ways on from it.
+        """Set the player to ``state``, an earlier value of ``player``; searches branch from it.
 
-        Everything else stays as it is.  What Bullet remembers of contacts does not come back, so that the next decision
-        may end some millimetres from where it did.
+        Everything else stays unchanged. Bullet's contact cache is not restored, so the next
+        decision may end some millimetres away from its first result.
         """
         self._put(state.crouching, state.position, state.velocity)
         self._state = state
@@ -144,11 +158,11 @@ class World:
         return self._state
 
     def mover_positions(self) -> tuple[Point, ...]:
-        """The centres of the level's movers, in its order."""
+        """Return the centres of the movers, in the order of the level."""
         return tuple(mover.place for mover in self.movers)
 
     def mover_boxes(self) -> list[Bounds]:
-        """The corners of the level's movers, in its order."""
+        """Return the corners of the movers, in the order of the level."""
         return [mover.box for mover in self.movers]
 
     def is_open(self, barrier: int) -> bool:
@@ -160,30 +174,34 @@ class World:
         self._open[barrier] = is_open
         body = self._barriers[barrier]
         if body is not None:
-            # Switching the filter keeps the body where its level says, and rays honour it (moving it does as well).
+            # Change the filter, not the position: the body stays in place, and rays respect the filter, too.
             set_filter(self._client, body, 0 if is_open else WORLD, 0 if is_open else STOPS)
 
     def ray_blocked(self, start: Point, end: Point) -> bool:
-        """Whether a solid, a shut barrier or a mover stands between two points; lasers and the player do not."""
+        """Whether a solid, a shut barrier or a mover is between two points.
+
+        Lasers and the player do not count.
+        """
         hit = pybullet.rayTest(start, end, collisionFilterMask=WORLD, physicsClientId=self._client)[0]
         return bool(hit[0] >= 0)
 
-    def room(self, feet: Point, height: float, but: Moving | None = None) -> bool:
-        """Whether a capsule of the player's radius and this ``height`` is free of everything that stops bodies.
+    def room(self, feet: Point, height: float, ignored: Moving | None = None) -> bool:
+        """Whether a capsule of this ``height`` is free of everything that stops bodies.
 
-        The mover ``but`` is left out.
+        It has the player's radius. The mover ``ignored`` is left out.
         """
         radius = self.kind.radius
         return all(
             depth(feet, height, radius, low, high) <= TOUCH
-            for boxes in (self._near(feet), self._changing(but))
+            for boxes in (self._near(feet), self._changing(ignored))
             for low, high in boxes
         )
 
     def check(self) -> None:
-        """Raise WorldError where a wall is missing, by rays to the six sides of all boxes, or a filter is wrong.
+        """Check the world with rays; raise WorldError if a wall is missing or a filter is wrong.
 
-        A side is tested at its middle, from a centimetre outside, unless another body covers that point.
+        A ray tests each side of each box at its middle, from 1 cm outside, unless another body
+        covers that point.
         """
         boxes = [(solid.name, solid.box.low, solid.box.high) for solid in self.level.solids]
         boxes += [(barrier.name, barrier.box.low, barrier.box.high) for barrier in self._shut()]
@@ -225,7 +243,7 @@ class World:
     # The player
 
     def _start(self, rng: Random | None) -> Point:
-        """Where the feet are put, free of everything."""
+        """Choose a start position that is free of everything."""
         x, y, z = self.level.start.position
         for _ in range(100 if rng is not None else 1):
             if rng is None:
@@ -244,14 +262,17 @@ class World:
     def _check_filters(self) -> None:
         name = self._capsules.misfiltered()
         if name is not None:
-            what = "its collision filter is not the one that was set"
-            raise WorldError(self.level, self.steps, f"{name} player", what)
+            problem = "its collision filter is not the one that was set"
+            raise WorldError(self.level, self.steps, f"{name} player", problem)
 
     def _observe(self, crouching: bool, yaw: float, stamina: float) -> None:
-        """Read the player back from the physics, and make sure that it is inside the bounds."""
+        """Read the player's state from the physics.
+
+        Raise WorldError if the player is outside the bounds.
+        """
         capsules, low, high = self._capsules, self.level.bounds.low, self.level.bounds.high
         x, y, z = feet = capsules.feet()
-        # Not-a-number fails the comparison as well.
+        # Not-a-number fails this comparison, too.
         if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and low[2] - _GIVE <= z <= high[2]):
             raise WorldError(self.level, self.steps, "player", f"({x:g}, {y:g}, {z:g}) is outside the level's bounds")
         self._state = PlayerState(feet, capsules.velocity(), yaw, crouching, capsules.grounded(), stamina)
@@ -259,7 +280,10 @@ class World:
     # Time
 
     def _movers_near(self) -> list[Moving]:
-        """The movers that the player may meet in this decision; the others go on by all of it."""
+        """Return the movers that the player can touch in this decision.
+
+        The other movers advance by the whole decision.
+        """
         near = []
         for mover in self.movers:
             if mover.is_near(self._state.position, self.kind.height):
@@ -269,7 +293,10 @@ class World:
         return near
 
     def _advance(self, near: Sequence[Moving]) -> None:
-        """Run the physics steps of a decision: at once, or one by one after their pushes where movers are ``near``."""
+        """Run the physics of a decision.
+
+        It runs in one call or, if movers are ``near``, step by step with their pushes.
+        """
         if not near:
             self._run_at_once(SUBSTEPS)
             pybullet.stepSimulation(self._client)
@@ -280,7 +307,7 @@ class World:
             pybullet.stepSimulation(self._client)
 
     def _run_at_once(self, substeps: int) -> None:
-        """How many physics steps Bullet runs in one go."""
+        """Set how many physics steps Bullet runs in one call."""
         if substeps != self._substeps:
             self._substeps = substeps
             pybullet.setPhysicsEngineParameter(
@@ -290,13 +317,13 @@ class World:
     # What stops bodies
 
     def _near(self, feet: Point) -> list[Bounds]:
-        """The solids that a capsule with its feet there, or a decision's way from there, can touch."""
+        """The solids that a capsule can touch within one decision from these feet."""
         return self._around.get((floor(feet[0]), floor(feet[1])), [])
 
-    def _changing(self, but: Moving | None) -> list[Bounds]:
-        """The shut barriers and the movers, without the mover ``but``."""
+    def _changing(self, ignored: Moving | None) -> list[Bounds]:
+        """The shut barriers and the movers, except the mover ``ignored``."""
         shut = [(barrier.box.low, barrier.box.high) for barrier in self._shut()]
-        return shut + [mover.box for mover in self.movers if mover is not but]
+        return shut + [mover.box for mover in self.movers if mover is not ignored]
 
     def _shut(self) -> list[Barrier]:
         """The barriers that stop bodies now."""

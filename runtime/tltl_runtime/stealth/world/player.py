@@ -1,7 +1,7 @@
-"""What the player can do: its numbers, and what an action asks of its body.
+"""The abilities of the player: its parameters, and the motion that an action requests.
 
-An action is five whole numbers, the branches of MultiDiscrete([3, 3, 2, 2, 2]): x (0 none, 1 along x, 2 against it),
-y (the same), jump, crouch, sprint.
+An action is five whole numbers, the branches of MultiDiscrete([3, 3, 2, 2, 2]): x (0 none, 1 along
+x, 2 against it), y (the same), jump, crouch, sprint.
 """
 
 from __future__ import annotations
@@ -20,15 +20,16 @@ SUBSTEPS = 9
 """Physics steps in a decision."""
 
 SIGN = (0.0, 1.0, -1.0)
-"""Where the branches x and y of an action lead, by their number."""
+"""The direction along an axis for each choice of the branches x and y."""
 
 
 @record
 class PlayerKind:
-    """The numbers of the player: metres, seconds, metres a second.
+    """The parameters of the player, in metres, seconds and metres per second.
 
-    ``jump_speed`` and ``gravity`` lift the feet by 0.97 m and the round foot of the capsule slides up the rest of an
-    edge: platforms of 1.0 m are reached from a walk and a sprint, those of 1.2 m hardly ever, higher ones never.
+    ``jump_speed`` and ``gravity`` lift the feet by 0.97 m, and the round end of the capsule slides
+    up the rest of an edge: from a walk or a sprint, the player reaches platforms of 1.0 m, hardly
+    ever those of 1.2 m, and never higher ones.
     """
 
     radius: float = 0.3
@@ -38,20 +39,23 @@ class PlayerKind:
     sprint_speed: float = 5.0
     crouch_speed: float = 1.5
     stamina_time: float = 3.0
-    """How long a full stamina lets sprint."""
+    """Seconds of sprinting that use up a full stamina."""
     refill_time: float = 5.0
-    """How long an empty stamina takes to be full again."""
+    """Seconds until an empty stamina is full again."""
     jump_speed: float = 6.4
     gravity: float = 20.0
     step_height: float = 0.25
-    """The highest stair that is walked up."""
+    """The highest stair that the player walks up."""
     fall_speed: float = 8.0
-    """Greatest speed of a fall at the beginning of a decision, so that no landing ends behind a floor."""
+    """The greatest fall speed at the start of a decision.
+
+    A faster body could pass through a floor when it lands.
+    """
 
 
 @record
 class PlayerState:
-    """The player at the end of a decision: ``position`` is that of the feet, ``stamina`` in [0, 1]."""
+    """The player at the end of a decision; ``position`` is at the feet, ``stamina`` in [0, 1]."""
 
     position: Point
     velocity: Point
@@ -63,7 +67,7 @@ class PlayerState:
 
 @record
 class Control:
-    """What an action asks of the body during one decision; ``stamina`` is what is left at its end."""
+    """The motion that an action requests for one decision; ``stamina`` is left at its end."""
 
     velocity: tuple[float, float]
     yaw: float
@@ -72,10 +76,11 @@ class Control:
 
 
 def control(kind: PlayerKind, state: PlayerState, action: Sequence[int], crouching: bool) -> Control:
-    """What ``action`` asks of a player in ``state`` that will be ``crouching`` or not.
+    """Return the motion that ``action`` requests of a player in ``state``.
 
-    Diagonal motion is no faster than straight motion.  Sprinting needs stamina for a whole decision; crouched
-    players neither sprint nor jump, and a jump needs ground.
+    ``crouching`` is whether the player will be crouched. Diagonal motion is no faster than straight
+    motion. Sprinting needs stamina for a whole decision; a crouched player neither sprints nor
+    jumps, and a jump needs ground.
     """
     x, y = SIGN[action[0]], SIGN[action[1]]
     moving = x != 0.0 or y != 0.0

@@ -1,4 +1,7 @@
-"""Stairs, which Bullet alone does not climb: a velocity that is set once a decision is spent at the first edge."""
+"""Walking up stairs.
+
+Bullet alone stops a body at the first edge, because its velocity is set once per decision.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +12,15 @@ from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, depth
 from tltl_runtime.stealth.world.player import DECISION, PlayerKind
 
 Room = Callable[[Point, float], bool]
-"""Whether a player with its feet at a point is free, at a height."""
+"""Whether a player of a given height is free with its feet at a point."""
 
 
 def lift(
     kind: PlayerKind, feet: Point, height: float, velocity: tuple[float, float], boxes: Sequence[Bounds], room: Room
 ) -> float:
-    """How high the feet are lifted to walk up a stair that is in the way of this decision; 0 where there is none.
+    """Return how far to lift the feet to walk up a stair in this decision; 0 if there is none.
 
-    ``boxes`` are those that could be met.
+    ``boxes`` are the boxes that the player could touch.
     """
     x, y, z = feet
     highest = z + kind.step_height + 2 * TOUCH
@@ -38,7 +41,7 @@ def lift(
     ]
     if not met:
         return 0.0
-    # A wall beside the stairs must not stop who goes up along it, so each direction counts by itself as well.
+    # A wall beside the stairs must not stop a diagonal walk up along it: try each axis alone as well.
     both = velocity[0] and velocity[1]
     ways = (velocity, (velocity[0], 0.0), (0.0, velocity[1])) if both else (velocity,)
     return max(_lift_along(kind, feet, height, way, met, room) for way in ways)
@@ -47,7 +50,10 @@ def lift(
 def _lift_along(
     kind: PlayerKind, feet: Point, height: float, velocity: tuple[float, float], boxes: Sequence[Bounds], room: Room
 ) -> float:
-    """The lift onto the first of ``boxes`` that is met, where it is low enough and there is room above it."""
+    """The lift onto the first box that is touched.
+
+    It is 0 if the box is too high or there is no room above it.
+    """
     x, y, z = feet
     for share in (1 / 3, 2 / 3, 1.0):
         ahead = (x + velocity[0] * DECISION * share, y + velocity[1] * DECISION * share)

@@ -1,4 +1,4 @@
-"""The ways of movers."""
+"""The paths of movers over time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from tltl_runtime.stealth.level import Mover, Point
 
 
 class Way:
-    """Where a mover is at a time of its own clock: there and back again, or round and round where it is closed."""
+    """The position of a mover over its own clock.
+
+    It moves there and back, or in a loop if its path is closed.
+    """
 
     def __init__(self, mover: Mover) -> None:
         path = mover.path
@@ -27,7 +30,10 @@ class Way:
         self._begins = [leg[0] for leg in self._legs]
 
     def at(self, clock: float) -> Point:
-        """The centre at ``clock`` seconds; each leg begins with the pause at its first point."""
+        """Return the centre at ``clock`` seconds.
+
+        Each leg begins with the pause at its first point.
+        """
         if self._lap <= 0.0:
             return self._first
         time = clock % self._lap
