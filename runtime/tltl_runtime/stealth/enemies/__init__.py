@@ -1,1 +1,1 @@
-"""Enemies: what they see, decide and do."""
+"""The enemies: their perception, their behaviour and their motion."""

@@ -1,7 +1,7 @@
-"""Behaviour trees out of closures.
+"""Behaviour trees made of closures.
 
-A node is a function from what acts to a status; a tick of the whole tree costs about a microsecond.  Nodes keep
-nothing: what lasts is kept by what acts, so all enemies of a kind share one tree.
+A node is a function from an actor to a status; a tick of the whole tree costs about a microsecond.
+Nodes are stateless: the actor keeps all state, so all enemies of a kind share one tree.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from collections.abc import Callable
 from typing import Any, Final
 
 FAILURE: Final = 0
-"""Not now: a selector goes on to its next child."""
+"""Not possible now: a selector tries its next child."""
 SUCCESS: Final = 1
 RUNNING: Final = 2
-"""Goes on at the next tick."""
+"""The node continues at the next tick."""
 
 Node = Callable[[Any], int]
 
 
 def selector(*children: Node) -> Node:
-    """The first child, from the left at each tick, that does not fail."""
+    """At each tick, run the children from the left until one does not fail."""
 
     def tick(actor: Any) -> int:
         for child in children:
@@ -32,7 +32,7 @@ def selector(*children: Node) -> Node:
 
 
 def sequence(*children: Node) -> Node:
-    """One child after the other, from the left at each tick, as long as they succeed."""
+    """At each tick, run the children from the left as long as they succeed."""
 
     def tick(actor: Any) -> int:
         for child in children:
@@ -45,7 +45,7 @@ def sequence(*children: Node) -> Node:
 
 
 def condition(test: Callable[[Any], bool]) -> Node:
-    """Succeeds where the test holds, fails elsewhere."""
+    """Succeed if the test holds, else fail."""
 
     def tick(actor: Any) -> int:
         return SUCCESS if test(actor) else FAILURE
@@ -54,7 +54,7 @@ def condition(test: Callable[[Any], bool]) -> Node:
 
 
 def action(act: Callable[[Any], bool]) -> Node:
-    """Runs until ``act`` returns True."""
+    """Run until ``act`` returns True."""
 
     def tick(actor: Any) -> int:
         return SUCCESS if act(actor) else RUNNING

@@ -1,6 +1,6 @@
-"""What enemies do: chase, search, return and patrol, and branches that a kind of enemy may add.
+"""The branches of the enemies' behaviour: chase, search, return and patrol, and optional branches.
 
-A branch sets where its guard goes; the guard moves after the tick.
+A branch sets the target of its guard; the guard moves after the tick.
 """
 
 from __future__ import annotations
@@ -16,17 +16,20 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.enemies.enemy import Guard
 
 _CLOSE: Final = 0.55
-"""Chasing stops at this share of the attack's range, so that who walks away stays in reach."""
+"""A chase stops at this fraction of the attack range.
+
+A player who walks away then stays in reach.
+"""
 
 
 @record
 class Branch:
-    """A branch of the enemies' tree; of several that could run, the lowest ``rank`` does."""
+    """A branch of the behaviour tree; of the branches that can run, the lowest ``rank`` runs."""
 
     name: str
     rank: int
     added: bool
-    """Whether only kinds that name it have it; else all have."""
+    """Whether only the enemy kinds that name the branch have it; otherwise all have it."""
     node: Node
 
 
@@ -34,7 +37,7 @@ _BRANCHES: Final[dict[str, Branch]] = {}
 
 
 def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], Node]], Callable[[], Node]]:
-    """Decorator of a function that makes a branch's node; that function is all that a new branch takes.
+    """Register a function that makes the node of a branch; nothing else is needed for a new branch.
 
     Raises ValueError for a name that is taken.
     """
@@ -49,25 +52,25 @@ def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[
 
 
 def added_branches() -> tuple[str, ...]:
-    """The names that an enemy kind's ``branches`` may hold."""
-    return tuple(sorted(each.name for each in _BRANCHES.values() if each.added))
+    """Return the names of the optional branches, which an enemy kind's ``branches`` may list."""
+    return tuple(sorted(branch.name for branch in _BRANCHES.values() if branch.added))
 
 
 def tree(branches: tuple[str, ...]) -> Node:
-    """The tree of the branches that all enemies have, and of those named.
+    """Build the tree from the branches that all enemies have and the named optional ones.
 
-    Raises ValueError for a name that is no added branch's.
+    Raises ValueError for a name that is not an optional branch.
     """
     for name in branches:
         if name not in added_branches():
             raise ValueError(f"no branch {name!r} can be added to an enemy: there are {', '.join(added_branches())}")
-    chosen = [each for each in _BRANCHES.values() if not each.added or each.name in branches]
-    return selector(*(each.node for each in sorted(chosen, key=lambda each: (each.rank, each.name))))
+    chosen = [branch for branch in _BRANCHES.values() if not branch.added or branch.name in branches]
+    return selector(*(branch.node for branch in sorted(chosen, key=lambda branch: (branch.rank, branch.name))))
 
 
 @branch("chase", rank=10)
 def chase() -> Node:
-    """Run to a player whose place is known, and stop within reach of it."""
+    """Run to the player while its position is known, and stop within reach of it."""
 
     def knows(guard: Guard) -> bool:
         return guard.knows
@@ -88,7 +91,7 @@ def chase() -> Node:
 
 @branch("search", rank=20)
 def search() -> Node:
-    """Go to where the player was last known to be, then look around there for a time."""
+    """Go to the player's last known position, then look around there for some time."""
 
     def lost(guard: Guard) -> bool:
         return guard.search_left > 0.0
@@ -120,7 +123,7 @@ def search() -> Node:
 
 @branch("return", rank=40)
 def return_to_route() -> Node:
-    """After a search, walk to the nearest point of the route."""
+    """Walk back to the nearest point of the route."""
 
     def is_off(guard: Guard) -> bool:
         return guard.back
@@ -138,9 +141,10 @@ def return_to_route() -> Node:
 
 @branch("check_gaps", rank=50, added=True)
 def check_gaps() -> Node:
-    """On patrol, run to a narrow place off the route after each of its legs; each is visited before any again.
+    """After each leg of the patrol, run to a narrow place off the route.
 
-    Its speed is between those of walking and chasing, for a walk there would leave the route unwatched for long.
+    Every place is visited once before any is visited again. The speed is between walking and
+    chasing: at walking speed, the route would stay unwatched for too long.
     """
 
     def is_due(guard: Guard) -> bool:
@@ -159,7 +163,7 @@ def check_gaps() -> Node:
 
 @branch("patrol", rank=60)
 def patrol() -> Node:
-    """Walk the route round and round."""
+    """Walk the route in a loop."""
 
     def walk(guard: Guard) -> bool:
         guard.mode = "patrol"

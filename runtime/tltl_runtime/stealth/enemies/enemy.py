@@ -1,7 +1,7 @@
-"""Enemies: what they see, know and do in a level, without physics.
+"""The enemies of a level: their perception, memory and motion, without physics.
 
-Each step an enemy looks, its behaviour tree says where to go, and it turns and walks on the floor's free straight
-lines: it cannot enter a solid or a shut barrier.
+In each step an enemy looks, its behaviour tree sets a target, and the enemy turns and walks towards
+it. It walks on free straight lines of the floor only, so it cannot enter a solid or a shut barrier.
 """
 
 from __future__ import annotations
@@ -23,13 +23,16 @@ from tltlc.core.record import record
 Mode = Literal["patrol", "chase", "search", "return"]
 
 EYES: Final = 1.6
-"""An enemy's eyes above its feet."""
+"""The height of an enemy's eyes above its feet, in metres."""
 STANDING_HEAD: Final = 1.5
 CROUCHED_HEAD: Final = 0.7
-"""What is looked for of the player, above its feet."""
+"""The height of the player's head above its feet, in metres; enemies look for the head."""
 
 CHEST: Final = 0.7
-"""Of the height of the head."""
+"""The height of the player's chest, as a fraction of the height of the head.
+
+Enemies look for head and chest.
+"""
 _ARRIVED: Final = 0.05
 _TURNED: Final = pi / 4
 _MOST_LEGS: Final = 16
@@ -37,46 +40,46 @@ _MOST_LEGS: Final = 16
 
 @record
 class PlayerView:
-    """What enemies can know of the player: where its feet are, and how high its head is above them."""
+    """The part of the player that enemies can perceive: its feet, and the height of its head."""
 
     position: Point
     head: float = STANDING_HEAD
 
 
 class Enemies:
-    """All enemies of a level.  ``reset`` begins an episode, ``step`` advances it."""
+    """All enemies of a level. ``reset`` begins an episode, ``step`` advances it."""
 
     def __init__(self, level: Level, grid: Grid | None = None) -> None:
         self.level = level
         self.grid = grid_of(level) if grid is None else grid
         self.guards: tuple[Guard, ...] = ()
         self.damage = 0.0
-        """Health that the player lost in the last step."""
+        """The health that the player lost in the last step."""
         self._shut: set[int] = set()
-        self._solids = [corners(each.box) for each in level.solids if each.box.high[2] > 0.0]
+        self._solids = [corners(solid.box) for solid in level.solids if solid.box.high[2] > 0.0]
         self._boxes: list[Corners] = []
-        """What stops sight: those that stand, then the movers of the last step."""
+        """What blocks sight: the boxes that stand still, then the movers of the last step."""
         self._standing = 0
 
     def reset(self, rng: np.random.Generator) -> None:
-        """Every enemy at the start of its route, all barriers shut; what is random comes from ``rng``."""
+        """Put every enemy at its start and shut all barriers; ``rng`` is the random source."""
         self._shut = set(range(len(self.level.barriers)))
-        floor = self._changed()
+        floor = self._update_floor()
         self.guards = tuple(Guard(enemy, floor, rng) for enemy in self.level.enemies)
         self.damage = 0.0
 
     def set_open(self, barrier: int, opened: bool) -> None:
-        """Open or shut the barrier with this index.  One is only shut where no enemy stands."""
+        """Open or shut the barrier with this index. Shut it only where no enemy stands."""
         if opened == (barrier not in self._shut):
             return
         (self._shut.discard if opened else self._shut.add)(barrier)
-        floor = self._changed()
+        floor = self._update_floor()
         for guard in self.guards:
             guard.floor = floor
             guard.forget_way()
 
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
-        """Advance by ``dt`` seconds; ``movers`` are boxes that stop sight beside those of the level."""
+        """Advance by ``dt`` seconds; ``movers`` are further boxes that block sight."""
         self._boxes[self._standing :] = [(*low, *high) for low, high in movers]
         self.damage = 0.0
         for guard in self.guards:
@@ -84,38 +87,38 @@ class Enemies:
 
     @property
     def positions(self) -> tuple[Point, ...]:
-        """Of their feet."""
+        """The positions of the enemies' feet."""
         return tuple([guard.position for guard in self.guards])
 
     @property
     def yaws(self) -> tuple[float, ...]:
-        """Where they look, from -pi to pi."""
+        """The enemies' yaws, from -pi to pi."""
         return tuple(guard.yaw for guard in self.guards)
 
     @property
     def modes(self) -> tuple[Mode, ...]:
-        """What they are at."""
+        """The enemies' current modes."""
         return tuple(guard.mode for guard in self.guards)
 
     @property
     def sees(self) -> tuple[bool, ...]:
-        """Whether the player is in sight of each."""
+        """Whether each enemy sees the player."""
         return tuple([guard.sees for guard in self.guards])
 
     @property
     def knows(self) -> tuple[bool, ...]:
-        """Whether each has noticed the player, and still knows where it is."""
+        """Whether each enemy has noticed the player and still knows its position."""
         return tuple([guard.knows for guard in self.guards])
 
-    def _changed(self) -> Floor:
+    def _update_floor(self) -> Floor:
         shut = [self.level.barriers[index] for index in sorted(self._shut)]
-        self._boxes = self._solids + [corners(each.box) for each in shut if each.kind == "solid"]
+        self._boxes = self._solids + [corners(barrier.box) for barrier in shut if barrier.kind == "solid"]
         self._standing = len(self._boxes)
         return self.grid.floor(self._shut)
 
 
 class Guard:
-    """One enemy in an episode: its body, its senses and its memory."""
+    """One enemy in an episode: its pose, its perception and its memory."""
 
     def __init__(self, enemy: Enemy, floor: Floor, rng: np.random.Generator) -> None:
         self.kind = enemy.kind
@@ -131,13 +134,13 @@ class Guard:
         self.sees = False
         self.knows = False
         self.in_reach = False
-        """Whether the player could be hit: near enough, with nothing between."""
+        """Whether the enemy could hit the player: near enough, with nothing between them."""
         self.last_known: Point = (self.x, self.y, 0.0)
         self.search_left = 0.0
         self.searching = False
-        """Whether the search has come to where the player was last known to be."""
+        """Whether the search has reached the player's last known position."""
         self.back = False
-        """Whether a search is over and the way to the route is to be found."""
+        """Whether the guard is off its route and has to return to it."""
         self.gap: Place | None = None
         self._visited: set[Place] = set()
         self._gaps_of: Floor | None = None
@@ -150,18 +153,21 @@ class Guard:
         self._facing: Place | None = None
         self._waypoint: Place | None = None
         self._anchor: Place = (self.x, self.y)
-        """Where the way was last found from.  It is a free straight walk away: the way out of narrow corners."""
+        """The last position from which a path was found.
+
+        The guard can walk there in a straight line; this frees it from narrow corners.
+        """
         self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
 
     def fork(self, rng: np.random.Generator) -> Guard:
-        """The same guard at this moment, that goes on by itself and draws from ``rng``."""
+        """Return a copy of the guard that continues on its own and draws from ``rng``."""
         other = copy(self)
         other.rng = rng
         other._visited = set(self._visited)
         return other
 
     def step(self, dt: float, player: PlayerView, boxes: Sequence[Corners]) -> float:
-        """Look, decide, move; returns the health that the player loses."""
+        """Look, decide and move; return the health that the player loses."""
         self.dt = dt
         self._look(player, boxes)
         self._facing = None
@@ -171,38 +177,42 @@ class Guard:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """Where it is, looks and wants to, and what it is at: of guards without added branches, all that counts."""
+        """The guard's pose and current task.
+
+        They decide how a guard without optional branches moves on while it sees no player, unless
+        it searches.
+        """
         return (self.x, self.y, self.yaw, self.mode, self.leg, self.back, self.search_left > 0.0)
 
     @property
     def position(self) -> Point:
-        """Of its feet."""
+        """The position of the feet."""
         return (self.x, self.y, 0.0)
 
     def go(self, goal: Place, speed: float) -> None:
-        """From now on walk to a place, or to the nearest that can be reached, at a speed in m/s."""
+        """Walk to a place, or to the nearest reachable one, at a speed in m/s from now on."""
         if goal != self._goal:
             self._goal = goal
             self._waypoint = None
         self._speed = speed
 
     def face(self, x: float, y: float) -> None:
-        """Look there in this step once arrived."""
+        """Look towards a point in this step, after arrival."""
         self._facing = (x, y)
 
     @property
     def arrived(self) -> bool:
-        """Whether it is where ``go`` told it to, or can come no nearer."""
+        """Whether the guard has reached the goal of ``go``, or cannot come nearer."""
         if hypot(self._goal[0] - self.x, self._goal[1] - self.y) < _ARRIVED:
             return True
         return self._next_waypoint() == (self.x, self.y)
 
     def nearest_leg(self) -> int:
-        """The point of the route that is the nearest, by its index."""
+        """The index of the nearest point of the route."""
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:
-        """One of the three nearest narrow places off the route that were not visited yet, or None."""
+        """Pick one of the three nearest unvisited narrow places off the route, or None."""
         if self._gaps_of is not self.floor:
             self._gaps_of = self.floor
             gaps = self.floor.gaps(self.floor.area((self.x, self.y)))
@@ -218,7 +228,7 @@ class Guard:
         return chosen
 
     def forget_way(self) -> None:
-        """Find the way anew: the floor has changed."""
+        """Discard the path, because the floor has changed."""
         self._waypoint = None
 
     def _is_on_route(self, gap: Place) -> bool:
@@ -226,9 +236,9 @@ class Guard:
         return any(distance_to_segment(gap, a, b) < 1.0 for a, b in ends)
 
     def _look(self, player: PlayerView, boxes: Sequence[Corners]) -> None:
-        """Sight, and what follows from it: noticing, knowing, losing, being in reach.
+        """Update what the guard sees and knows, and whether the player is in reach.
 
-        An enemy that knows of the player turns its head: its sight has no cone then.
+        A guard that knows the player's position turns its head: its sight is not limited to a cone.
         """
         dt, kind = self.dt, self.kind
         px, py, pz = player.position
@@ -264,14 +274,17 @@ class Guard:
     def _next_waypoint(self) -> Place:
         if self._waypoint is None:
             here = (self.x, self.y)
-            found = self.floor.towards(here, self._goal)
-            if found is not None:
+            waypoint = self.floor.towards(here, self._goal)
+            if waypoint is not None:
                 self._anchor = here
-            self._waypoint = self._anchor if found is None else found
+            self._waypoint = self._anchor if waypoint is None else waypoint
         return self._waypoint
 
     def _move(self, dt: float) -> None:
-        """Walk towards the goal for ``dt`` seconds, around corners; only turn while it is too far aside."""
+        """Walk towards the goal for ``dt`` seconds, around corners.
+
+        If the goal is too far aside, only turn.
+        """
         left = self._speed * dt
         turned = False
         for _leg in range(_MOST_LEGS):
@@ -299,7 +312,7 @@ class Guard:
                 self._turn(atan2(y - self.y, x - self.x), dt)
 
     def _turn(self, yaw: float, dt: float) -> float:
-        """Turn towards a yaw; returns what is missing, in radians."""
+        """Turn towards a yaw; return the remaining angle, in radians."""
         missing = remainder(yaw - self.yaw, 2 * pi)
         most = self.kind.turn_speed * dt
         turn = min(max(missing, -most), most)

@@ -1,4 +1,4 @@
-"""What is found for all cells of a floor at once: neighbours, shortest ways, nearest cells, narrow places."""
+"""Neighbours, shortest paths, nearest cells and narrow places for all cells of a floor."""
 
 from __future__ import annotations
 
@@ -8,33 +8,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 GOALS: Final = 512
-"""Those to which ways are found at once."""
+"""The number of goals for which paths are searched at once."""
 ARRIVED: Final = 8
-"""No move: the cell is the goal; a greater number is one that does not lead there."""
+"""The code in place of a move where the cell is the goal.
+
+A greater code means that the goal cannot be reached.
+"""
 
 _MOVES: Final = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _NO_WAY: Final = 255
 
 
 def neighbours(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """For each move and cell the cell it leads to, int64 [8, cells]; the number of cells where it is none.
+    """For each move and cell, the cell that the move leads to, int64 [8, cells].
 
-    ``number`` [rows, columns] is -1 where there is no cell, and numbers the others row by row.
+    The value is the number of cells if the move is impossible. ``number`` [rows, columns] is -1
+    where there is no cell; the other cells are numbered row by row.
     """
     rows, columns = np.nonzero(number >= 0)
     padded = np.pad(number, 1, constant_values=-1)
-    found = []
+    targets = []
     for dx, dy in _MOVES:
         target = padded[rows + 1 + dy, columns + 1 + dx]
         beside = (padded[rows + 1 + dy, columns + 1] >= 0) & (padded[rows + 1, columns + 1 + dx] >= 0)
-        found.append(np.where(beside & (target >= 0), target, len(rows)))
-    return np.array(found, dtype=np.int64)
+        targets.append(np.where(beside & (target >= 0), target, len(rows)))
+    return np.array(targets, dtype=np.int64)
 
 
 def steps_to(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
-    """The first move of a shortest way to goals ``first`` and following, uint8 [512 or fewer, cells].
+    """The first move of a shortest path from each cell to up to 512 goals from ``first`` on.
 
-    A breadth-first search from all goals at once, a bit for each; of moves that are as good, straight ones win.
+    The result is uint8 [512 or fewer, cells]. One breadth-first search runs from all goals at once,
+    with one bit per goal; among equally short paths, straight moves are preferred.
     """
     cells = neighbours.shape[1]
     goals = np.arange(first, min(first + GOALS, cells))
@@ -65,7 +70,10 @@ def _unpacked(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
 
 
 def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Each cell's nearest numbered cell: numbers spread by a cell a round, straight before diagonal."""
+    """Return each cell's nearest numbered cell.
+
+    Numbers spread by one cell per round, straight before diagonal.
+    """
     number = number.copy()
     while (number < 0).any():
         padded = np.pad(number, 1, constant_values=-1)
@@ -78,12 +86,12 @@ def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
     return number
 
 
-def middles(mine: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
+def middles(cells: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
     """The middle cell of each run of at most ``most`` cells in a row of the grid."""
-    found = np.zeros_like(mine)
-    for row, line in enumerate(mine):
+    middle = np.zeros_like(cells)
+    for row, line in enumerate(cells):
         edges = np.flatnonzero(np.diff(np.concatenate(([0], line.astype(np.int8), [0]))))
         for start, stop in zip(edges[::2], edges[1::2], strict=True):
             if stop - start <= most:
-                found[row, (start + stop - 1) // 2] = True
-    return found
+                middle[row, (start + stop - 1) // 2] = True
+    return middle

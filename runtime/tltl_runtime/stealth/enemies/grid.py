@@ -1,13 +1,15 @@
-"""Where enemies can walk, and the way from anywhere to anywhere.
+"""The floor that enemies can walk on, and shortest paths between all its cells.
 
-The floor is cut into cells of 0.25 m.  A cell is walkable where its centre lies outside every obstacle grown by the
-enemies' radius to each side.  A grown obstacle is at least 0.7 m wide, which no step to a neighbouring cell can
-pass over: one that meets it has an end, or for a diagonal a cell beside it, inside.  So a step between walkable
-neighbours, a diagonal one only past two walkable cells, is free as a whole, not at its ends alone.
+The floor is cut into cells of 0.25 m. A cell is walkable if its centre lies outside every obstacle
+grown by the enemies' radius on each side. A grown obstacle is at least 0.7 m wide, so no step to a
+neighbouring cell can jump over it: a step that crosses the obstacle has an end inside it or, if it
+is diagonal, a cell beside it. Therefore a step between walkable neighbours is free along its whole
+length, provided that a diagonal step passes between two walkable cells.
 
-The next step from every cell to every goal is found for 512 goals at once, one bit each, in 10 to 100 ms, when
-one of them is first asked for.  At most 64 MB of these answers are kept per level, those asked for last; all pairs of
-8,000 cells fit.  Processes that fork after ``Floor.prepare`` share them.
+The next step from every cell to every goal is computed for 512 goals at once, one bit each, in 10
+to 100 ms, when one of these goals is first needed. A cache of at most 64 MB per level keeps the
+most recently used results; all pairs of 8,000 cells fit. Processes that fork after
+``Floor.prepare`` share it.
 """
 
 from __future__ import annotations
@@ -28,14 +30,14 @@ from tltlc.io.limits import WORK
 
 CELL: Final = 0.25
 RADIUS: Final = 0.35
-"""An enemy's, with the space that it keeps to walls."""
+"""The radius of an enemy, including the distance that it keeps from walls, in metres."""
 HEIGHT: Final = 1.8
 STEP: Final = 0.1
-"""Boxes that rise no higher above the floor are walked over."""
+"""Enemies walk over boxes that are no higher than this, in metres."""
 NARROW: Final = 2.0
-"""A passage no wider is a gap."""
+"""The greatest width of a passage that counts as a gap, in metres."""
 GAP_SPACING: Final = 2.0
-"""Gaps are told once in this distance."""
+"""The least distance between two gaps, in metres."""
 
 Place = tuple[float, float]
 
@@ -45,18 +47,18 @@ _TOUCH: Final = 1e-6
 
 @lru_cache(maxsize=16)
 def grid_of(level: Level) -> Grid:
-    """The grid of a level, made once in a process."""
+    """Return the grid of a level, cached per process."""
     return Grid(level)
 
 
 def is_too_large(bounds: Box) -> bool:
-    """Whether a floor has so many cells that finding the ways on it would take minutes, and gigabytes."""
+    """Whether a floor is so large that its shortest paths would take minutes and gigabytes."""
     columns, rows = (int((bounds.high[axis] - bounds.low[axis]) / CELL + 1e-9) for axis in (0, 1))
     return columns * rows > WORK["cells of floor"]
 
 
 class Grid:
-    """The floors of a level, one for each set of barriers that are shut."""
+    """The floors of a level, one for each set of shut barriers."""
 
     def __init__(self, level: Level) -> None:
         self.level = level
@@ -64,7 +66,10 @@ class Grid:
         self._answers: OrderedDict[tuple[frozenset[int], int], NDArray[np.uint8]] = OrderedDict()
 
     def floor(self, shut: Collection[int]) -> Floor:
-        """The floor while the barriers with these indices are shut, lasers included: no enemy walks into one."""
+        """Return the floor while the given barriers are shut.
+
+        Lasers count as barriers: no enemy walks into one.
+        """
         key = frozenset(shut)
         if key not in self._floors:
             boxes = [solid.box for solid in self.level.solids]
@@ -74,19 +79,22 @@ class Grid:
         return self._floors[key]
 
     def answers(self, floor: Floor, chunk: int) -> NDArray[np.uint8]:
-        """The steps towards goals ``chunk * 512`` and following, uint8 [512, cells]."""
+        """Return the steps towards goals ``chunk * 512`` and following, uint8 [512, cells]."""
         key = (floor.key, chunk)
         if key in self._answers:
             self._answers.move_to_end(key)
             return self._answers[key]
-        found = self._answers[key] = steps_to(floor.neighbours, chunk * GOALS)
-        while sum(each.nbytes for each in self._answers.values()) > _BUDGET and len(self._answers) > 1:
+        steps = self._answers[key] = steps_to(floor.neighbours, chunk * GOALS)
+        while sum(answer.nbytes for answer in self._answers.values()) > _BUDGET and len(self._answers) > 1:
             self._answers.popitem(last=False)
-        return found
+        return steps
 
 
 class Floor:
-    """The walkable cells that an enemy reaches from where one starts, numbered row by row from the south-west."""
+    """The walkable cells that enemies can reach from their starts.
+
+    They are numbered row by row from the south-west.
+    """
 
     def __init__(
         self, bounds: Box, boxes: Sequence[Box], starts: Sequence[Place], grid: Grid, key: frozenset[int]
@@ -105,7 +113,7 @@ class Floor:
         self.centres: list[Place] = [self._centre(int(c), int(r)) for r, c in zip(rows, columns, strict=True)]
         self._area: list[int] = areas[rows, columns].tolist()
         self._nearest = [
-            nearest_numbers(np.where(areas == each, self._number, -1)) for each in range(int(areas.max()) + 1)
+            nearest_numbers(np.where(areas == area, self._number, -1)) for area in range(int(areas.max()) + 1)
         ]
         self._numbers: Any = self._number.tolist()
         self.neighbours = neighbours(self._number)
@@ -115,7 +123,7 @@ class Floor:
         self._gaps: dict[int, tuple[Place, ...]] = {}
 
     def is_free(self, x: float, y: float) -> bool:
-        """Whether an enemy can stand at x, y: inside the bounds, and clear of all obstacles by its radius."""
+        """Whether an enemy can stand at x, y: in the bounds, its radius clear of all obstacles."""
         (x0, y0, _), (x1, y1, _) = self._bounds.low, self._bounds.high
         if not (x0 + RADIUS <= x <= x1 - RADIUS and y0 + RADIUS <= y <= y1 - RADIUS):
             return False
@@ -125,14 +133,15 @@ class Floor:
         return not any(a < x < c and b < y < d for a, b, c, d in self.obstacles)
 
     def clear(self, a: Place, b: Place) -> bool:
-        """Whether an enemy can walk straight from a to b, where a and b are inside the bounds."""
+        """Whether an enemy can walk straight from a to b; both are inside the bounds."""
         return not crosses(*a, *b, self.obstacles)
 
     def towards(self, a: Place, b: Place) -> Place | None:
-        """Where to walk straight from a, a free place, to get to b or to the place nearest to b.
+        """Return the next point on the way from a, a free place, to b; the walk to it is straight.
 
-        It is b itself where nothing is between, and the answer is a where no way leads nearer.  None where no cell's
-        centre is in a straight walk from a.
+        If b cannot be reached, the way leads to the reachable place nearest to b. The result is b
+        if the straight line is free, and a if no path leads nearer. It is None if no cell's centre
+        can be reached straight from a.
         """
         entry = self.entry(a)
         if entry is None:
@@ -142,7 +151,7 @@ class Floor:
         return self._furthest(a, self._way(entry, self.nearest(b, self._area[entry])))
 
     def way(self, a: Place, b: Place) -> list[Place]:
-        """The centres of the cells on a way from a to b; none where there is none."""
+        """Return the centres of the cells on a path from a to b; empty if there is no path."""
         entry = self.entry(a)
         goal = self.entry(b)
         if entry is None or goal is None or self._area[entry] != self._area[goal]:
@@ -150,7 +159,10 @@ class Floor:
         return [self.centres[cell] for cell in self._way(entry, goal)]
 
     def entry(self, place: Place) -> int | None:
-        """The nearest cell whose centre is a straight walk from a place, at most two columns and rows off."""
+        """The nearest cell whose centre can be reached straight from a place.
+
+        It is at most two columns and rows away.
+        """
         x, y = place
         column, row = self._cell(x, y)
         own: int = self._numbers[row][column]
@@ -166,14 +178,17 @@ class Floor:
         return next((cell for _, cell in near if self.clear(place, self.centres[cell])), None)
 
     def nearest(self, place: Place, area: int = 0) -> int:
-        """The cell of an area (cells joined by steps) that is about the nearest to a place."""
+        """The cell of an area that is approximately nearest to a place.
+
+        The cells of an area are connected by steps.
+        """
         column, row = self._cell(*place)
         return int(self._nearest[area][row, column])
 
     def stand(self, place: Place) -> Place:
-        """The place itself where an enemy can stand there and leave, else the nearest cell's centre.
+        """Return the place if an enemy can stand and move there, else the nearest cell's centre.
 
-        Raises ValueError where there is no cell.
+        Raises ValueError if there is no cell.
         """
         if self.is_free(*place) and self.entry(place) is not None:
             return place
@@ -182,37 +197,40 @@ class Floor:
         return min(self.centres, key=lambda centre: hypot(centre[0] - place[0], centre[1] - place[1]))
 
     def prepare(self) -> None:
-        """Find the steps between all pairs of cells now, as far as the budget holds them."""
+        """Compute the steps between all pairs of cells now, as far as the cache can hold them."""
         for chunk in range(-(-len(self.centres) // GOALS)):
             self._grid.answers(self, chunk)
 
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
-        """Narrow places of an area: middles of passages at most 2 m wide, at least 2 m from each other."""
+        """Return the middles of an area's passages that are at most 2 m wide.
+
+        They are at least 2 m apart.
+        """
         if area not in self._gaps:
             self._gaps[area] = self._find_gaps(area)
         return self._gaps[area]
 
     def _find_gaps(self, area: int) -> tuple[Place, ...]:
-        mine = np.zeros((self._rows, self._columns), dtype=bool)
+        in_area = np.zeros((self._rows, self._columns), dtype=bool)
         for cell, (x, y) in enumerate(self.centres):
             column, row = self._cell(x, y)
-            mine[row, column] = self._area[cell] == area
+            in_area[row, column] = self._area[cell] == area
         most = int((NARROW - 2 * RADIUS) / CELL + 1e-9)
-        middle = middles(mine, most) | middles(mine.T, most).T
-        found: list[Place] = []
-        for row, column in np.argwhere(middle & mine):
+        middle = middles(in_area, most) | middles(in_area.T, most).T
+        gaps: list[Place] = []
+        for row, column in np.argwhere(middle & in_area):
             x, y = self._centre(int(column), int(row))
-            if all(hypot(x - a, y - b) >= GAP_SPACING for a, b in found):
-                found.append((x, y))
-        return tuple(found)
+            if all(hypot(x - a, y - b) >= GAP_SPACING for a, b in gaps):
+                gaps.append((x, y))
+        return tuple(gaps)
 
     def area(self, place: Place) -> int:
-        """The area in which a place is; the first where it is in none."""
+        """The number of the area that contains a place, or 0 if no area does."""
         entry = self.entry(place)
         return 0 if entry is None else self._area[entry]
 
     def _way(self, entry: int, goal: int) -> list[int]:
-        """Cells from entry to goal, both included; the entry alone where there is no way."""
+        """The cells from entry to goal, both included; only the entry if there is no path."""
         if self._last[0] != goal:
             steps = self._grid.answers(self, goal // GOALS)
             self._last = (goal, steps[goal % GOALS].tobytes())
@@ -225,7 +243,10 @@ class Floor:
         return way
 
     def _furthest(self, a: Place, way: Sequence[int]) -> Place:
-        """A cell's centre far along the way that is a straight walk from a; doubling finds one in few tests."""
+        """Return a cell's centre far along the way that can be reached straight from a.
+
+        The search doubles its stride, so it needs few tests.
+        """
         reach, stride = 0, 1
         while stride and reach < len(way) - 1:
             ahead = min(reach + stride, len(way) - 1)
@@ -258,7 +279,7 @@ class Floor:
         return free
 
     def _areas(self, free: NDArray[np.bool_], starts: Sequence[Place]) -> NDArray[np.int64]:
-        """For each cell the number of the area to which it belongs, -1 where no enemy comes."""
+        """For each cell, the number of its area, or -1 if no enemy can reach the cell."""
         areas = np.full(free.shape, -1, dtype=np.int64)
         rows, columns = np.nonzero(free)
         if not len(rows):
@@ -283,9 +304,10 @@ class Floor:
         return areas
 
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
-        """For each cell whether it is free as a whole, and at last that -1, which is no cell, is not.
+        """For each cell, whether no obstacle overlaps it.
 
-        The last row and column are not: places beyond them, up to the bounds, count as theirs.
+        The last element stands for index -1, which is no cell, and is False. Cells of the last row
+        and column are False, too: positions beyond them, up to the bounds, are assigned to them.
         """
         x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
         roomy = (columns < self._columns - 1) & (rows < self._rows - 1)

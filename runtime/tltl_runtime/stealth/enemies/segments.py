@@ -1,7 +1,8 @@
-"""Does a straight line meet a box: exact tests for sight and for walking.
+"""Exact tests whether a straight line meets a box, for sight and for walking.
 
-Over the 27 boxes of a level, slab tests with early outs cost a line of sight of up to 8 m some 2 to 4 µs.  Marching
-the same lines through cells of 0.25 m costs 9 to 10 µs, and is wrong by up to a cell: so sight does without a grid.
+With the 27 boxes of a level, slab tests with early exits take 2 to 4 µs for a line of sight of up
+to 8 m. Marching the same line through cells of 0.25 m takes 9 to 10 µs and is wrong by up to a
+cell, so sight uses no grid.
 """
 
 from __future__ import annotations
@@ -12,19 +13,19 @@ from math import hypot
 from tltl_runtime.stealth.level import Box, Point
 
 Rectangle = tuple[float, float, float, float]
-"""x0, y0, x1, y1, with x0 < x1 and y0 < y1; its border does not belong to it."""
+"""x0, y0, x1, y1, with x0 < x1 and y0 < y1; the border is excluded."""
 
 Corners = tuple[float, float, float, float, float, float]
-"""x0, y0, z0, x1, y1, z1 of a box, which does not own its surface."""
+"""x0, y0, z0, x1, y1, z1 of a box; the surface is excluded."""
 
 
 def corners(box: Box) -> Corners:
-    """The six numbers of a box."""
+    """Return the six coordinates of a box."""
     return (*box.low, *box.high)
 
 
 def crosses(ax: float, ay: float, bx: float, by: float, rectangles: Sequence[Rectangle]) -> bool:
-    """Whether the segment from a to b, both in metres, goes through the inside of a rectangle."""
+    """Whether the segment from a to b passes through the inside of a rectangle."""
     west, east = (ax, bx) if ax < bx else (bx, ax)
     south, north = (ay, by) if ay < by else (by, ay)
     dx, dy = bx - ax, by - ay
@@ -39,7 +40,7 @@ def crosses(ax: float, ay: float, bx: float, by: float, rectangles: Sequence[Rec
 
 
 def blocked(a: Point, b: Point, boxes: Sequence[Corners]) -> bool:
-    """Whether the segment from a to b, both in metres, goes through the inside of a box."""
+    """Whether the segment from a to b passes through the inside of a box."""
     ax, ay, az = a
     bx, by, bz = b
     west, east = (ax, bx) if ax < bx else (bx, ax)
@@ -58,7 +59,7 @@ def blocked(a: Point, b: Point, boxes: Sequence[Corners]) -> bool:
 
 
 def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
-    """Of a point from the segment from a to b, all in metres."""
+    """The distance of a point from the segment from a to b, in metres."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     length = dx * dx + dy * dy
     part = 0.0 if length == 0.0 else min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length))
@@ -66,9 +67,9 @@ def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple
 
 
 def _overlap(start: float, delta: float, low: float, high: float, enter: float, leave: float) -> tuple[float, float]:
-    """Of the times from ``enter`` to ``leave``, those at which ``start + time * delta`` is between low and high.
+    """Shrink a time interval to when ``start + time * delta`` is between low and high.
 
-    A coordinate that stands still has passed the boxes' early outs, so it is inside.
+    If ``delta`` is 0, the interval stays: the callers have already excluded boxes beside the line.
     """
     if delta > 0.0:
         return max(enter, (low - start) / delta), min(leave, (high - start) / delta)

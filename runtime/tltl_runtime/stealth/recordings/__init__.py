@@ -1,1 +1,1 @@
-"""Episodes: recorded, kept in files, checked and summed up."""
+"""Recorded episodes: their files, checks and summaries."""

@@ -1,4 +1,4 @@
-"""The arrays of an episode's file, by name: what they hold, and how they come from an episode and go back."""
+"""The arrays of an episode's file, and their conversion from and to an episode."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Arrays = Mapping[str, NDArray[Any]]
 
 @record
 class Array:
-    """What is fixed of an array: ``dtype`` as numpy writes it, the ``shape``, and the least and greatest value."""
+    """The specification of an array: numpy's ``dtype``, ``shape``, least and greatest value."""
 
     name: str
     dtype: str
@@ -59,9 +59,9 @@ ARRAYS: Final = (
 
 
 def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """The arrays of an episode, as :data:`ARRAYS` has them; ``modes`` are those that the enemies can be in."""
+    """Convert an episode to the arrays of :data:`ARRAYS`; ``modes`` lists the enemies' modes."""
     shots = episode.snapshots
-    index = {mode: number for number, mode in enumerate(modes)}
+    index_of = {mode: number for number, mode in enumerate(modes)}
     columns = {
         "time": [shot.time for shot in shots],
         "position": [shot.player.position for shot in shots],
@@ -73,7 +73,7 @@ def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any
         "health": [shot.health for shot in shots],
         "enemy_position": [shot.enemies for shot in shots],
         "enemy_yaw": [shot.yaws for shot in shots],
-        "enemy_mode": [[index[mode] for mode in shot.modes] for shot in shots],
+        "enemy_mode": [[index_of[mode] for mode in shot.modes] for shot in shots],
         "enemy_sees": [shot.sees for shot in shots],
         "mover_position": [shot.movers for shot in shots],
         "switch_active": [shot.active for shot in shots],
@@ -88,7 +88,7 @@ def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any
 
 
 def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
-    """The snapshots that the arrays hold; each index into ``modes`` is one."""
+    """Convert arrays to snapshots; all indices into ``modes`` must be valid."""
     lists = {name: array.tolist() for name, array in arrays.items()}
     player = zip(
         *(map(tuple, lists[name]) for name in ("position", "velocity")),
@@ -107,11 +107,11 @@ def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
         strict=True,
     )
     rows = zip(lists["time"], player, rest, strict=True)
-    return tuple(Snapshot(time, PlayerState(*state), *others) for time, state, others in rows)
+    return tuple(Snapshot(time, PlayerState(*state), *remainder) for time, state, remainder in rows)
 
 
 def sizes(level: Level, fspa: Fspa, count: int) -> dict[Size, int]:
-    """How long the axes of the arrays are in an episode of ``count`` decisions."""
+    """Return the lengths of the array axes for an episode of ``count`` decisions."""
     return {
         "n": count,
         "n + 1": count + 1,
@@ -125,7 +125,7 @@ def sizes(level: Level, fspa: Fspa, count: int) -> dict[Size, int]:
 
 
 def shape_of(array: Array, known: Mapping[Size, int]) -> tuple[int, ...]:
-    """The shape of an array, in numbers."""
+    """Return the shape of an array in numbers."""
     return tuple(size if isinstance(size, int) else known[size] for size in array.shape)
 
 

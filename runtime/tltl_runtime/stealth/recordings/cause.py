@@ -1,4 +1,4 @@
-"""Why an episode ended as it did, by the episode alone: who took the player's health, what broke, what remained."""
+"""Explain why an episode ended, from the recording alone."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ from tltlc.resolve.spec import Atom
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
 
 _RECENT: Final = 3.0
-"""Seconds before a death whose blows count for it."""
+"""Damage counts for a death if it was dealt at most this many seconds before."""
 
 
 @record
 class Cause:
-    """Why an episode ended: the ``kind`` of end, ``by`` what, when and where, and ``text`` that says it.
+    """Why an episode ended: the ``kind`` of end, its cause, time and place, and a ``text``.
 
-    ``by`` names the enemies and lasers that killed, who took most first; the atoms that broke the spec; or the entities
-    that no way leads to.  ``time`` is in seconds since the reset, ``place`` that of the player's feet then.
-    ``broke`` names the atoms that broke the spec, whatever the ``kind``; nothing where it was not violated.
+    ``by`` names the enemies and lasers that killed the player, those with the most damage first; or
+    the atoms that violated the spec; or the entities that cannot be reached. ``time`` is in seconds
+    since the reset; ``place`` is the position of the player's feet at that time. ``broke`` names
+    the atoms that violated the spec, whatever the ``kind``; it is empty if the spec was not
+    violated.
     """
 
     kind: Kind
@@ -41,11 +43,11 @@ class Cause:
 
 
 def cause(episode: Episode) -> Cause:
-    """Why the episode ended as it did."""
+    """Find the cause of the episode's end."""
     if not episode.success:
-        died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
-        if died is not None:
-            return _killed(episode, died)
+        death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
+        if death is not None:
+            return _killed(episode, death)
         if episode.end == "violation":
             return _violated(episode)
         if episode.end == "limit":
@@ -56,14 +58,14 @@ def cause(episode: Episode) -> Cause:
     return Cause(kind, (), last.time, last.player.position, f"{kind} after {last.time:.2f} s{rest}")
 
 
-def _killed(episode: Episode, died: int) -> Cause:
-    shots = episode.snapshots[: died + 1]
-    took: Counter[str] = Counter()
+def _killed(episode: Episode, death: int) -> Cause:
+    shots = episode.snapshots[: death + 1]
+    damage: Counter[str] = Counter()
     for before, after in pairwise(shots):
         if after.health < before.health and after.time >= shots[-1].time - _RECENT:
-            took.update(_blows(episode.level, before, after))
+            damage.update(_blows(episode.level, before, after))
     lasers = {barrier.name for barrier in episode.level.barriers}
-    by = tuple(name for name, _ in took.most_common())
+    by = tuple(name for name, _ in damage.most_common())
     names = [f"the laser `{name}`" if name in lasers else f"`{name}`" for name in by]
     how = "burnt" if by and lasers.issuperset(by) else "killed"
     broke = tuple(name for name, _ in _broken(episode)) if episode.end == "violation" else ()
@@ -71,7 +73,7 @@ def _killed(episode: Episode, died: int) -> Cause:
 
 
 def _violated(episode: Episode) -> Cause:
-    """By the atoms for which the last transition was taken."""
+    """The cause for a violation: the atoms that the last transition depended on."""
     broken = _broken(episode)
     by = tuple(name for name, _ in broken)
     words = [f"{name} {'holds' if holds else 'does not hold'}" for name, holds in broken]
@@ -79,17 +81,18 @@ def _violated(episode: Episode) -> Cause:
 
 
 def _broken(episode: Episode) -> list[tuple[str, bool]]:
-    """The atoms of a violation, and whether each held: a prime implicant, which held, of the guard that was taken.
+    """The atoms that caused a violation, with their truth values.
 
-    Where several did, one that reads the health of a player who died.
+    They are a prime implicant of the guard of the violating transition that held at the last step.
+    If several held and the player died, one that reads the health is preferred.
     """
     fspa, taken = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
     primes = [prime for edge in fspa.edges if (edge.source, edge.target) == taken for prime in edge.guard.primes]
-    held = [prime for prime in primes if all(holds[atom] == wanted for atom, wanted in prime)]
+    true_primes = [prime for prime in primes if all(holds[atom] == expected for atom, expected in prime)]
     if episode.snapshots[-1].health <= 0.0:
-        held.sort(key=lambda prime: not any(_reads_health(fspa.atoms[atom]) for atom, _ in prime))
-    return [(fspa.atoms[atom].name, wanted) for atom, wanted in (held[0] if held else ())]
+        true_primes.sort(key=lambda prime: not any(_reads_health(fspa.atoms[atom]) for atom, _ in prime))
+    return [(fspa.atoms[atom].name, expected) for atom, expected in (true_primes[0] if true_primes else ())]
 
 
 def _reads_health(atom: Atom) -> bool:
@@ -97,25 +100,27 @@ def _reads_health(atom: Atom) -> bool:
 
 
 def _limit(episode: Episode) -> Cause:
-    """Time was up; where the expert played, perhaps since it finds no way to what is next."""
+    """The cause of a reached limit; the expert may have found no route to its next goal."""
     last, steps = episode.snapshots[-1], len(episode.actions)
     remaining = f"limit after {steps} steps, remaining: {_remaining(episode)}"
     if "expert" in episode.player:
-        far = _out_of_reach(episode)
-        if far is None:
+        unreachable = _out_of_reach(episode)
+        if unreachable is None:
             return Cause("no way", (), last.time, last.player.position, f"nowhere to go for the expert; {remaining}")
-        if far:
-            names = " or ".join(f"`{name}`" for name in far)
-            return Cause("no way", far, last.time, last.player.position, f"finds no way to {names}; {remaining}")
+        if unreachable:
+            names = " or ".join(f"`{name}`" for name in unreachable)
+            return Cause(
+                "no way", unreachable, last.time, last.player.position, f"finds no way to {names}; {remaining}"
+            )
     return Cause("limit", (), last.time, last.player.position, remaining)
 
 
 def _here(
-    kind: Kind, by: tuple[str, ...], shot: Snapshot, what: str, why: str = "", broke: tuple[str, ...] = ()
+    kind: Kind, by: tuple[str, ...], shot: Snapshot, event: str, detail: str = "", broke: tuple[str, ...] = ()
 ) -> Cause:
     place = shot.player.position
-    text = f"{what} at {shot.time:.2f} s at ({place[0]:.1f}, {place[1]:.1f})"
-    return Cause(kind, by, shot.time, place, f"{text}: {why}" if why else text, broke)
+    text = f"{event} at {shot.time:.2f} s at ({place[0]:.1f}, {place[1]:.1f})"
+    return Cause(kind, by, shot.time, place, f"{text}: {detail}" if detail else text, broke)
 
 
 def _remaining(episode: Episode) -> str:
@@ -123,9 +128,10 @@ def _remaining(episode: Episode) -> str:
 
 
 def _blows(level: Level, before: Snapshot, after: Snapshot) -> dict[str, float]:
-    """The health a second that each enemy and laser takes in a decision: as the game has it, by what there is to see.
+    """The damage per second of each enemy and laser in a decision.
 
-    Enemies strike before they move, and lasers burn before switches open them.
+    It is computed as in the game, but from the snapshots. In the game, enemies attack before they
+    move, and lasers burn before switches open them.
     """
     feet, kind = after.player.position, PlayerKind()
     height = kind.crouched_height if after.player.crouching else kind.height
@@ -144,15 +150,18 @@ def _blows(level: Level, before: Snapshot, after: Snapshot) -> dict[str, float]:
 
 
 def _out_of_reach(episode: Episode) -> tuple[str, ...] | None:
-    """The next entities, where no way leads to any of them from the player; None where the spec names no next one."""
+    """The next entities, if none of them can be reached.
+
+    Return an empty tuple if one can, and None if the spec names no next entity.
+    """
     last = episode.snapshots[-1]
     sample = {signal.name: value for signal, value in zip(episode.fspa.signals, episode.signals[-1], strict=True)}
-    there = places(episode.level, last)
-    goals = next_goals(episode.fspa, int(episode.states[-1]), sample, episode.params, there)
+    positions = places(episode.level, last)
+    goals = next_goals(episode.fspa, int(episode.states[-1]), sample, episode.params, positions)
     if not goals:
         return None
     routes = routes_of(episode.level, shut_of(last))
-    here = routes.surfaces.nearest(last.player.position)
-    if any(isfinite(routes.field(there[goal]).seconds.flat[here]) for goal in goals):
+    start = routes.surfaces.nearest(last.player.position)
+    if any(isfinite(routes.field(positions[goal]).seconds.flat[start]) for goal in goals):
         return ()
     return goals

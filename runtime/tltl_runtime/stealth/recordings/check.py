@@ -1,4 +1,4 @@
-"""Whether an episode is what it says: judged again by its spec, and played again in its level."""
+"""Check a recording: judge it again by its spec, and play it again in its level."""
 
 from __future__ import annotations
 
@@ -10,31 +10,33 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor
 
 _Difference = tuple[str, object, object]
-"""What differs, what was recorded, and what follows."""
+"""The name of what differs, the recorded value, and the recomputed value."""
 
 
 def check(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Judge the recorded signals again, step by step: atoms, states, progress, rewards and the end must be equal.
+    """Judge the recorded signals again, step by step, and compare.
 
-    Nothing is found where all are.  Else TLT0823 for the first step that differs, or what the monitor finds wrong.
+    Atoms, states, progress, rewards and the end must be equal. Return no diagnostics if they are;
+    else TLT0823 for the first step that differs, or the diagnostics of the monitor.
     """
     try:
-        first = next(_judged(episode), None)
+        first = next(_differences(episode), None)
     except TltlError as error:
         return error.diagnostics
     if first is None:
         return ()
-    step, (what, recorded, follows) = first
-    title = f"step {step} of the recording does not follow from its signals: {what} was recorded as "
+    step, (name, recorded, recomputed) = first
+    title = f"step {step} of the recording does not follow from its signals: {name} was recorded as "
     help_ = "the recording was changed, or comes from another version of tltlc"
-    return (Diagnostic("TLT0823", f"{title}{recorded}, and is {follows}", help=help_),)
+    return (Diagnostic("TLT0823", f"{title}{recorded}, and is {recomputed}", help=help_),)
 
 
 def resimulate(episode: Episode) -> int | None:
-    """Play the actions again from the seed: the first row that is not the same bit for bit, None where all are.
+    """Play the actions again from the seed; return the first row that differs in any bit, or None.
 
-    Row 0 is the moment of the reset.  Beside the snapshots, signals are compared that the game itself has.  Raises
-    TltlError: TLT0730 without pybullet, which nothing else here needs.
+    Row 0 is the moment of the reset. The comparison includes the snapshots and those signals of the
+    spec that the game itself has. Raises TltlError: TLT0730 without pybullet; nothing else here
+    needs it.
     """
     from tltl_runtime.stealth.game import Game
     from tltl_runtime.stealth.world.physics import WorldError
@@ -63,15 +65,17 @@ def resimulate(episode: Episode) -> int | None:
 
 
 def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Nothing where :func:`resimulate` finds the episode again, else TLT0824 with what may have changed since."""
+    """Return TLT0824, with what may have changed, if :func:`resimulate` finds a difference."""
     row = resimulate(episode)
     if row is None:
         return ()
     when = f"at step {row}" if row else "from the start"
     title = f"played again from seed {episode.seed}, the episode is another one {when}"
-    now = versions()
+    current = versions()
     changed = [
-        f"{name} {then} (now {now.get(name)})" for name, then in episode.versions.items() if then != now.get(name)
+        f"{name} {recorded} (now {current.get(name)})"
+        for name, recorded in episode.versions.items()
+        if recorded != current.get(name)
     ]
     help_ = (
         f"it was recorded with {', '.join(changed)}"
@@ -81,8 +85,8 @@ def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
     return (Diagnostic("TLT0824", title, help=help_),)
 
 
-def _judged(episode: Episode) -> Iterator[tuple[int, _Difference]]:
-    """What differs, with the number of its step; 0 is the moment of the reset."""
+def _differences(episode: Episode) -> Iterator[tuple[int, _Difference]]:
+    """Yield the differences with their step numbers; 0 is the moment of the reset."""
     names = [signal.name for signal in episode.fspa.signals]
     monitor = Monitor(episode.fspa, episode.params, episode.reward)
     count = len(episode.actions)

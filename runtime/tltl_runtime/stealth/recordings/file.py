@@ -1,4 +1,4 @@
-"""The file of an episode: a compressed numpy archive, ``docs/episode-log.md`` describes every array in it."""
+"""Episode files: compressed numpy archives; ``docs/episode-log.md`` describes every array."""
 
 from __future__ import annotations
 
@@ -36,17 +36,20 @@ SUFFIX: Final = ".episode.npz"
 FORMAT: Final = "tltl-episode"
 VERSION: Final = 1
 MAX_BYTES: Final = RECORDING.size
-"""Greatest size of a file and of what it holds unpacked, about half a million decisions: 256 MiB."""
+"""The greatest size of a file, and of its unpacked arrays: 256 MiB.
+
+That is about half a million decisions.
+"""
 
 _TEXTS: Final = ("meta", "artefact")
-"""The arrays that hold the bytes of a text, UTF-8."""
+"""The arrays that contain the bytes of a UTF-8 text."""
 
 _REFUSALS: Final = Refusals("an episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
 
 
 @record
 class Names:
-    """What the entries along an axis are called."""
+    """The names of the entries along an axis."""
 
     signals: tuple[str, ...]
     atoms: tuple[str, ...]
@@ -58,7 +61,7 @@ class Names:
 
 @record
 class Meta:
-    """What the array ``meta`` holds as JSON: all of an episode that is no array, but for the artefact of its spec."""
+    """The JSON in the array ``meta``: an episode without its arrays and its spec's artefact."""
 
     format: str
     version: int
@@ -76,15 +79,16 @@ class Meta:
 
 
 def file_stem(episode: Episode) -> str:
-    """What the files of an episode are called, but for their endings: ``LEVEL-VARIANT-SEED``."""
+    """Return the name of an episode's files without their endings: ``LEVEL-VARIANT-SEED``."""
     return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
 
 
 def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Collection[str] = ()) -> Path:
-    """Return a path for an episode that overwrites nothing: ``STEM.episode.npz``, else ``STEM-2`` and so on.
+    """Return a path for an episode that overwrites nothing.
 
-    ``pictures`` are the endings of files that are written beside the episode, such as ``.png``.  A file that holds
-    exactly this ``content`` may be written again, and so may its pictures.
+    It is ``STEM.episode.npz``, else ``STEM-2.episode.npz``, and so on. ``pictures`` are the endings
+    of files that are written beside the episode, such as ``.png``. A file with exactly this
+    ``content`` may be overwritten, and so may its pictures.
     """
     name, number = stem, 1
     while not _is_free(folder, name, content, pictures):
@@ -101,59 +105,60 @@ def _is_free(folder: Path, name: str, content: bytes | None, pictures: Collectio
 
 
 def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
-    """Write an episode to a file, which is there as a whole or not at all; equal episodes give equal bytes.
+    """Write an episode to a file atomically; equal episodes give equal bytes.
 
     Raises:
-        TltlError: TLT0005 where the system refuses.
-        ValueError: the episode's arrays are not of the shapes that its level and its automaton ask for.
+        TltlError: TLT0005, the file cannot be written.
+        ValueError: the shapes of the episode's arrays do not fit its level and its automaton.
     """
     write_file(Path(path), to_bytes(episode))
 
 
 @bounded()
 def read_episode(path: str | os.PathLike[str]) -> Episode:
-    """The episode in a file.
+    """Read an episode from a file.
 
     Raises:
-        TltlError: TLT0001 it cannot be read; TLT0820 it is no episode, or is damaged; TLT0821 of another version;
-            TLT0822 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0604.
+        TltlError: TLT0001, the file cannot be read; TLT0820, it is not an episode or is damaged;
+            TLT0821, it has another version; TLT0822, its contents are inconsistent; TLT0601 to
+            TLT0604, its artefact is invalid.
     """
     name = os.fspath(path)
     return from_bytes(read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(episode: Episode) -> bytes:
-    """What :func:`write_episode` writes."""
+    """Return the bytes that :func:`write_episode` writes."""
     meta = json.dumps(to_json(_meta(episode)), ensure_ascii=False, allow_nan=False)
     (artefact,) = emit("json", episode.fspa).values()
     texts = {"meta": meta, "artefact": str(artefact)}
     arrays: dict[str, Any] = {name: np.frombuffer(text.encode(), dtype=np.uint8) for name, text in texts.items()}
     arrays |= to_arrays(episode, _modes(episode))
-    written = BytesIO()
-    np.savez_compressed(written, **arrays)
-    return written.getvalue()
+    archive = BytesIO()
+    np.savez_compressed(archive, **arrays)
+    return archive.getvalue()
 
 
 def from_bytes(data: bytes, name: str) -> Episode:
-    """The episode in the bytes of a file, which messages call ``name``; errors as of :func:`read_episode`."""
+    """Decode an episode; messages call it ``name``. Raises the errors of :func:`read_episode`."""
     members = _members(data, name)
     meta = _read_meta(members, name)
     fspa = read_artefact(SourceFile(f"{name}/artefact", _text(members, "artefact", name)))
-    unpacked = _read_arrays(members, meta.level, fspa, name)
-    _check_indices(unpacked, meta, fspa, name)
+    arrays = _read_arrays(members, meta.level, fspa, name)
+    _check_indices(arrays, meta, fspa, name)
     return Episode(
         level=meta.level,
         fspa=fspa,
         params=meta.params,
         player=meta.player,
         seed=meta.seed,
-        actions=unpacked["actions"],
-        snapshots=snapshots(unpacked, meta.modes),
-        signals=unpacked["signals"],
-        atoms=unpacked["atoms"],
-        states=unpacked["states"],
-        progress=unpacked["progress"],
-        rewards=unpacked["rewards"],
+        actions=arrays["actions"],
+        snapshots=snapshots(arrays, meta.modes),
+        signals=arrays["signals"],
+        atoms=arrays["atoms"],
+        states=arrays["states"],
+        progress=arrays["progress"],
+        rewards=arrays["rewards"],
         verdict=meta.verdict,
         success=meta.success,
         end=meta.end,
@@ -177,7 +182,7 @@ def _meta(episode: Episode) -> Meta:
         versions=episode.versions,
         modes=_modes(episode),
         names=_names(level, episode.fspa),
-        # Where the spec lay says nothing to others.
+        # Keep the file name only: the folder means nothing on another machine.
         level=replace(level, spec=level.spec.replace("\\", "/").rpartition("/")[2]),
     )
 
@@ -188,14 +193,14 @@ def _modes(episode: Episode) -> tuple[str, ...]:
 
 def _names(level: Level, fspa: Fspa) -> Names:
     groups = (fspa.signals, fspa.atoms, level.enemies, level.movers, level.switches, level.barriers)
-    return Names(*(tuple(each.name for each in group) for group in groups))
+    return Names(*(tuple(item.name for item in group) for group in groups))
 
 
-# --- reading what nobody vouches for ----------------------------------------------------------------
+# --- reading untrusted files ------------------------------------------------------------------------
 
 
 def _members(data: bytes, name: str) -> dict[str, bytes]:
-    """The files of the archive that an episode has, by the names of their arrays."""
+    """Unpack the archive's files that an episode has, by the names of their arrays."""
     if len(data) > MAX_BYTES:
         raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     try:
@@ -240,17 +245,17 @@ def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
 
 
 def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
-    """The arrays, of the shapes and within the ranges that they must have."""
-    found = {array.name: _array(members, array.name, name) for array in ARRAYS}
-    actions = found["actions"]
+    """Read the arrays and check their shapes and ranges."""
+    arrays = {array.name: _array(members, array.name, name) for array in ARRAYS}
+    actions = arrays["actions"]
     known = sizes(level, fspa, actions.shape[0] if actions.ndim else 0)
     for array in ARRAYS:
-        _check(found[array.name], array, shape_of(array, known), name)
-    return found
+        _check(arrays[array.name], array, shape_of(array, known), name)
+    return arrays
 
 
 def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
-    """An array of whatever shape."""
+    """Read an array of any shape."""
     if array not in members:
         raise _REFUSALS.broken(name, f"the array `{array}` is missing")
     try:
@@ -259,23 +264,23 @@ def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
         raise _REFUSALS.broken(name, f"the array `{array}`: {error}") from None
 
 
-def _check(found: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
-    if found.dtype != np.dtype(array.dtype) or found.shape != shape:
+def _check(values: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
+    if values.dtype != np.dtype(array.dtype) or values.shape != shape:
         expected = f"{array.dtype} of shape {shape}"
         raise _REFUSALS.broken(
-            name, f"the array `{array.name}` is {found.dtype.str} of shape {found.shape}, not {expected}"
+            name, f"the array `{array.name}` is {values.dtype.str} of shape {values.shape}, not {expected}"
         )
-    if found.dtype == np.bool_:
-        good = bool((found.view(np.uint8) <= 1).all())
+    if values.dtype == np.bool_:
+        valid = bool((values.view(np.uint8) <= 1).all())
     else:
-        # What is no number is in no range.
-        good = bool(((found >= array.low) & (found <= array.high) & np.isfinite(found)).all())
-    if not good:
+        # The comparisons reject not-a-number; isfinite also rejects infinities.
+        valid = bool(((values >= array.low) & (values <= array.high) & np.isfinite(values)).all())
+    if not valid:
         raise _REFUSALS.broken(name, f"the array `{array.name}` has values that it cannot have")
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
-    """That everything that counts something counts what there is."""
+    """Check that all indices are in range and that the names match the level and the spec."""
     limits = [
         ("actions", np.array(BRANCHES)),
         ("states", np.array(len(fspa.states))),

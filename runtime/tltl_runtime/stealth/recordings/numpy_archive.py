@@ -1,4 +1,4 @@
-"""Numpy archives (``.npz``) of plain numbers, read from bytes that nobody vouches for."""
+"""Read numpy archives (``.npz``) of plain numbers from untrusted bytes."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ _DAMAGE = (
     *(OSError, ValueError, RuntimeError, OverflowError, EOFError),
     *(zipfile.BadZipFile, zlib.error, struct.error),
 )
-"""What zipfile raises for bytes that are no archive, or one that was cut or changed."""
+"""The exceptions of zipfile for bytes that are not an archive, or are truncated or changed."""
 
 
 class ArchiveError(ValueError):
-    """The bytes are not what they should be; the message says why."""
+    """The bytes are not a valid archive or array; the message says why."""
 
 
 def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, bytes]:
-    """The files ``NAME.npy`` of an archive, unpacked, for those of ``names`` that are in it.
+    """Unpack the files ``NAME.npy`` of an archive, for those ``names`` that are present.
 
     Raises:
-        ArchiveError: it is no whole archive, or these have more than ``most`` bytes.
+        ArchiveError: the archive is damaged, or these files have more than ``most`` bytes.
     """
     try:
         with zipfile.ZipFile(BytesIO(data)) as archive:
@@ -43,10 +43,10 @@ def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, by
 
 
 def read_array(data: bytes) -> NDArray[Any]:
-    """The array of plain numbers that a file ``NAME.npy`` holds, of whatever shape.
+    """Read an array of plain numbers, of any shape, from the bytes of a file ``NAME.npy``.
 
     Raises:
-        ArchiveError: it holds anything else.
+        ArchiveError: the file contains anything else.
     """
     stream = BytesIO(data)
     try:
@@ -54,14 +54,14 @@ def read_array(data: bytes) -> NDArray[Any]:
         start = stream.tell()
         if dtype.kind in "biuf" and min(shape, default=0) >= 0 and start + prod(shape) * dtype.itemsize == len(data):
             array = np.ndarray(shape, dtype, data, start, order="F" if fortran else "C")
-            return cast(NDArray[Any], array.copy())  # an array over bytes could not be written to
-    except Exception:  # numpy reads the header as Python, and lets through whatever that raises
+            return cast(NDArray[Any], array.copy())  # a copy, because an array over bytes is read-only
+    except Exception:  # numpy parses the header as Python, which may raise anything
         raise ArchiveError("it is none of numpy's") from None
     raise ArchiveError("it is none of plain numbers")
 
 
 def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """The bytes of one file, no more than it says that it has, whatever it unpacks to."""
+    """Unpack one file, but no more bytes than the size that it declares."""
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise zipfile.BadZipFile
     with archive.open(entry) as file:

@@ -1,4 +1,4 @@
-"""What reports count of an episode."""
+"""The results of an episode that reports count."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from tltlc.core.record import record
 
 @record
 class Outcome:
-    """How an episode went, in numbers and names that can be counted over many."""
+    """The result of an episode, in numbers and names that can be aggregated over many episodes."""
 
     success: bool
     end: End
     verdict: str
-    """Of the last step: ``holding``, ``pending``, ``satisfied`` or ``violated``."""
+    """The verdict of the last step: ``holding``, ``pending``, ``satisfied`` or ``violated``."""
     steps: int
-    """Decisions that were made."""
+    """The number of decisions."""
     seconds: float
-    """Of the game, from the reset on."""
+    """Game time since the reset."""
     progress: float
-    """The best, in [0, 1]."""
+    """The best progress, in [0, 1]."""
     reward: float
-    """The sum over the steps."""
+    """The sum of the rewards."""
     health: float
-    """At the end, in [0, 1]."""
+    """The health at the end, in [0, 1]."""
     seen_steps: int
-    """Moments, that of the reset included, at which the player was in the sight of an enemy."""
+    """The number of moments, including the reset, at which an enemy saw the player."""
     chased: bool
-    """Whether an enemy gave chase."""
+    """Whether an enemy chased the player."""
     opened: tuple[str, ...]
-    """The barriers that were open at the end, in the level's order."""
+    """The barriers that were open at the end, in the order of the level."""
 
 
 def outcome(episode: Episode) -> Outcome:
-    """How the episode went."""
+    """Return the outcome of an episode."""
     last = episode.snapshots[-1]
     return Outcome(
         success=episode.success,

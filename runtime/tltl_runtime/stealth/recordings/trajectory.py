@@ -1,4 +1,4 @@
-"""The trajectory of an episode: little enough to keep hundreds of them."""
+"""The trajectory of an episode, small enough to keep hundreds of them in memory."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from tltlc.core.record import record
 
 @record
 class Trajectory:
-    """Where the player went: ``points`` (n + 1, 2) in metres, ``states`` (n + 1,) of the automaton, how it ended."""
+    """The player's path, the automaton's states, and the end.
+
+    ``points`` is (n + 1, 2), in metres; ``states`` is (n + 1,).
+    """
 
     points: NDArray[np.float32]
     states: NDArray[np.int32]
@@ -19,6 +22,6 @@ class Trajectory:
 
 
 def trajectory(episode: Episode) -> Trajectory:
-    """The trajectory of an episode."""
+    """Extract the trajectory of an episode."""
     points = np.array([shot.player.position[:2] for shot in episode.snapshots], dtype=np.float32)
     return Trajectory(points, episode.states, episode.end)

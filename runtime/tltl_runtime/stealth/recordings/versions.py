@@ -1,4 +1,4 @@
-"""What an episode depends on beside its level: the versions of Python and of the packages that play it."""
+"""The versions that an episode depends on: Python and the packages that play it."""
 
 from __future__ import annotations
 
@@ -13,5 +13,5 @@ _PACKAGES: Final = ("tltlc", "pybullet", "numpy")
 
 @lru_cache(maxsize=1)
 def versions() -> Mapping[str, str]:
-    """The versions here and now, by name."""
+    """Return the installed versions, by name."""
     return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
