@@ -1,4 +1,4 @@
-"""Where a picture of a level is taken from, and what each of its pixels looks at."""
+"""The cameras of the views, and the projection between pixels and the world."""
 
 from __future__ import annotations
 
@@ -15,28 +15,35 @@ View = Literal["third_person", "top_down", "overview"]
 VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")
 
 SMALLEST, LARGEST = 16, 4096
-"""The least and the greatest width and height of a picture, in pixels; pybullet ends the process beyond."""
+"""The least and greatest side of a picture, in pixels.
+
+Outside this range, pybullet ends the process.
+"""
 
 _FOLLOW = (0.0, -6.6, 8.4)
-"""From the player to the eye that follows it: south of it and above, so that north is up in every view."""
+"""From the player to the camera that follows it.
+
+The camera is in the south and above, so that north is up in every view.
+"""
 _AHEAD = (0.0, 0.6, 0.6)
-"""From the player's feet to what that eye looks at."""
+"""From the player's feet to the point that the camera looks at."""
 _FIELD = 50.0
 _TOP_FIELD = 8.0
-"""A narrow field from far away: walls hardly lean outwards."""
+"""A narrow field of view from far away, so that walls hardly lean outwards."""
 _MARGIN = 1.03
 _OVERVIEW_FIELD = 40.0
 _EDGE = 0.015
-"""The part of the overview that stays free at each side."""
+"""The fraction of the overview that stays free at each side."""
 _OBLIQUE = 1.05
-"""How much higher than it is far back the eye of the overview is."""
+"""The height of the overview camera, as a multiple of its distance to the south."""
 
 
 @record
 class Camera:
-    """An eye that looks from ``eye`` to ``target``, ``field`` degrees high; lengths in metres.
+    """A camera that looks from ``eye`` to ``target``, ``field`` degrees high.
 
-    ``up`` is what is up in the picture.  Pictures show what is from ``near`` to ``far``.
+    Lengths are in metres. ``up`` is the direction that is up in the picture. Pictures show what is
+    between ``near`` and ``far``.
     """
 
     eye: Point
@@ -48,10 +55,11 @@ class Camera:
 
 
 def camera(level: Level, view: View, player: Point, aspect: float) -> Camera:
-    """The camera of a view; ``aspect`` is the picture's width over its height, ``player`` where the feet are.
+    """Return the camera of a view.
 
-    ``third_person`` follows the player from the south, ``top_down`` and ``overview`` (from the south, oblique) show
-    the entire level.
+    ``aspect`` is the picture's width over its height, ``player`` the position of the feet.
+    ``third_person`` follows the player from the south; ``top_down`` and ``overview`` (from the
+    south, oblique) show the entire level.
     """
     if view == "third_person":
         return Camera(_plus(player, _FOLLOW), _plus(player, _AHEAD), _FIELD)
@@ -61,7 +69,10 @@ def camera(level: Level, view: View, player: Point, aspect: float) -> Camera:
 
 
 def check_size(size: object) -> tuple[int, int]:
-    """Width and height of a picture; raises ValueError where that is no pair of whole numbers within the range."""
+    """Return the width and height of a picture.
+
+    Raises ValueError unless they are two whole numbers in the range.
+    """
     match size:
         case (int(width), int(height)) if all(SMALLEST <= side <= LARGEST for side in (width, height)):
             return width, height
@@ -69,7 +80,7 @@ def check_size(size: object) -> tuple[int, int]:
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
-    """For each pixel the way from the eye that is one metre of depth: (height, width, 3)."""
+    """For each pixel, the vector from the eye that has one metre of depth: (height, width, 3)."""
     ahead, right, up = _axes(camera)
     half = tan(np.radians(camera.field) / 2)
     x = (2 * (np.arange(width) + 0.5) / width - 1) * half * width / height
@@ -81,18 +92,21 @@ def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
 
 
 def pixels(camera: Camera, points: NDArray[np.float64], width: int, height: int) -> NDArray[np.float64]:
-    """Where points (n, 3) appear, in pixels from the upper left corner: (n, 2); all must lie before the eye."""
+    """Project points (n, 3) to pixels from the upper left corner: (n, 2).
+
+    All points must be in front of the eye.
+    """
     ahead, right, up = _axes(camera)
-    seen = points - np.array(camera.eye)
+    offsets = points - np.array(camera.eye)
     half = tan(np.radians(camera.field) / 2)
-    depth = np.maximum(seen @ ahead, camera.near)
-    x = seen @ right / depth / (half * width / height)
-    y = seen @ up / depth / half
+    depth = np.maximum(offsets @ ahead, camera.near)
+    x = offsets @ right / depth / (half * width / height)
+    y = offsets @ up / depth / half
     return np.stack([(x + 1) / 2 * width, (1 - y) / 2 * height], axis=1)
 
 
 def _top_down(level: Level, aspect: float) -> Camera:
-    """From above the middle, so high that floor and wall tops fit."""
+    """A camera above the middle, high enough that floor and wall tops fit."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     needed = max(high[1] - low[1], (high[0] - low[0]) / aspect) * _MARGIN
@@ -101,21 +115,21 @@ def _top_down(level: Level, aspect: float) -> Camera:
 
 
 def _overview(level: Level, aspect: float) -> Camera:
-    """From the south and above, as near as all corners of the level still fit."""
+    """A camera in the south and above, as near as the corners of the level allow."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2])])
     size = hypot(high[0] - low[0], high[1] - low[1])
     for away in np.arange(size * 0.4, size * 4, size * 0.02).tolist():
         eye = (x, y - away, away * _OBLIQUE)
-        # How high in the picture a corner is follows from its angle alone: half of them lie above the middle one.
+        # The vertical position of a corner depends on its angle only: aim at the middle of the angles.
         angles = np.arctan2(corners[:, 2] - eye[2], corners[:, 1] - eye[1])
         ahead = float(angles.min() + angles.max()) / 2
-        seen = Camera(eye, (x, eye[1] + cos(ahead), eye[2] + sin(ahead)), _OVERVIEW_FIELD, far=away * 4)
-        where = pixels(seen, corners, 1000, round(1000 / aspect)) / (1000, 1000 / aspect)
-        if where.min() >= _EDGE and where.max() <= 1 - _EDGE:
+        candidate = Camera(eye, (x, eye[1] + cos(ahead), eye[2] + sin(ahead)), _OVERVIEW_FIELD, far=away * 4)
+        positions = pixels(candidate, corners, 1000, round(1000 / aspect)) / (1000, 1000 / aspect)
+        if positions.min() >= _EDGE and positions.max() <= 1 - _EDGE:
             break
-    return seen
+    return candidate
 
 
 def _axes(camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

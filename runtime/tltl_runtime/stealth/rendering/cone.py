@@ -1,4 +1,4 @@
-"""The part of the floor that an enemy sees, for pictures; what it sees in play is decided in ``enemy``."""
+"""The part of the floor that an enemy sees, for pictures; in play, ``enemy`` decides."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ _ONLY_STANDING = 0.5
 
 
 class SightField:
-    """For each place on the floor: 1 where an enemy sees a head that crouches, 0.5 where only one that stands, else 0.
+    """How well an enemy sees each place on the floor.
 
-    ``boxes`` are what stops sight.
+    The value is 1 if it sees a crouched head there, 0.5 if it sees only a standing one, else 0.
+    ``boxes`` are what blocks sight.
     """
 
     def __init__(self, kind: EnemyKind, feet: Point, yaw: float, boxes: Iterable[Box]) -> None:
@@ -36,20 +37,20 @@ class SightField:
         self._seen = np.where(crouched, 1.0, np.where(standing, _ONLY_STANDING, 0.0)).astype(np.float32)
 
     def at(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
-        """How well places (n, 2) are seen, in [0, 1]: (n,)."""
+        """Return how well places (n, 2) are seen, in [0, 1]: (n,)."""
         x, y = places[:, 0] - np.float32(self.eyes[0]), places[:, 1] - np.float32(self.eyes[1])
         radius = np.hypot(x, y)
         angle = (np.arctan2(y, x) - self.yaw + pi) % (2 * pi) - pi
         row = (angle + self.half) / (2 * self.half) * (_ANGLES - 1)
         ring = radius / self.reach * _RINGS - 0.5
-        found = _between(self._seen, row, ring)
+        visibility = _between(self._seen, row, ring)
         inside = (np.abs(angle) <= self.half) & (radius < self.reach)
-        return np.where(inside, found, np.float32(0.0))
+        return np.where(inside, visibility, np.float32(0.0))
 
     def _free(
         self, x: NDArray[np.float64], y: NDArray[np.float64], head: float, boxes: Iterable[Box]
     ) -> NDArray[np.bool_]:
-        """Whether the lines from the eyes to heads that are ``x``, ``y`` away go through no box."""
+        """Whether the lines from the eyes to heads at offsets ``x``, ``y`` pass no box."""
         free = np.ones(x.shape, np.bool_)
         for box in boxes:
             enter, leave = np.zeros(x.shape), np.ones(x.shape)
@@ -64,7 +65,7 @@ class SightField:
 
 
 def _between(table: NDArray[np.float32], row: NDArray[np.float32], column: NDArray[np.float32]) -> NDArray[np.float32]:
-    """What is in a table between its entries, so that shadows have soft edges."""
+    """Interpolate a table bilinearly, so that shadows have soft edges."""
     rows, columns = table.shape
     row, column = row.clip(0, rows - 1.001), column.clip(0, columns - 1.001)
     i, j = row.astype(np.int32), column.astype(np.int32)

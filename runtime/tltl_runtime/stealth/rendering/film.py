@@ -1,4 +1,4 @@
-"""An episode as moving pictures: each frame a view of the game and a strip that says how the automaton judges it."""
+"""Films of an episode: a view of the game above a strip with the automaton's judgement."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ Moment = tuple[int, Snapshot]
 Pixel = Callable[[Point], tuple[float, float]]
 
 STRIP: Final = 60
-"""Height of the strip below the view, in pixels."""
+"""The height of the strip below the view, in pixels."""
 
 _INSTANT: Final = 1e-6
-"""Seconds that count as none."""
+"""Times that differ by no more than this many seconds are equal."""
 
 _TEXT: Final = 12
 _BAR: Final = 90
-"""Greatest width of a bar, in pixels."""
+"""The greatest width of a bar, in pixels."""
 _BARS_FROM: Final = 80
 _GAP: Final = 6
 _LINES: Final = (25, 41)
-"""Where in the strip the lines stand that say what remains."""
+"""The vertical positions in the strip of the lines that say what remains."""
 
 _PAPER: Final = "#0f172a"
 _PALE: Final = "#e2e8f0"
@@ -53,9 +53,10 @@ _FONT: Final = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"
 def frames(
     episode: Episode, times: Sequence[float], view: View, size: tuple[int, int], notation: Notation = "english"
 ) -> Iterator[Picture]:
-    """One picture for each of ``times``, in seconds from the reset and rising, ``size`` pixels wide and high, RGB.
+    """Yield one RGB picture of ``size`` (width, height) for each of ``times``.
 
-    Between two decisions bodies are on their ways, and the automaton is where the earlier one left it.
+    ``times`` are rising seconds since the reset. Between two decisions, bodies are interpolated,
+    and the automaton is in the state of the earlier decision.
     """
     width, height = size
     font = ImageFont.truetype(str(_FONT), _TEXT)
@@ -67,7 +68,7 @@ def frames(
 
 
 def _moment(episode: Episode, time: float) -> Moment:
-    """The number of the last decision before a time, and what there is to see then."""
+    """The number of the last decision before a time, and the snapshot at that time."""
     shots = episode.snapshots
     row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
     since = time - shots[row].time
@@ -85,27 +86,27 @@ def _rendered(episode: Episode, moments: Sequence[Moment], view: Rendered, size:
         renderer.close()
 
 
-# --- the plan with what moves -----------------------------------------------------------------------
+# --- the plan with moving bodies --------------------------------------------------------------------
 
 
 def _plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
-    """The level's plan with the way so far and everybody on it."""
+    """Draw the level's plan with the player's trail so far and all bodies."""
     empty, pixel = backdrop(episode.level, size)
-    way = Image.fromarray(empty)
-    draw = ImageDraw.Draw(way)
+    trail = Image.fromarray(empty)
+    draw = ImageDraw.Draw(trail)
     places = [pixel(shot.player.position) for shot in episode.snapshots]
-    drawn = moments[0][0]
+    drawn_to = moments[0][0]
     for row, shot in moments:
-        for before in range(drawn, row):
+        for before in range(drawn_to, row):
             draw.line(places[before : before + 2], fill=state_colour(int(episode.states[before])), width=2)
-        drawn = row
-        picture = way.copy()
+        drawn_to = row
+        picture = trail.copy()
         _populate(picture, pixel, episode.level, shot, state_colour(int(episode.states[row])))
         yield np.asarray(picture)
 
 
 def _populate(picture: Image.Image, pixel: Pixel, level: Level, shot: Snapshot, colour: str) -> None:
-    """Draw what is shut, what moves, the enemies and the player, who is of this colour."""
+    """Draw the shut barriers, the movers, the enemies, and the player in ``colour``."""
     draw = ImageDraw.Draw(picture)
     metre = pixel((1.0, 0.0, 0.0))[0] - pixel((0.0, 0.0, 0.0))[0]
     for barrier, is_open in zip(level.barriers, shot.open, strict=True):
@@ -127,7 +128,7 @@ def _corners(pixel: Pixel, low: Point, high: Point) -> tuple[float, ...]:
 
 
 def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radius: float, colour: str) -> None:
-    """A body from above, with a line to where it looks."""
+    """Draw a body from above, with a line in the direction of its yaw."""
     x, y = at
     draw.line((x, y, x + 2 * radius * cos(yaw), y - 2 * radius * sin(yaw)), fill=_PAPER, width=2)
     draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour, outline=_PAPER)
@@ -139,7 +140,7 @@ def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radi
 def _framed(
     view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont, notation: Notation
 ) -> Picture:
-    """The view with the strip below it: time, bars of progress and health, and what remains to be satisfied."""
+    """Add the strip below the view: time, progress, health, and what remains to be satisfied."""
     height, width, _ = view.shape
     picture = Image.new("RGB", (width, height + STRIP), _PAPER)
     picture.paste(Image.fromarray(view), (0, 0))
@@ -169,7 +170,7 @@ def _framed(
 
 
 def _fitting(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
-    """As much of the text as there is room for in the lines of the strip."""
+    """Break a text into the lines of the strip; text that does not fit is cut off."""
     lines: list[str] = []
     while text and len(lines) < len(_LINES):
         line = text

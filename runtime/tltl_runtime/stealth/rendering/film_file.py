@@ -1,4 +1,4 @@
-"""Frames to a GIF or an MP4, as they come."""
+"""Write frames to a GIF or an MP4 as they are produced."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Picture = NDArray[np.uint8]
 
 
 class NoEncoderError(RuntimeError):
-    """There is nothing on this machine that writes an MP4."""
+    """No encoder for MP4 is available on this machine."""
 
 
 def write_gif(path: Path, frames: Iterable[Picture], seconds: float) -> None:
-    """A GIF that shows each frame for ``seconds`` (counted in hundredths) and begins anew at its end.
+    """Write a looping GIF that shows each frame for ``seconds`` (rounded to hundredths).
 
-    Each frame has a palette of its own, so that what appears late has its colours, too.  By octrees: the other methods
-    lose colours of few pixels, such as those of a switch.
+    Each frame has its own palette, so that colours that first appear late are kept. The palette is
+    computed by octrees: the other methods lose colours of small things, such as a switch.
     """
     pictures = (
         Image.fromarray(frame).quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE) for frame in frames
@@ -38,7 +38,7 @@ def write_gif(path: Path, frames: Iterable[Picture], seconds: float) -> None:
 
 
 def write_mp4(path: Path, frames: Iterable[Picture], seconds: float) -> None:
-    """An MP4 (H.264) that shows each frame for ``seconds``; width and height are even.
+    """Write an MP4 (H.264) that shows each frame for ``seconds``; width and height must be even.
 
     Raises:
         NoEncoderError: imageio-ffmpeg is not installed, or finds no encoder.

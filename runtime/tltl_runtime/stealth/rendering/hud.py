@@ -1,4 +1,4 @@
-"""What a player reads on the screen: health and stamina, whether it is seen, what is still to be done, and the end."""
+"""The head-up display: health, stamina, sight, what remains to be done, and the end."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record, replace
 
 Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
-"""How something is to be taken, which a screen shows by colour."""
+"""The meaning of a line or bar, which a screen shows by colour."""
 
 KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
 
@@ -27,11 +27,11 @@ _TITLES: Final[dict[Kind, str]] = {
     "stopped": "stopped",
 }
 _WIDTH: Final = 36
-"""Letters in a line beside the picture."""
+"""Characters per line beside the picture."""
 _LONG: Final = 72
-"""Letters in a line below a title."""
+"""Characters per line below a title."""
 _MOST_LINES: Final = 10
-"""For what remains, beside the picture."""
+"""The most lines beside the picture for what remains."""
 
 
 @record
@@ -53,7 +53,10 @@ class Line:
 
 @record
 class Hud:
-    """The head-up display: bars and lines, and where the game stands still a title with lines below it."""
+    """The head-up display: bars and lines.
+
+    While the game stands still, it also has a title with lines below it.
+    """
 
     bars: tuple[Bar, ...]
     lines: tuple[Line, ...]
@@ -63,7 +66,7 @@ class Hud:
 
 
 def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
-    """What there is to read while the game runs; ``info`` is that of the environment's last step or reset."""
+    """Return the display during play; ``info`` comes from the environment's last step or reset."""
     bars = (
         Bar("health", snapshot.health, "good" if snapshot.health > 0.5 else "bad"),
         Bar("stamina", snapshot.player.stamina, "plain"),
@@ -77,21 +80,21 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
 
 
 def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
-    """The screen before the first key."""
+    """Return the screen before the first key is pressed."""
     goal = wrap(fspa.formula.english, _LONG)
     below = (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin.")
     return replace(shown, title=f"{level.name} {level.variant}", below=below)
 
 
 def ending(shown: Hud, why: Cause, file: str) -> Hud:
-    """The screen after the last step: how it ended, and ``file``, where it was recorded."""
+    """Return the screen after the last step; ``file`` is the name of the recording."""
     tone: Tone = "good" if why.kind == "success" else "bad"
     below = (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
     return replace(shown, title=_TITLES[why.kind], tone=tone, below=below)
 
 
 def _clock(seconds: float, fspa: Fspa) -> str:
-    """The time, and how much of it is left where the spec has a limit."""
+    """The time, and the time left if the spec has a limit."""
     if fspa.limit_steps is None:
         return f"{seconds:.1f} s"
     return f"{seconds:.1f} s, {max(0.0, fspa.limit_steps * DECISION - seconds):.0f} s left"

@@ -1,4 +1,4 @@
-"""What there is to see between two decisions, for pictures that move smoothly."""
+"""Interpolate the game between two decisions, for smooth motion."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from tltlc.core.record import replace
 
 
 def between(before: Snapshot, after: Snapshot, share: float) -> Snapshot:
-    """``before`` at a share of 0, ``after`` at 1, in between the bodies on their ways; all else is as in ``after``."""
+    """Interpolate the bodies from ``before`` (share 0) to ``after`` (share 1).
+
+    Everything else is as in ``after``.
+    """
     if share >= 1.0:
         return after
     player = replace(
@@ -38,5 +41,5 @@ def _point(before: Point, after: Point, share: float) -> Point:
 
 
 def _angle(before: float, after: float, share: float) -> float:
-    """Turned the shorter way round."""
+    """Interpolate a yaw along the shorter turn."""
     return before + share * ((after - before + pi) % (2 * pi) - pi)

@@ -1,7 +1,7 @@
-"""What is painted over a picture once its depth is known: the floor, fields of sight, glass, and a background.
+"""Layers that are painted over a picture by its depth: floor, fields of sight, glass, background.
 
-A pixel's place in the world follows from its depth, so paint lies on whatever is there; pictures hold floats from
-0 to 1.
+The position of a pixel in the world follows from its depth, so paint covers whatever is there.
+Pictures contain floats from 0 to 1.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tltl_runtime.stealth.rendering.cone import SightField
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
-"""Rows and columns."""
+"""Rows and columns of a picture."""
 
 _BEHIND = np.array((0.118, 0.141, 0.196), np.float32)
 _BEHIND_TOP = np.array((0.224, 0.259, 0.345), np.float32)
@@ -26,11 +26,14 @@ _TILE = 2.0
 _TILE_SHADE = 0.955
 _EDGE_SHADE = 0.62
 _FACES = np.array((0.85, 0.7, 1.0), np.float32)
-"""How bright glass is on its sides along x, along y, and on top."""
+"""The brightness of glass on its sides along x and along y, and on top."""
 
 
 class Canvas:
-    """A picture, (height, width, 3), with the depth of its pixels in metres along the view, (height, width)."""
+    """A picture (height, width, 3) with the depth of its pixels (height, width).
+
+    The depth is in metres along the view.
+    """
 
     def __init__(self, picture: Floats, depth: Floats, camera: Camera) -> None:
         self.picture = picture
@@ -39,29 +42,29 @@ class Canvas:
         self.height, self.width = depth.shape
         self.lines = sight_lines(camera, self.width, self.height)
         self.places = np.array(camera.eye, np.float32) + self.lines * depth[..., None]
-        """Where in the world each pixel is."""
+        """The position of each pixel in the world."""
 
     def tiles(self, floor: Mask) -> None:
-        """A chequered pattern, a tile 2 m wide, where ``floor`` says."""
+        """Paint a chequered pattern of 2 m tiles where ``floor`` is true."""
         rows, columns = np.nonzero(floor)
         tile = np.floor(self.places[rows, columns, :2] / np.float32(_TILE)).sum(axis=1)
         self.picture[rows, columns] *= np.where(tile % 2 == 1, np.float32(_TILE_SHADE), np.float32(1.0))[:, None]
 
     def edges(self, bodies: NDArray[np.int32]) -> None:
-        """Thin dark lines where one body ends and another begins, or where a surface turns."""
+        """Draw thin dark lines where ``bodies`` changes: between bodies, or between faces."""
         edge = np.zeros(bodies.shape, np.bool_)
         edge[:, 1:] |= bodies[:, 1:] != bodies[:, :-1]
         edge[1:] |= bodies[1:] != bodies[:-1]
         self.picture[edge] *= _EDGE_SHADE
 
     def background(self, empty: Mask) -> None:
-        """What is behind everything: lighter towards the top."""
+        """Paint the background, lighter towards the top."""
         rows, columns = np.nonzero(empty)
         share = (1 - rows / self.height).astype(np.float32)[:, None]
         self.picture[rows, columns] = _BEHIND + share * (_BEHIND_TOP - _BEHIND)
 
     def shadow(self, feet: Point, radius: float) -> None:
-        """A soft round shadow on what is below the feet."""
+        """Paint a soft round shadow on the surface below the feet."""
         x, y, z = feet
         window = self._window([(x + a, y + b, z) for a in (-radius, radius) for b in (-radius, radius)])
         places = self.places[window]
@@ -70,7 +73,7 @@ class Canvas:
         self.picture[window] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
 
     def field(self, field: SightField, colour: Sequence[float], strength: float) -> None:
-        """Paint the floor that an enemy sees; where it would only see who stands, half as strong."""
+        """Paint the floor an enemy sees; half as strong where it sees only standing players."""
         x, y, _ = field.eyes
         reach = field.reach
         window = self._window([(x + a, y + b, 0.0) for a in (-reach, reach) for b in (-reach, reach)])
@@ -81,7 +84,7 @@ class Canvas:
         self._blend(window, np.array(colour, np.float32), strength * seen)
 
     def glass(self, low: Point, high: Point, colour: Sequence[float], strength: float) -> None:
-        """A translucent box, behind whatever stands before it."""
+        """Paint a translucent box; bodies in front of it hide it."""
         corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
         window = self._window(corners)
         lines = self.lines[window]
@@ -99,8 +102,8 @@ class Canvas:
         self.picture[window] = self.picture[window] * (1 - share) + colour * share
 
     def _window(self, points: Sequence[Point]) -> Window:
-        """The part of the picture that holds these points, and what is between them."""
-        where = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
-        left, top = np.floor(where.min(axis=0)).astype(int)
-        right, bottom = np.ceil(where.max(axis=0)).astype(int) + 1
+        """The part of the picture that contains the projections of these points."""
+        positions = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
+        left, top = np.floor(positions.min(axis=0)).astype(int)
+        right, bottom = np.ceil(positions.max(axis=0)).astype(int) + 1
         return slice(max(top, 0), max(bottom, 0)), slice(max(left, 0), max(right, 0))

@@ -1,4 +1,4 @@
-"""A level from above, with the way of an episode through it, coloured by the automaton's state."""
+"""The plan of a level from above, with the path of an episode coloured by state."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tltl_runtime.stealth.recordings.summary import Notation
 from tltlc.automaton.fspa import Fspa
 
 SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
-"""By kind, as :data:`BARRIERS`."""
+"""Colours by kind of solid; :data:`BARRIERS` has the colours of barriers."""
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
 _SOLID_NAMES: Final = {"floor": "floor", "platform": "platform", "low": "low obstacle", "wall": "wall"}
 _BARRIER_NAMES: Final = {"solid": "gate", "laser": "laser"}
@@ -38,31 +38,34 @@ ENDS: Final[dict[End, tuple[str, str]]] = {
     "limit": ("s", "#64748b"),
     "stopped": ("o", "#64748b"),
 }
-"""Marker and colour."""
+"""The marker and colour for each end of an episode."""
 
 DPI: Final = 100
 _METRES_PER_INCH: Final = 2.0
 _LONGEST_SIDE: Final = 40.0
-"""Of a picture, in inches: larger levels are drawn smaller."""
+"""The longest side of a picture, in inches; larger levels are scaled down."""
 
 LINE: Final = 0.22
-"""Height of a line of the legend, in inches."""
+"""The height of a line of the legend, in inches."""
 
 _COLUMN: Final = 2.0
-"""Width of a column of the key to a level's colours, in inches."""
+"""The width of a column of the legend of :func:`draw_level`, in inches."""
 
 _ROOMY: Final = 6.0
-"""Inches to a side from which letters have their full size, in plans of less than their natural size."""
+"""Plans at least this wide and high, in inches, have text of full size.
+
+Smaller plans have it only at their natural size.
+"""
 
 MOST_LISTED: Final = 12
-"""Of the states of an episode, as many are in the legend."""
+"""The most states of an episode in the legend."""
 
 LETTERS_PER_INCH: Final = 12
-"""Of a line of the legend; what is longer is cut."""
+"""Characters per inch of a line of the legend; longer lines are cut."""
 
 
 def draw_level(level: Level, reach: Reach) -> bytes:
-    """The plan of a level as a PNG; red lies over all that nobody can stand on."""
+    """Draw the plan of a level as a PNG; red covers all places where the player cannot stand."""
     width, height = natural_size(level)
     key = _key(level)
     columns = max(1, int(width / _COLUMN))
@@ -74,9 +77,10 @@ def draw_level(level: Level, reach: Reach) -> bytes:
 
 
 def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
-    """The plan of an episode as a PNG, ``size`` pixels wide and high: its way, where the state changed, how it ended.
+    """Draw the plan of an episode as a PNG, ``size`` pixels wide and high.
 
-    The legend says what remained to be satisfied in each state.
+    It shows the player's path, where the state changed, and how the episode ended. The legend says
+    what remained to be satisfied in each state.
     """
     states = episode.states.tolist()
     path = [shot.player.position for shot in episode.snapshots]
@@ -86,36 +90,39 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     inches = (size[0] / DPI, size[1] / DPI) if size else (width, height + below)
     figure = Figure(figsize=inches, dpi=DPI, layout="constrained")
     axes = level_axes(figure, episode.level, start=False)
-    shrunk = _shrunk(figure, episode.level)
+    scale = _text_scale(figure, episode.level)
     title = f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
     axes.set_title("")
-    # A letter is about 0.65 of its height wide.
+    # A character is about 0.65 times as wide as it is high.
     figure.suptitle(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
     _add_way(axes, path, states)
-    dot = 9 * shrunk
+    dot = 9 * scale
     marks = [_mark(axes, path[0], "o", "white", "start", dot)]
-    # The mark of the end, which names its state, lies over all others.
+    # The last row is left out: the mark of the end covers it and names its state.
     for row in (row for row in range(1, len(states) - 1) if states[row] != states[row - 1]):
         _mark(axes, path[row], "o", state_colour(states[row]), str(states[row]), dot)
         axes.annotate(str(states[row]), path[row][:2], color="white", fontsize=6, ha="center", va="center", zorder=7)
-    died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
-    if died is not None:
-        marks.append(_mark(axes, path[died], "P", "white", "without health", 1.6 * dot))
+    death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
+    if death is not None:
+        marks.append(_mark(axes, path[death], "P", "white", "without health", 1.6 * dot))
     marks.append(_mark(axes, path[-1], *ENDS[episode.end], f"end: {episode.end}, state {states[-1]}", dot))
     marks[-1].set_zorder(8)
-    letters = int(inches[0] * LETTERS_PER_INCH / shrunk)
+    letters = int(inches[0] * LETTERS_PER_INCH / scale)
     lines = [
         Line2D(
             [], [], color=state_colour(state), linewidth=3, label=state_label(episode.fspa, state, letters, notation)
         )
         for state in visited
     ]
-    figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8 * shrunk, frameon=False)
+    figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8 * scale, frameon=False)
     return png(figure)
 
 
 def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """The plan of a level without its moving parts, (height, width, 3), and where in it a place is, in pixels."""
+    """Draw the plan without moving parts, (height, width, 3).
+
+    Also return the function from places to pixels.
+    """
     figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
     axes = level_axes(figure, level, moving=False, start=False)
     canvas: Any = FigureCanvasAgg(figure)
@@ -130,12 +137,12 @@ def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Ca
 
 
 def state_colour(state: int) -> str:
-    """The colour of a state of the automaton, as ``#rrggbb``."""
+    """Return the colour of a state of the automaton, as ``#rrggbb``."""
     return _STATES[state % len(_STATES)]
 
 
 def _add_reach(axes: Any, reach: Reach) -> None:
-    """Red over the cells without ground that can be reached."""
+    """Paint the cells without reachable ground red."""
     rows, columns = reach.ground.shape
     west, south = reach.origin
     red = np.where(reach.ground[..., None], 0.0, _UNREACHED)
@@ -144,7 +151,7 @@ def _add_reach(axes: Any, reach: Reach) -> None:
 
 
 def _key(level: Level) -> list[Any]:
-    """What the colours of a level's plan mean, those that there are in it."""
+    """The legend of a level's plan: the colours and marks that occur in it."""
     kinds = {solid.kind for solid in level.solids}
     handles: list[Any] = [Patch(facecolor=SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in SOLIDS if kind in kinds]
     barriers = {barrier.kind for barrier in level.barriers}
@@ -163,28 +170,32 @@ def _key(level: Level) -> list[Any]:
 
 
 def exit_mark() -> Line2D:
-    """The star of an exit, for legends."""
+    """Return the star of an exit, for legends."""
     return Line2D([], [], marker="*", linestyle="", color=EXIT, markersize=12, label="exit")
 
 
 def natural_size(level: Level) -> tuple[float, float]:
-    """Width and height in inches."""
+    """Return the natural width and height of a level's plan, in inches."""
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     width, height = (x1 - x0) / _METRES_PER_INCH, (y1 - y0) / _METRES_PER_INCH
     shrink = min(1.0, _LONGEST_SIDE / max(width, height))
     return width * shrink, height * shrink + 0.4
 
 
-def _shrunk(figure: Figure, level: Level) -> float:
-    """How much smaller letters are than in a plan of the natural size, so that a small one has room for them."""
+def _text_scale(figure: Figure, level: Level) -> float:
+    """The size of text, relative to a plan of natural size, from 0.6 to 1.
+
+    Small plans have smaller text.
+    """
     roomy = np.minimum(natural_size(level), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
 def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
-    """Axes in metres with all that a level has; what moves is drawn where it begins.
+    """Add axes in metres with everything in a level.
 
-    Without room for letters of full size, only switches and exits have their names.
+    Moving things are drawn at their initial positions. If text does not fit in full size, only
+    switches and exits are named.
     """
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     axes: Any = figure.add_subplot(
@@ -195,11 +206,11 @@ def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = 
         xlabel="x, m",
         ylabel="y, m",
     )
-    shrunk = _shrunk(figure, level)
-    roomy, letters = shrunk == 1.0, 8 * shrunk
-    axes.tick_params(labelsize=10 * shrunk)
+    scale = _text_scale(figure, level)
+    roomy, letters = scale == 1.0, 8 * scale
+    axes.tick_params(labelsize=10 * scale)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.label.set_size(10 * shrunk)
+        axis.label.set_size(10 * scale)
     for solid in sorted(level.solids, key=lambda solid: solid.box.high[2]):
         axes.add_patch(_area(solid.box, facecolor=SOLIDS[solid.kind], edgecolor="#94a3b8", linewidth=0.4))
     for barrier in level.barriers:
@@ -217,28 +228,28 @@ def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = 
     for switch in level.switches:
         axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor=SWITCH, alpha=0.5))
         _name(axes, switch.name, switch.position, letters)
-    for way_out in level.exits:
-        axes.plot(*way_out.position[:2], marker="*", markersize=14 * shrunk, color=EXIT)
-        _name(axes, way_out.name, way_out.position, letters)
+    for exit_ in level.exits:
+        axes.plot(*exit_.position[:2], marker="*", markersize=14 * scale, color=EXIT)
+        _name(axes, exit_.name, exit_.position, letters)
     if start:
         axes.plot(*level.start.position[:2], marker="o", markersize=7, color=INK)
     return axes
 
 
 def patrol(level: Level, enemy: Enemy) -> list[tuple[float, float]]:
-    """The way that an enemy walks round, past what stands on the straight line, while all barriers are shut."""
+    """Return the path of an enemy's patrol around obstacles, with all barriers shut."""
     floor = grid_of(level).floor(range(len(level.barriers)))
     route = [point[:2] for point in (*enemy.route, enemy.route[0])]
     way = route[:1]
     for goal in route[1:]:
-        while (here := floor.towards(way[-1], goal)) not in (None, way[-1], goal):
-            way.append(here)
+        while (corner := floor.towards(way[-1], goal)) not in (None, way[-1], goal):
+            way.append(corner)
         way.append(goal)
     return way
 
 
 def _add_way(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
-    pieces = [(one[:2], other[:2]) for one, other in pairwise(path)]
+    pieces = [(start[:2], end[:2]) for start, end in pairwise(path)]
     colours = [state_colour(state) for state in states[: len(pieces)]]
     axes.add_collection(LineCollection(pieces, colors=colours, linewidths=2.0, capstyle="round", zorder=4))
 
@@ -258,21 +269,25 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
 
 
 def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
-    """A state in the legend: its number, what remains to be satisfied, and its verdict where that is settled."""
-    known = fspa.states[state]
-    text = getattr(known.label, notation)
+    """Label a state in the legend: number, what remains to be satisfied, settled verdict."""
+    automaton_state = fspa.states[state]
+    text = getattr(automaton_state.label, notation)
     if len(text) > letters:
         text = text[: letters - 1] + "…"
-    settled = f" ({known.verdict})" if known.verdict in ("satisfied", "violated") and notation != "english" else ""
-    # matplotlib reads what stands between dollars as mathematics.
+    settled = (
+        f" ({automaton_state.verdict})"
+        if automaton_state.verdict in ("satisfied", "violated") and notation != "english"
+        else ""
+    )
+    # matplotlib treats text between dollar signs as mathematics.
     return f"state {state}: {text}{settled}".replace("$", r"\$")
 
 
 def png(figure: Figure) -> bytes:
-    """The figure as a PNG; equal figures give equal bytes."""
-    written = BytesIO()
-    figure.savefig(written, format="png", dpi=DPI, metadata={"Software": None})
-    return written.getvalue()
+    """Encode a figure as a PNG; equal figures give equal bytes."""
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    return buffer.getvalue()
 
 
 def _area(box: Box, **style: Any) -> Rectangle:
@@ -286,8 +301,8 @@ def _middle(box: Box) -> Point:
 
 
 def _flat(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
-    listed = list(points)
-    return [point[0] for point in listed], [point[1] for point in listed]
+    sequence = list(points)
+    return [point[0] for point in sequence], [point[1] for point in sequence]
 
 
 def _name(axes: Any, name: str, place: Point, size: float) -> None:

@@ -1,7 +1,8 @@
-"""Pictures of a level from snapshots: in the third person, from above, and of the whole level.
+"""Render pictures of a level from snapshots.
 
-Bodies are drawn by pybullet's TinyRenderer, which needs neither a display nor a graphics card and draws the same
-picture for the same snapshot; see docs/adr/0010-pictures-and-windows.md.
+The views are those of :mod:`~tltl_runtime.stealth.rendering.camera`. Bodies are drawn by pybullet's
+TinyRenderer, which needs neither a display nor a graphics card and draws the same picture for the
+same snapshot; see docs/adr/0010-pictures-and-windows.md.
 """
 
 from __future__ import annotations
@@ -23,26 +24,27 @@ from tltl_runtime.stealth.world.player import PlayerKind
 
 _LASER: Final[Colour] = (1.0, 0.15, 0.2)
 _SEEING: Final[Colour] = (1.0, 0.08, 0.12)
-"""Of the field of sight of an enemy that sees the player."""
+"""The colour of the field of sight of an enemy that sees the player."""
 _SIGHT: Final[dict[str, Colour]] = {
     "patrol": (1.0, 0.72, 0.1),
     "chase": (1.0, 0.12, 0.12),
     "search": (1.0, 0.42, 0.08),
     "return": (0.35, 0.6, 0.95),
 }
-"""Of the field of sight of an enemy that does not see the player, by its mode."""
+"""The colour of the field of sight of an enemy that does not see the player, by its mode."""
 
 _LIGHT: Final = (-0.45, -0.8, 1.6)
 _GLASS: Final = 0.22
 _SHADOW: Final = 0.6
 _OVERHEAD: Final = 1.0
-"""What begins higher than this is glass in the view from above."""
+"""In the view from above, boxes whose bottom is higher than this are drawn as glass."""
 
 
 class Renderer:
-    """Draws snapshots of a level, ``width`` by ``height`` pixels; each is drawn ``samples`` squared times finer.
+    """Draws snapshots of a level, ``width`` by ``height`` pixels.
 
-    Raises ValueError for a size that :func:`~tltl_runtime.stealth.rendering.camera.check_size` refuses.
+    Each pixel is the mean of ``samples`` squared samples. Raises ValueError for a size that
+    :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
     """
 
     def __init__(self, level: Level, width: int = 640, height: int = 480, samples: int = 1) -> None:
@@ -54,19 +56,22 @@ class Renderer:
         self._kind = PlayerKind()
 
     def close(self) -> None:
-        """Give up the bodies; the renderer is of no use afterwards.  Closing twice does nothing."""
+        """Release the bodies; the renderer cannot be used afterwards.
+
+        Closing twice does nothing.
+        """
         self._scene.close()
 
     def frame(self, snapshot: Snapshot, view: View = "third_person") -> NDArray[np.uint8]:
-        """The picture, (height, width, 3)."""
+        """Return the picture, (height, width, 3)."""
         eye = camera(self.level, view, snapshot.player.position, self.width / self.height)
         obstacles = self._scene.obstacles(snapshot)
-        glass = [each for each in obstacles if self._is_glass(each.box, eye, view, snapshot)]
-        self._scene.pose(snapshot, [each for each in obstacles if each not in glass])
+        glass = [obstacle for obstacle in obstacles if self._is_glass(obstacle.box, eye, view, snapshot)]
+        self._scene.pose(snapshot, [obstacle for obstacle in obstacles if obstacle not in glass])
         canvas = self._shot(eye)
         for feet in (snapshot.player.position, *snapshot.enemies):
             canvas.shadow(feet, _SHADOW)
-        self._paint_sight(canvas, snapshot, [each.box for each in obstacles])
+        self._paint_sight(canvas, snapshot, [obstacle.box for obstacle in obstacles])
         self._paint_glass(canvas, snapshot, glass)
         picture = canvas.picture
         if self.samples > 1:
@@ -74,30 +79,32 @@ class Renderer:
         return (picture.clip(0.0, 1.0) * 255 + 0.5).astype(np.uint8)
 
     def names(self, snapshot: Snapshot, view: View = "third_person") -> list[tuple[str, float, float]]:
-        """The names of what a level has, open barriers excepted, and where in the picture each is, in pixels."""
+        """Return the names of entities, except open barriers, with their positions in pixels."""
         eye = camera(self.level, view, snapshot.player.position, self.width / self.height)
-        named = [(each.name, each.position, 0.3) for each in self.level.switches]
-        named += [(each.name, each.position, 2.7) for each in self.level.exits]
+        named = [(switch.name, switch.position, 0.3) for switch in self.level.switches]
+        named += [(exit_.name, exit_.position, 2.7) for exit_ in self.level.exits]
         named += [
             (barrier.name, _top(barrier.box), 0.1)
             for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
             if not is_open
         ]
         movers = zip(self.level.movers, snapshot.movers, strict=True)
-        named += [(each.name, at, each.size[2] / 2 + 0.1) for each, at in movers]
-        named += [(each.name, at, 2.0) for each, at in zip(self.level.enemies, snapshot.enemies, strict=True)]
+        named += [(mover.name, place, mover.size[2] / 2 + 0.1) for mover, place in movers]
+        named += [(enemy.name, place, 2.0) for enemy, place in zip(self.level.enemies, snapshot.enemies, strict=True)]
         if not named:
             return []
         places = np.array([(x, y, z + above) for _, (x, y, z), above in named])
-        where = pixels(eye, places, self.width, self.height)
-        shown = (where >= 0).all(axis=1) & (where < (self.width, self.height)).all(axis=1)
+        positions = pixels(eye, places, self.width, self.height)
+        shown = (positions >= 0).all(axis=1) & (positions < (self.width, self.height)).all(axis=1)
         shown &= (places - np.array(eye.eye)) @ (np.array(eye.target) - np.array(eye.eye)) > 0
         return [
-            (name, float(x), float(y)) for (name, *_), (x, y), seen in zip(named, where, shown, strict=True) if seen
+            (name, float(x), float(y))
+            for (name, *_), (x, y), visible in zip(named, positions, shown, strict=True)
+            if visible
         ]
 
     def _shot(self, eye: Camera) -> Canvas:
-        """The bodies alone, with floor and background."""
+        """Draw the bodies, the floor and the background."""
         width, height = self.width * self.samples, self.height * self.samples
         _, _, colours, depths, bodies = pybullet.getCameraImage(
             width,
@@ -113,13 +120,13 @@ class Renderer:
             physicsClientId=self._scene.client,
         )
         picture = np.asarray(np.reshape(colours, (height, width, 4))[..., :3] / np.float32(255), np.float32)
-        shown = np.reshape(bodies, (height, width))
+        body_ids = np.reshape(bodies, (height, width))
         depth = np.reshape(depths, (height, width)).astype(np.float32)
         metres = np.asarray(eye.near * eye.far / (eye.far - (eye.far - eye.near) * depth), np.float32)
         canvas = Canvas(picture, metres, eye)
-        canvas.tiles(np.isin(shown, self._scene.floors))
-        canvas.edges(shown)
-        canvas.background(shown < 0)
+        canvas.tiles(np.isin(body_ids, self._scene.floors))
+        canvas.edges(body_ids)
+        canvas.background(body_ids < 0)
         return canvas
 
     def _paint_sight(self, canvas: Canvas, snapshot: Snapshot, boxes: list[Box]) -> None:
@@ -131,8 +138,8 @@ class Renderer:
                 canvas.field(field, _SIGHT[snapshot.modes[index]], 0.42)
 
     def _paint_glass(self, canvas: Canvas, snapshot: Snapshot, glass: list[Obstacle]) -> None:
-        """Lasers, and what would hide the player; what is far first."""
-        panes = [(each.box, each.colour, _GLASS) for each in glass]
+        """Paint the lasers and the boxes that would hide the player, from far to near."""
+        panes = [(obstacle.box, obstacle.colour, _GLASS) for obstacle in glass]
         panes += [
             (barrier.box, _LASER, 0.5)
             for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
@@ -142,7 +149,7 @@ class Renderer:
             canvas.glass(box.low, box.high, colour, strength)
 
     def _is_glass(self, box: Box, eye: Camera, view: View, snapshot: Snapshot) -> bool:
-        """Whether a box hides the player, or at all times much of the level."""
+        """Whether to draw a box as glass: it hides the player, or always much of the level."""
         if view == "top_down" and box.low[2] > _OVERHEAD:
             return True
         if view != "top_down" and _is_front(box, self.level.bounds):
@@ -153,12 +160,12 @@ class Renderer:
 
 
 def _top(box: Box) -> Point:
-    """The middle of the upper side."""
+    """The middle of a box's upper side."""
     return (box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.high[2]
 
 
 def _is_front(box: Box, bounds: Box) -> bool:
-    """Whether a box stands all along the south side of the level."""
+    """Whether a box covers the whole south side of the level."""
     return box.low[1] <= bounds.low[1] and box.low[0] <= bounds.low[0] and box.high[0] >= bounds.high[0]
 
 

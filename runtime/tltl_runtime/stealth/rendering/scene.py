@@ -1,8 +1,8 @@
-"""The bodies that pictures show: a pybullet client without physics, posed from snapshots.
+"""The bodies in pictures: a pybullet client without physics, posed from snapshots.
 
-Visual shapes have no collision shape here, each box is a body of its own, and what is not there is put far below.
-Translucent things, such as lasers, are no bodies: TinyRenderer draws none, so
-:mod:`tltl_runtime.stealth.rendering.paint` does.
+Visual shapes have no collision shapes here, each box is a separate body, and hidden bodies are
+moved far below. Translucent objects, such as lasers, are not bodies, because TinyRenderer cannot
+draw them; :mod:`tltl_runtime.stealth.rendering.paint` does.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _AWAY: Final = (0.0, 0.0, -1000.0)
 
 @record
 class Obstacle:
-    """A box that stands in a scene and may hide what is behind it."""
+    """A box in a scene that may hide what is behind it."""
 
     body: int
     box: Box
@@ -57,60 +57,64 @@ class Obstacle:
 
 
 class Scene:
-    """A level's bodies in a client of their own; ``pose`` puts them where a snapshot says."""
+    """The bodies of a level in a client of their own; ``pose`` moves them to match a snapshot."""
 
     def __init__(self, level: Level) -> None:
         self.level = level
         self.client = pybullet.connect(pybullet.DIRECT)
-        self.floors = [self._box(each.box, SOLIDS["floor"]) for each in level.solids if each.kind == "floor"]
-        self._solids = [self._obstacle(each.box, SOLIDS[each.kind]) for each in level.solids if each.kind != "floor"]
-        self._barriers = [self._obstacle(each.box, BARRIER) for each in level.barriers if each.kind == "solid"]
-        self._movers = [self._obstacle(Box(*around(each.path[0], each.size)), MOVER) for each in level.movers]
+        self.floors = [self._box(solid.box, SOLIDS["floor"]) for solid in level.solids if solid.kind == "floor"]
+        self._solids = [
+            self._obstacle(solid.box, SOLIDS[solid.kind]) for solid in level.solids if solid.kind != "floor"
+        ]
+        self._barriers = [self._obstacle(barrier.box, BARRIER) for barrier in level.barriers if barrier.kind == "solid"]
+        self._movers = [self._obstacle(Box(*around(mover.path[0], mover.size)), MOVER) for mover in level.movers]
         self._away: set[int] = set()
-        self._switches = [self._switch(each.position, each.radius) for each in level.switches]
+        self._switches = [self._switch(switch.position, switch.radius) for switch in level.switches]
         self._active = [False] * len(level.switches)
-        for each in level.exits:
-            self._beacon(each.position)
+        for exit_ in level.exits:
+            self._beacon(exit_.position)
         self._enemies = [self._person(RADIUS, _ENEMY_HEIGHT, ENEMY) for _ in level.enemies]
         kind = PlayerKind()
         self._standing = self._person(kind.radius, kind.height, PLAYER)
         self._crouched = self._person(kind.radius, kind.crouched_height, PLAYER)
 
     def close(self) -> None:
-        """Give the client back; closing twice does nothing."""
+        """Disconnect the client; closing twice does nothing."""
         if self.client >= 0:
             pybullet.disconnect(physicsClientId=self.client)
             self.client = -1
 
     def obstacles(self, snapshot: Snapshot) -> list[Obstacle]:
-        """All boxes that are there: solids but for the floor, shut barriers, and movers where they are."""
+        """Return all boxes that are present: solids except the floor, shut barriers, movers."""
         solid = [
-            is_open for each, is_open in zip(self.level.barriers, snapshot.open, strict=True) if each.kind == "solid"
+            is_open
+            for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
+            if barrier.kind == "solid"
         ]
         shut = [barrier for barrier, is_open in zip(self._barriers, solid, strict=True) if not is_open]
         movers = [
-            Obstacle(shown.body, Box(*around(place, mover.size)), shown.colour, moves=True)
-            for shown, mover, place in zip(self._movers, self.level.movers, snapshot.movers, strict=True)
+            Obstacle(obstacle.body, Box(*around(place, mover.size)), obstacle.colour, moves=True)
+            for obstacle, mover, place in zip(self._movers, self.level.movers, snapshot.movers, strict=True)
         ]
         return [*self._solids, *shut, *movers]
 
     def pose(self, snapshot: Snapshot, shown: Collection[Obstacle]) -> None:
-        """Put everything where it is; of the obstacles, only those in ``shown`` are there."""
-        there = {obstacle.body for obstacle in shown}
+        """Move all bodies to match a snapshot; obstacles that are not in ``shown`` are hidden."""
+        shown_bodies = {obstacle.body for obstacle in shown}
         for obstacle in shown:
             if obstacle.moves or obstacle.body in self._away:
                 self._put(obstacle.body, _middle(obstacle.box), 0.0)
                 self._away.discard(obstacle.body)
         for obstacle in (*self._solids, *self._barriers, *self._movers):
-            if obstacle.body not in there | self._away:
+            if obstacle.body not in shown_bodies | self._away:
                 self._put(obstacle.body, _AWAY, 0.0)
                 self._away.add(obstacle.body)
         for person, place, yaw in zip(self._enemies, snapshot.enemies, snapshot.yaws, strict=True):
             self._stand(person, place, yaw)
         player = snapshot.player
-        body, other = (self._standing, self._crouched)[:: -1 if player.crouching else 1]
+        body, hidden = (self._standing, self._crouched)[:: -1 if player.crouching else 1]
         self._stand(body, player.position, player.yaw)
-        self._stand(other, _AWAY, 0.0)
+        self._stand(hidden, _AWAY, 0.0)
         for index, active in enumerate(snapshot.active):
             if active != self._active[index]:
                 self._active[index] = active
@@ -129,7 +133,7 @@ class Scene:
         return self._body(shape, _middle(box))
 
     def _lathe(self, profile: Sequence[tuple[float, float]], colour: Colour, place: Point = _AWAY) -> int:
-        """A body that is round about the z axis: ``profile`` holds (radius, z) from the bottom to the top."""
+        """Create a body of revolution about z; ``profile`` has (radius, z) from bottom to top."""
         vertices, normals, indices = _turned(tuple(profile))
         shape = pybullet.createVisualShape(
             pybullet.GEOM_MESH,
@@ -142,7 +146,10 @@ class Scene:
         return self._body(shape, place)
 
     def _person(self, radius: float, height: float, colour: Colour) -> tuple[int, int]:
-        """An upright capsule, and a visor where it looks; both have their origin between the feet."""
+        """Create an upright capsule and a visor on its front.
+
+        Both have their origin between the feet.
+        """
         quarter = np.linspace(-pi / 2, 0, 7)
         foot = [(radius * cos(a), radius + radius * sin(a)) for a in quarter]
         head = [(r, height - z) for r, z in reversed(foot)]
@@ -156,13 +163,13 @@ class Scene:
         return self._lathe(foot + head, colour), self._body(visor, _AWAY)
 
     def _switch(self, place: Point, radius: float) -> tuple[int, int]:
-        """A plate as wide as the switch reaches, and a button in its middle."""
+        """Create a plate as large as the switch's radius, with a button in its middle."""
         plate = [(radius, 0.0), (radius, 0.02), (0.0, 0.02)]
         button = [(0.28, 0.02), (0.28, 0.16), (0.2, 0.2), (0.0, 0.2)]
         return self._lathe(plate, SHUT_SWITCH, place), self._lathe(button, SHUT_SWITCH, place)
 
     def _beacon(self, place: Point) -> None:
-        """A plate, a pole and a gem on it."""
+        """Create a plate, a pole and a gem on top of it."""
         self._lathe([(0.7, 0.0), (0.7, 0.03), (0.0, 0.03)], EXIT, place)
         self._lathe([(0.06, 0.0), (0.06, 1.9)], EXIT, place)
         self._lathe([(0.0, 1.8), (0.3, 2.2), (0.0, 2.6)], EXIT, place)
@@ -190,9 +197,10 @@ class Scene:
 def _turned(
     profile: tuple[tuple[float, float], ...], around: int = 28
 ) -> tuple[list[list[float]], list[list[float]], list[int]]:
-    """Vertices, normals and triangles of a profile turned about the z axis; edges stay sharp.
+    """The vertices, normals and triangles of a profile turned about the z axis.
 
-    Kept, since pybullet never lets go of a list that it was given: new ones would be lost with each scene.
+    Edges of the profile stay sharp. The result is cached, because pybullet never frees a list that
+    it was given: a new one for each scene would leak.
     """
     vertices: list[list[float]] = []
     normals: list[list[float]] = []

@@ -1,4 +1,4 @@
-"""The trajectories of many episodes over the plan of their level: what a designer looks at first."""
+"""The trajectories of many episodes on the plan of their level: an overview for designers."""
 
 from __future__ import annotations
 
@@ -28,31 +28,31 @@ from tltl_runtime.stealth.rendering.plan import (
 from tltlc.automaton.fspa import Fspa
 
 _FAINTEST: Final = 0.12
-"""Opacity of one among very many."""
+"""The opacity of one trajectory among very many."""
 
 
 def draw_trajectories(level: Level, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
-    """The trajectories as a PNG, coloured by the automaton's state, with marks where episodes ended, small ones where
-    they succeeded.
+    """Draw trajectories as a PNG, coloured by the automaton's state.
 
-    The legend says what remained to be satisfied in each state, how many episodes ended how, and what a star is.
+    Marks show where episodes ended; successes have small marks. The legend says what remained to be
+    satisfied in each state, how many episodes ended how, and what a star means.
     """
-    visited = sorted({int(state) for each in trajectories for state in each.states[:-1]})[:MOST_LISTED]
-    ends = Counter(each.end for each in trajectories)
+    visited = sorted({int(state) for trajectory in trajectories for state in trajectory.states[:-1]})[:MOST_LISTED]
+    ends = Counter(trajectory.end for trajectory in trajectories)
     width, height = natural_size(level)
     inches = (width, height + (len(visited) + len(ends) + bool(level.exits) + 1) * LINE)
     figure = Figure(figsize=inches, dpi=DPI, layout="constrained")
     axes = level_axes(figure, level)
     axes.set_title(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
     opacity = max(_FAINTEST, min(0.9, 4.0 / max(1, len(trajectories))))
-    for each in trajectories:
-        pieces = [each.points[row : row + 2] for row in range(len(each.points) - 1)]
-        colours = [state_colour(int(state)) for state in each.states[:-1]]
+    for trajectory in trajectories:
+        pieces = [trajectory.points[row : row + 2] for row in range(len(trajectory.points) - 1)]
+        colours = [state_colour(int(state)) for state in trajectory.states[:-1]]
         axes.add_collection(LineCollection(pieces, colors=colours, linewidths=1.5, alpha=opacity, zorder=4))
-    for each in trajectories:
-        (marker, colour), success = ENDS[each.end], each.end == "success"
+    for trajectory in trajectories:
+        (marker, colour), success = ENDS[trajectory.end], trajectory.end == "success"
         style = {"markersize": 4 if success else 8, "zorder": 5 if success else 6}
-        axes.plot(*each.points[-1], marker=marker, color=colour, markeredgecolor="white", **style)
+        axes.plot(*trajectory.points[-1], marker=marker, color=colour, markeredgecolor="white", **style)
     letters = int(inches[0] * LETTERS_PER_INCH)
     lines = [
         Line2D([], [], color=state_colour(state), linewidth=3, label=state_label(fspa, state, letters))

@@ -1,4 +1,4 @@
-"""What ``render`` of an environment gives or shows; nothing is made before the first picture."""
+"""The rendering of an environment: a picture or a window, created with the first picture."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ MODES: Final = ("human", "rgb_array")
 
 
 class Screen:
-    """Pictures of a level for the render mode ``rgb_array``, a window for ``human``.
+    """Renders pictures of a level for ``rgb_array``, and shows them in a window for ``human``.
 
-    ``size`` is width and height in pixels.  Raises ValueError for a mode or a view that there is not, and for a size
-    that :func:`~tltl_runtime.stealth.rendering.camera.check_size` refuses.
+    ``size`` is width and height in pixels. Raises ValueError for an unknown mode or view, and for a
+    size that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.
     """
 
     def __init__(self, level: Level, mode: str | None, view: View, size: tuple[int, int]) -> None:
@@ -40,10 +40,10 @@ class Screen:
         self._unseen = False
 
     def render(self, snapshot: Snapshot) -> NDArray[np.uint8] | None:
-        """The picture, (height, width, 3); in a window it is shown for the time of a decision instead.
+        """Return the picture, (height, width, 3), or show it for the time of a decision.
 
-        Where no window can be opened, one warning is given and nothing is shown.  Raises TltlError: TLT0730 where
-        what opens windows is not installed.
+        If no window can be opened, warn once and show nothing. Raises TltlError: TLT0730, pygame is
+        not installed.
         """
         if self.mode is None or self._unseen:
             return None
@@ -75,7 +75,7 @@ class Screen:
             self._unseen = True
 
     def close(self) -> None:
-        """Close the window and give up the bodies; a later picture makes them anew."""
+        """Close the window and release the bodies; a later picture creates them again."""
         if self._renderer is not None:
             self._renderer.close()
         if self._window is not None:

@@ -1,6 +1,6 @@
-"""A window with a keyboard, by pygame: shows pictures, and says which keys are held.
+"""A window with a keyboard, using pygame: it shows pictures and reads the keys.
 
-No other module imports pygame; docs/adr/0010-pictures-and-windows.md says why it is pygame.
+No other module imports pygame; docs/adr/0010-pictures-and-windows.md explains the choice.
 """
 
 from __future__ import annotations
@@ -18,12 +18,15 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 NO_WINDOW: Final = "TLT0830"
-"""The code of the error that no window can be opened."""
+"""The error code for a window that cannot be opened."""
 
 _LEAST: Final = 960
-"""Pixels: narrower pictures are enlarged to this width."""
+"""The least width of a window, in pixels; narrower pictures are enlarged to it."""
 _UNSEEN: Final = {"dummy", "offscreen"}
-"""What SDL draws to where there is no screen; a game would wait there for keys that nobody can press."""
+"""SDL drivers without a screen.
+
+With one of them, the game would wait for keys that can never be pressed.
+"""
 _TONES: Final[dict[Tone, tuple[int, int, int]]] = {
     "plain": (235, 239, 245),
     "quiet": (160, 170, 186),
@@ -37,18 +40,21 @@ _TITLE_STRENGTH: Final = 215
 _LINE: Final = 20
 """The height of a line, in pixels."""
 _SMALL: Final = 20
-"""The height of names in the picture."""
+"""The height of names in the picture, in pixels."""
 _SIDE: Final = 330
-"""The width of what stands beside the picture."""
+"""The width of the panel beside the picture, in pixels."""
 _TRACK: Final = (60, 68, 84)
 
 Names = Sequence[tuple[str, float, float]]
-"""Names, and where they stand: pixels from the left and from the top."""
+"""Names and their positions, in pixels from the left and from the top."""
 
 
 @record
 class Keys:
-    """What a person asks for: an action of the game, and whether to begin again, to stop, or another view."""
+    """The player's input: an action of the game, and commands to the window.
+
+    The commands are to restart, to stop, and to change the view.
+    """
 
     action: tuple[int, int, int, int, int]
     restart: bool = False
@@ -57,17 +63,17 @@ class Keys:
 
 
 class Window:
-    """A window for pictures of ``size`` (width, height), enlarged where that is small; it closes with ``close``.
+    """A window for pictures of ``size`` (width, height); small pictures are enlarged.
 
-    One with a ``side`` has room beside the pictures for a head-up display.
+    A window with a ``side`` has a panel for a head-up display beside the pictures. With
+    ``sticky_crouch``, one key press starts crouching, and the next one ends it.
 
-    With ``sticky_crouch`` one stroke of a key begins to crouch, and the next stands up.
-
-    Keys: arrows or WASD walk (up is away from the eye, which is north), space jumps, C or control crouches, shift
-    sprints, R begins again, V changes the view, Escape, Q or the window's own button stop.
+    Keys: arrows or WASD walk (up is north, away from the camera), space jumps, C or control
+    crouches, shift sprints, R restarts, V changes the view; Escape, Q or the window's close button
+    stop.
 
     Raises:
-        TltlError: TLT0730 without pygame, TLT0830 where no window can be opened.
+        TltlError: TLT0730 without pygame, TLT0830 if no window can be opened.
     """
 
     def __init__(self, title: str, size: tuple[int, int], side: bool = False, sticky_crouch: bool = False) -> None:
@@ -76,7 +82,7 @@ class Window:
         self.size = (round(size[0] * scale), round(size[1] * scale))
         self._side = _SIDE if side else 0
         try:
-            # Without a screen SDL complains by itself of each that it does not find.
+            # Without a screen, SDL itself prints complaints on standard error.
             with silence():
                 pygame.display.init()
                 self._surface = pygame.display.set_mode((self._side + self.size[0], self.size[1]))
@@ -99,7 +105,7 @@ class Window:
         self._pygame.quit()
 
     def keys(self) -> Keys:
-        """What is asked for now; a key that was only tapped since the last call counts as held."""
+        """Return the current input; keys tapped since the last call count as held."""
         pygame = self._pygame
         stop = restart = view = False
         crouches = (pygame.K_c, pygame.K_LCTRL, pygame.K_RCTRL)
@@ -130,7 +136,7 @@ class Window:
         return Keys(action, restart, stop, view)
 
     def show(self, frame: NDArray[np.uint8], hud: Hud | None = None, names: Names = ()) -> None:
-        """Show a picture, (height, width, 3), names at their places in its pixels, and the head-up display."""
+        """Show a picture (height, width, 3), with names at their pixels and the head-up display."""
         pygame = self._pygame
         picture = pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), frame.shape[1::-1], "RGB")
         self._surface.blit(pygame.transform.smoothscale(picture, self.size), (self._side, 0))
@@ -143,12 +149,15 @@ class Window:
         pygame.display.flip()
 
     def wait(self, seconds: float) -> None:
-        """Wait until this long after the last call, and let the window live meanwhile."""
+        """Wait until this many seconds after the last call; keep the window responsive."""
         self._pygame.event.pump()
         self._clock.tick(1 / seconds)
 
     def _draw_name(self, name: str, x: float, y: float) -> None:
-        """A name above a place in the picture, light with a dark edge, to be read on anything."""
+        """Draw a name above a position.
+
+        It is light with a dark outline, and so readable on any background.
+        """
         light, dark = (self._text(name, tone, _SMALL) for tone in ("plain", "dark"))
         left = self._side + round(x) - light.get_width() // 2
         top = round(y) - light.get_height()
@@ -159,7 +168,7 @@ class Window:
     # The head-up display
 
     def _draw_side(self, hud: Hud) -> None:
-        """Bars and lines, left of the picture."""
+        """Draw the bars and lines to the left of the picture."""
         step = _LINE
         self._surface.fill(_PANEL, (0, 0, self._side, self.size[1]))
         rows = [self._bar(bar.name, bar.value, bar.tone, step) for bar in hud.bars]
@@ -168,7 +177,7 @@ class Window:
             self._surface.blit(row, (step, step + index * round(step * 1.3)))
 
     def _draw_title(self, hud: Hud) -> None:
-        """A title and the lines below it, in the middle of the picture."""
+        """Draw the title and the lines below it in the middle of the picture."""
         pygame, step = self._pygame, _LINE + 4
         rows = [self._text(hud.title, hud.tone, step * 2), *(self._text(line, "plain", step) for line in hud.below)]
         width = max(row.get_width() for row in rows) + 2 * step
@@ -183,7 +192,7 @@ class Window:
         self._surface.blit(panel, (max(0, middle[0]), max(0, middle[1])))
 
     def _bar(self, name: str, value: float, tone: Tone, height: int) -> Any:
-        """A name, and how much of a track is filled."""
+        """Draw a name and a track that is filled up to ``value``."""
         pygame = self._pygame
         row = pygame.Surface((height * 13, height), pygame.SRCALPHA)
         row.blit(self._text(name, "quiet", height), (0, 0))
@@ -200,7 +209,7 @@ class Window:
 
 
 def _loaded() -> Any:
-    """Pygame, without its greeting on standard output."""
+    """Import pygame without its greeting on standard output."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         import pygame
@@ -214,5 +223,5 @@ def _loaded() -> Any:
 
 def _no_display(why: str) -> TltlError:
     title = f"no window can be opened here: {why}"
-    way_out = "play on a machine with a screen, or start `Xvfb` and set DISPLAY; pictures of episodes need none of that"
-    return TltlError([Diagnostic(NO_WINDOW, title, help=way_out)])
+    help_ = "play on a machine with a screen, or start `Xvfb` and set DISPLAY; pictures of episodes need none of that"
+    return TltlError([Diagnostic(NO_WINDOW, title, help=help_)])
