@@ -1,1 +1,1 @@
-"""What a level has for a spec, and what a player can reach there at all."""
+"""What a level supplies to a spec, and what a player can reach in it."""

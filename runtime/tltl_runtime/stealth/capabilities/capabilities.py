@@ -1,4 +1,4 @@
-"""Whether a level has what a spec speaks of: its entities and signals, on the spec's clock and scales."""
+"""Check that a level supplies what a spec uses: entities, signals, clock and params."""
 
 from __future__ import annotations
 
@@ -21,78 +21,81 @@ from tltlc.resolve.spec import Signal
 from tltlc.resolve.units import TYPES
 
 _CALL: Final = re.compile(r"([\w.]+)\((.*)\)\Z")
-_OF: Final = {"active": "switch", "open": "barrier"}
-"""The signals that not every entity has, and of what kind those are that do."""
+_KIND_OF: Final = {"active": "switch", "open": "barrier"}
+"""The signals that only one kind of entity has, with that kind."""
 
 _ARTICLE: Final = {"angle": "an angle"}
 
 
 def check_supply(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
-    """Everything that a spec asks of a level and does not get.
+    """Return diagnostics for everything that a spec uses and a level does not supply.
 
-    TLT0810 an entity that is missing, TLT0811 a signal; TLT0812 one of another type (a warning: of another range);
-    TLT0813, a warning, the spec is made for another level; TLT0617 another clock; TLT0307 the level's value of a
-    param lies outside the param's range.
+    TLT0810, an entity is missing; TLT0811, a signal is missing; TLT0812, a signal has another type
+    (a warning: another range); TLT0813, a warning: the spec is made for another level; TLT0617,
+    another clock; TLT0307, the level's value of a param is outside the param's range.
     """
-    found = [*_signals(level, fspa, places)]
+    diagnostics = [*_signals(level, fspa, places)]
     if fspa.level is not None and fspa.level != level.name:
         title = f"`{fspa.name}` is made for the level `{fspa.level}`, not for `{level.name}`"
         help_ = f"write `level {level.name}` in the spec, where it is made for that one"
-        where = places.level()
-        if where and comes_with_the_package(where[0].source.name):
+        labels = places.level()
+        if labels and comes_with_the_package(labels[0].source.name):
             help_ = (
                 f"this spec comes with tltlc: `tltlc new FOLDER --level {fspa.level}` copies it with its level; "
                 f"write `level {level.name}` in the copy, and put that beside `{level.name}.toml`"
             )
-        found.append(Diagnostic("TLT0813", title, where, help_, "warning"))
+        diagnostics.append(Diagnostic("TLT0813", title, labels, help_, "warning"))
     if fspa.clock_s is not None and not isclose(fspa.clock_s, DECISION, rel_tol=1e-9):
         title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, and a step of the game takes {DECISION:g} s"
         help_ = f"write `clock {DECISION:g} s` in the specification"
-        found.append(Diagnostic("TLT0617", title, places.clock(), help_))
+        diagnostics.append(Diagnostic("TLT0617", title, places.clock(), help_))
     try:
         param_values(fspa.params, given_params(level, fspa))
     except TltlError as error:
-        found += error.diagnostics
-    return found
+        diagnostics += error.diagnostics
+    return diagnostics
 
 
 def given_params(level: Level, fspa: Fspa) -> dict[str, float]:
-    """The values, in SI units, of those params of a spec that the level knows."""
-    known = {param.name for param in fspa.params}
-    return {name: value for name, value in params(level).items() if name in known}
+    """Return the values, in SI units, of the spec's params that the level defines."""
+    declared = {param.name for param in fspa.params}
+    return {name: value for name, value in params(level).items() if name in declared}
 
 
 def used_entities(level: Level, fspa: Fspa) -> tuple[str, ...]:
-    """The entities of the level that the signals of a spec speak of, in the spec's order."""
-    there = entity_names(level)
-    return tuple(dict.fromkeys(name for signal in fspa.signals for name in _arguments(signal.name) if name in there))
+    """Return the entities of the level that the signals of a spec name, in the spec's order."""
+    entities = entity_names(level)
+    return tuple(dict.fromkeys(name for signal in fspa.signals for name in _arguments(signal.name) if name in entities))
 
 
 def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
-    offered, there = offers(level), entity_names(level)
+    offered, entities = offers(level), entity_names(level)
     missing: set[str] = set()
     for signal in fspa.signals:
-        strangers = [name for name in _arguments(signal.name) if name not in there]
-        for name in strangers:
+        unknown = [name for name in _arguments(signal.name) if name not in entities]
+        for name in unknown:
             if name not in missing:
                 missing.add(name)
                 title = f"the level `{level.name}` has no entity `{name}`"
-                yield Diagnostic("TLT0810", title, places.entity(name), suggestion(name, there))
-        if strangers:
+                yield Diagnostic("TLT0810", title, places.entity(name), suggestion(name, entities))
+        if unknown:
             continue
         if signal.name in offered:
             yield from _mismatch(signal, offered[signal.name], level, places)
         else:
             title = f"the level `{level.name}` has no signal `{signal.name}`"
-            yield Diagnostic("TLT0811", title, places.signal(signal.name), _way_out(signal.name, level, offered))
+            yield Diagnostic("TLT0811", title, places.signal(signal.name), _hint(signal.name, level, offered))
 
 
 def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
-    """What does not fit between a signal as the spec declares it and as the level gives it."""
+    """Report differences between a signal as the spec declares it and as the level supplies it."""
     bool_wanted = signal.type == "bool" and offer.type != "bool"
     if bool_wanted or TYPES[signal.type] != TYPES[offer.type]:
-        title = f"`{signal.name}` is {_a(signal.type)} in the spec, and the level `{level.name}` gives {_a(offer.type)}"
-        help_ = f"declare it as {_a(offer.type)}, or give the signal that you mean another name"
+        title = (
+            f"`{signal.name}` is {_with_article(signal.type)} in the spec, "
+            f"and the level `{level.name}` gives {_with_article(offer.type)}"
+        )
+        help_ = f"declare it as {_with_article(offer.type)}, or give the signal that you mean another name"
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_)
         return
     low, high = _ends(signal.low, signal.high)
@@ -106,11 +109,11 @@ def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) ->
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
 
 
-def _way_out(name: str, level: Level, offered: dict[str, Offer]) -> str:
+def _hint(name: str, level: Level, offered: dict[str, Offer]) -> str:
     call = _CALL.match(name)
-    if call and call[1] in _OF:
-        kind = _OF[call[1]]
-        known = [each.name for each in (level.switches if kind == "switch" else level.barriers)]
+    if call and call[1] in _KIND_OF:
+        kind = _KIND_OF[call[1]]
+        known = [entity.name for entity in (level.switches if kind == "switch" else level.barriers)]
         return f"it is for a {kind}: {suggestion(call[2], known)}"
     return suggestion(name, offered, described(level)) + "\nunder `[signals]` a level gives its signals further names"
 
@@ -128,5 +131,5 @@ def _rounded(offer: Offer) -> tuple[float | None, float | None]:
     return (None if offer.low is None else round(offer.low, 3)), (None if offer.high is None else round(offer.high, 3))
 
 
-def _a(type_: str) -> str:
+def _with_article(type_: str) -> str:
     return _ARTICLE.get(type_, f"a {type_}")

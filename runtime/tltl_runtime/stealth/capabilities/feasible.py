@@ -1,4 +1,4 @@
-"""Whether anybody can do in a level what a spec asks, as far as it depends on what can be reached there."""
+"""Check whether a spec can be met in a level, as far as that depends on what can be reached."""
 
 from __future__ import annotations
 
@@ -23,30 +23,34 @@ from tltlc.resolve.range_proof.interval import Interval, UndefinedError
 from tltlc.resolve.range_proof.region import Region, Variable, bound
 
 _TALLER: Final = 0.25
-"""By so many metres jumps get higher, until one leads past what is in the way."""
+"""The step, in metres, by which jumps are raised in search of the obstacle that is too high."""
 
 
 def check_reach(level: Level, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
-    """TLT0814 for each entity of a spec that nobody gets near to, as an error where the spec cannot be met without it.
+    """Return TLT0814 for each entity of a spec that cannot be reached.
 
-    The level supplies all that the spec speaks of.
+    It is an error if the spec cannot be met without the entity, else a warning. The level must
+    supply everything that the spec uses.
     """
-    far = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
-    if not far:
+    unreached = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
+    if not unreached:
         return []
-    doable = _doable(fspa, _impossible(level, reach, fspa))
+    feasible = _may_accept(fspa, _impossible(level, reach, fspa))
     ways = _Ways(level, reach)
-    found = []
-    for name in far:
+    diagnostics = []
+    for name in unreached:
         title = f"nobody reaches `{name}` in `{level.name}:{level.variant}`"
-        title += "" if doable else f", so nobody can do what `{fspa.name}` asks"
-        severity: Severity = "warning" if doable else "error"
-        found.append(Diagnostic("TLT0814", title, places.entity(name), ways.end(name), severity))
-    return found
+        title += "" if feasible else f", so nobody can do what `{fspa.name}` asks"
+        severity: Severity = "warning" if feasible else "error"
+        diagnostics.append(Diagnostic("TLT0814", title, places.entity(name), ways.end(name), severity))
+    return diagnostics
 
 
 def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
-    """A warning TLT0806 where a jump may lead out of a level: that would end the episode with an error."""
+    """Return a warning, TLT0806, if a jump may lead out of a level.
+
+    Leaving the level would end the episode with an error.
+    """
     jump = reach.highest + highest_jump(PlayerKind())
     top = level.bounds.high[2]
     if jump <= top:
@@ -58,19 +62,20 @@ def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
 
 
 def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
-    """:func:`check_reach` for who is about to play, as warnings: one may well play what cannot be finished.
+    """Return the results of :func:`check_reach` as warnings, for play.
 
-    A level that is too large to be searched gives a warning, too, TLT0006.
+    A level may be played even if its spec cannot be met. If a level is too large to search, the
+    result is a warning, too, TLT0006.
     """
     try:
-        found: Iterable[Diagnostic] = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+        diagnostics: Iterable[Diagnostic] = check_reach(level, reachable(level), fspa, SpecPlaces(None))
     except TltlError as error:
-        found = error.diagnostics
-    return [replace(each, severity="warning") for each in found]
+        diagnostics = error.diagnostics
+    return [replace(diagnostic, severity="warning") for diagnostic in diagnostics]
 
 
 def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
-    """The atoms that hold nowhere that can be reached, by index."""
+    """The indices of the atoms that cannot hold at any reachable place."""
     offered = offers(level)
     box: dict[Variable, Interval] = {}
     for signal in fspa.signals:
@@ -79,12 +84,12 @@ def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
         entity = signal.name.removeprefix("distance(").removesuffix(")")
         if signal.name == f"distance({entity})":
             low = max(low, reach.distances[entity])
-        # A sample outside the declared range counts as the nearest value inside.
+        # A sample outside the declared range is clamped to it.
         least, most = _ends(signal.low, signal.high)
         box[Signal(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
-    given = given_params(level, fspa)
+    known_params = given_params(level, fspa)
     for param in fspa.params:
-        value = given.get(param.name, param.value)
+        value = known_params.get(param.name, param.value)
         box[Param(param.name)] = (value, value)
     return frozenset(index for index, atom in enumerate(fspa.atoms) if _highest(atom.expression, box) <= 0.0)
 
@@ -94,7 +99,7 @@ def _ends(low: float | None, high: float | None) -> Interval:
 
 
 def _highest(expression: Expression, box: Mapping[Variable, Interval]) -> float:
-    """A value that an expression does not exceed in a box."""
+    """An upper bound of an expression in a box."""
     highest = -inf
     try:
         for case in cases(expression):
@@ -106,26 +111,28 @@ def _highest(expression: Expression, box: Mapping[Variable, Interval]) -> float:
     return highest
 
 
-def _doable(fspa: Fspa, impossible: frozenset[int]) -> bool:
-    """Whether a trace on which these atoms never hold may be accepted."""
-    met, waiting = {0}, [0]
-    while waiting:
-        state = waiting.pop()
+def _may_accept(fspa: Fspa, impossible: frozenset[int]) -> bool:
+    """Whether the automaton may accept a trace on which the ``impossible`` atoms never hold."""
+    reached, pending = {0}, [0]
+    while pending:
+        state = pending.pop()
         if fspa.states[state].accepting:
             return True
         for edge in fspa.edges_from(state):
-            open_ = any(not any(holds and atom in impossible for atom, holds in prime) for prime in edge.guard.primes)
-            if open_ and edge.target not in met:
-                met.add(edge.target)
-                waiting.append(edge.target)
+            passable = any(
+                not any(holds and atom in impossible for atom, holds in prime) for prime in edge.guard.primes
+            )
+            if passable and edge.target not in reached:
+                reached.add(edge.target)
+                pending.append(edge.target)
     return False
 
 
-# --- where the way ends ------------------------------------------------------------------------------
+# --- what is in the way ------------------------------------------------------------------------------
 
 
 class _Ways:
-    """What would be reached in a level if it were another one."""
+    """Finds the obstacle before an entity, by searching changed versions of the level."""
 
     def __init__(self, level: Level, reach: Reach) -> None:
         self._level, self._reach = level, reach
@@ -134,7 +141,7 @@ class _Ways:
         self._budget = Budget(WORK["cells of reachable space"])
 
     def end(self, entity: str) -> str:
-        """What is in the way to an entity that nobody reaches, as far as that is found soon."""
+        """Describe what blocks the way to an unreachable entity, as far as the budget allows."""
         nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:
             return self._shut(entity) or self._too_high(entity) or nearest
@@ -142,19 +149,22 @@ class _Ways:
             return nearest
 
     def _shut(self, entity: str) -> str:
-        """The barrier that is in the way, and why it stays shut; nothing where none is."""
-        stays = [each for each in self._level.barriers if each.name not in self._reach.barriers]
-        chance = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
-        for barrier in stays:
-            switches = barrier.opened_by or chance[barrier.name]
+        """Describe the barrier in the way and why it stays shut; empty if there is none."""
+        shut = [barrier for barrier in self._level.barriers if barrier.name not in self._reach.barriers]
+        unlocked_by = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
+        for barrier in shut:
+            switches = barrier.opened_by or unlocked_by[barrier.name]
             missing = next((name for name in switches if name not in self._reach.switches), None)
             if barrier.kind == "solid" and missing and self._is_behind(entity, barrier.name):
-                where = "which lies behind it" if self._is_behind(missing, barrier.name) else "which nobody reaches"
-                return f"`{barrier.name}` stays shut: it is opened by `{missing}`, {where}"
+                location = "which lies behind it" if self._is_behind(missing, barrier.name) else "which nobody reaches"
+                return f"`{barrier.name}` stays shut: it is opened by `{missing}`, {location}"
         return ""
 
     def _too_high(self, entity: str) -> str:
-        """The solid that is got over first where jumps are higher and higher; nothing where none is."""
+        """Describe the solid that is too high to jump over, or return an empty text.
+
+        It is found by trying ever higher jumps.
+        """
         lift = normal = highest_lift(PlayerKind())
         while lift < self._level.bounds.high[2] and not self._jumping(lift).reaches(entity):
             lift += _TALLER
@@ -171,7 +181,7 @@ class _Ways:
         return self._higher[lift]
 
     def _is_behind(self, entity: str, obstacle: str) -> bool:
-        """Whether an entity would be reached without a solid or a barrier."""
+        """Whether an entity could be reached if a solid or barrier were removed."""
         if obstacle not in self._without:
             self._without[obstacle] = reachable(self._level, without=[obstacle], budget=self._budget)
         return self._without[obstacle].reaches(entity)

@@ -1,19 +1,22 @@
-"""Which places of a level a player can reach at all: more than can be reached, never less, so that "no" is a proof.
+"""Compute which places of a level a player can reach.
 
-Taken for granted of the physics and of :class:`~tltl_runtime.stealth.world.player.PlayerKind`, each rather too much
-than too little (tests try some of them in the physics):
+The result is an over-approximation, so that "unreachable" is a proof. These assumptions about the
+physics and :class:`~tltl_runtime.stealth.world.player.PlayerKind` err on the side of reaching too
+much (tests check some of them in the physics):
 
-- The body is crouched all the time, 0.9 m high, and 0.25 m to each side wide, not 0.3 m.
-- Ground is the top of anything, within 0.28 m of it and from 0.16 m below on: there the contact with an edge is ground.
-- From ground the feet come to tops that are at most 1.27 m higher: a jump lifts them by 0.97 m in steps of 1/60 s, and
-  an edge more than 0.3 m above them meets the side of the body, not its round foot, which slides up.  (A top of
-  1.1 m is nearly always got onto, one of 1.2 m once in a hundred tries, one of 1.24 m never was.)
-- Until the next ground, nobody is faster than a sprint, 5 m/s, whatever the stamina, and no fall takes longer than one
-  at 8 m/s once it is that fast.
-- Moving obstacles are in nobody's way; wherever they come, their top is ground, and they throw who stands on it as high
-  as 3 m/s more than their own speed would.
-- Lasers and enemies stop nobody.  Barriers are shut until their switches have been reached; where one of several
-  opens at random, each does.
+- The body is always crouched, 0.9 m high, and extends 0.25 m to each side, not 0.3 m.
+- The top of any box is ground. So is the space up to 0.28 m beside it and 0.16 m below it, where
+  contact with its edge counts as ground.
+- From ground, the feet can get to tops that are at most 1.27 m higher: a jump lifts them by 0.97 m
+  (in steps of 1/60 s), and an edge more than 0.3 m above them hits the side of the body, not its
+  round end, which would slide up. (In tests, a top of 1.1 m is nearly always reached, one of 1.2 m
+  in one of a hundred tries, one of 1.24 m never.)
+- Until the next ground, the player moves at most at the speed of a sprint, 5 m/s, whatever the
+  stamina. A fall lasts no longer than one that goes on at 8 m/s once it is that fast.
+- Movers block nothing. Their tops are ground along their whole path, and they throw a player who
+  stands on them upwards with their own speed plus 3 m/s.
+- Lasers and enemies stop nobody. Barriers are shut until their switches have been reached; if one
+  of several barriers opens at random, all of them do.
 """
 
 from __future__ import annotations
@@ -41,12 +44,15 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import WORK
 
 NEAR: Final = 1.0
-"""Within so many metres of its position an entity counts as reached."""
+"""An entity counts as reached within this distance of its position, in metres."""
 
 _EDGE: Final = 0.28
-"""How far beside a top one still has ground, in metres: contacts count that lead upwards by more than 30 degrees."""
+"""How far beside a top the ground extends, in metres.
+
+A contact counts as ground if it points upwards by more than 30 degrees.
+"""
 _EDGE_DEPTH: Final = 0.16
-"""How far below a top the feet are then."""
+"""How far below a top the feet are at that distance, in metres."""
 _TOUCH: Final = 0.02
 _THROW: Final = 3.0
 _PHYSICS_STEP: Final = 1 / 60
@@ -55,11 +61,13 @@ _ROUNDING: Final = 1e-5
 
 @record
 class Reach:
-    """What can be reached: ``switches`` and ``barriers`` (those that open) by name, and how near one gets to what.
+    """The reachable part of a level.
 
-    ``distances`` has, in metres, the least distance from the feet to each entity that stays where it is; to those
-    that move it is 0.  ``ground`` [rows, columns] are the cells, ``cell`` metres wide from ``origin`` (west, south) on,
-    with anything that one can stand on; rows go north.  ``highest`` is how high the highest of it is, in metres.
+    ``switches`` names the switches that can be reached, ``barriers`` those barriers that open.
+    ``distances`` has the least distance, in metres, from the feet to each entity that does not
+    move; for moving entities it is 0. ``ground`` [rows, columns] marks the cells with ground to
+    stand on; they are ``cell`` metres wide and start at ``origin`` (west, south); rows go north.
+    ``highest`` is the height of the highest ground, in metres.
     """
 
     switches: tuple[str, ...]
@@ -71,21 +79,21 @@ class Reach:
     highest: float
 
     def reaches(self, entity: str) -> bool:
-        """Whether one gets within a metre of an entity."""
+        """Whether the player can get within a metre of an entity."""
         return self.distances[entity] <= NEAR
 
 
 def reachable(
     level: Level, *, lift: float | None = None, without: Collection[str] = (), budget: Budget | None = None
 ) -> Reach:
-    """Everything that a player may reach from anywhere where an episode begins.
+    """Compute everything that a player may reach from any start of an episode.
 
-    ``lift`` is how much higher than the ground that was left the next may be, in metres, by default
-    :func:`highest_lift`; solids and barriers ``without`` are not there.
+    ``lift`` is how much higher than the last ground the next ground may be, in metres, by default
+    :func:`highest_lift`; the solids and barriers in ``without`` are removed.
 
     Raises:
-        TltlError: TLT0006, the level is too large or too winding to be searched.
-        SpaceBudgetError: the same, where the ``budget`` is given.
+        TltlError: TLT0006, the level is too large or too complex to search.
+        SpaceBudgetError: the same, if ``budget`` is given.
     """
     if budget is not None:
         return _reachable(level, lift, without, budget)
@@ -104,19 +112,21 @@ def _reachable(level: Level, lift: float | None, without: Collection[str], budge
     opened: set[str] = set()
     while True:
         space = search.spread(opened)
-        now = {
-            each.name
-            for each in level.switches
-            if search.grid.distance(space, each.position, each.radius) <= each.radius
+        reached = {
+            switch.name
+            for switch in level.switches
+            if search.grid.distance(space, switch.position, switch.radius) <= switch.radius
         }
-        opens = {each.name for each in level.barriers if each.opened_by and now.issuperset(each.opened_by)}
-        opens |= {name for unlock in level.unlocks if unlock.switch in now for name in unlock.barriers}
-        if opens == opened and now == switches:
+        opening = {
+            barrier.name for barrier in level.barriers if barrier.opened_by and reached.issuperset(barrier.opened_by)
+        }
+        opening |= {name for unlock in level.unlocks if unlock.switch in reached for name in unlock.barriers}
+        if opening == opened and reached == switches:
             break
-        switches, opened = now, opens
+        switches, opened = reached, opening
     return Reach(
-        switches=tuple(each.name for each in level.switches if each.name in switches),
-        barriers=tuple(each.name for each in level.barriers if each.name in opened),
+        switches=tuple(switch.name for switch in level.switches if switch.name in switches),
+        barriers=tuple(barrier.name for barrier in level.barriers if barrier.name in opened),
         distances={
             **{name: search.grid.distance(space, place) for name, place in fixed_places(level).items()},
             **{enemy.name: 0.0 for enemy in level.enemies},
@@ -130,12 +140,15 @@ def _reachable(level: Level, lift: float | None, without: Collection[str], budge
 
 
 def highest_lift(kind: PlayerKind) -> float:
-    """How much higher than the ground that was left the next may be, in metres: a jump, and the round foot."""
+    """Return the greatest rise from ground to ground, in metres.
+
+    It is the height of a jump plus the radius of the capsule's round end.
+    """
     return highest_jump(kind) + kind.radius
 
 
 def highest_jump(kind: PlayerKind) -> float:
-    """How much a jump lifts the feet, in metres."""
+    """Return how far a jump lifts the feet, in metres."""
     height, speed = 0.0, kind.jump_speed - kind.gravity * _PHYSICS_STEP
     while speed > 0.0:
         height += speed * _PHYSICS_STEP
@@ -144,7 +157,7 @@ def highest_jump(kind: PlayerKind) -> float:
 
 
 class _Search:
-    """The ground that has been reached, by its height, and the space around it."""
+    """The reached ground, by height, and the space around it."""
 
     def __init__(self, level: Level, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget) -> None:
         self._kind, self._lift = kind, lift
@@ -162,33 +175,33 @@ class _Search:
         cuts = [z for height in heights for z in (height - _EDGE_DEPTH, height + _TOUCH, height + lift)]
         self.grid = SpaceGrid(level.bounds, [*self._solids, *barriers], cuts, kind, budget)
         self._tops: dict[tuple[float, float], Field] = {}
-        """For the lowest and the last height of tops, the cells from which one is within reach of the foot."""
+        """The cells from which the feet can touch a top, by the top's lowest and highest height."""
         for top in tops:
             if top.lowest < level.bounds.high[2] - _TOUCH:
                 key = round(top.lowest, 6), round(top.height, 6)
-                found = self._tops.setdefault(key, np.zeros(self.grid.shape[1:], dtype=np.bool_))
-                found |= self.grid.over(top.box, _EDGE)
+                near = self._tops.setdefault(key, np.zeros(self.grid.shape[1:], dtype=np.bool_))
+                near |= self.grid.over(top.box, _EDGE)
         x, y, z = start
         around = self.grid.over(Box((x, y, z), (x, y, z)), level.start.spread)
         self._ground: dict[float, Field] = {z: around}
         self._space: Space = np.zeros(self.grid.shape, dtype=np.bool_)
 
     def ground(self) -> Field:
-        """The cells with ground that has been reached."""
-        found: Field = np.logical_or.reduce(list(self._ground.values()))
-        return found
+        """Return the cells with reached ground."""
+        ground: Field = np.logical_or.reduce(list(self._ground.values()))
+        return ground
 
     def highest(self) -> float:
-        """The height of the highest ground that has been reached, in metres."""
+        """Return the height of the highest reached ground, in metres."""
         return max(height for height, ground in self._ground.items() if ground.any())
 
     def spread(self, opened: Collection[str]) -> Space:
-        """The space that the feet can be in, while these barriers are open."""
+        """Extend the reached ground while these barriers are open; return the space of the feet."""
         shut = [box for name, box in self._barriers.items() if name not in opened]
         free = self.grid.free([*self._solids, *shut])
-        waiting = {height: ground.copy() for height, ground in self._ground.items() if ground.any()}
-        while waiting:
-            height, fresh = waiting.popitem()
+        pending = {height: ground.copy() for height, ground in self._ground.items() if ground.any()}
+        while pending:
+            height, fresh = pending.popitem()
             self._walk(free, height, fresh)
             window, flight = self._flight(free, height, fresh)
             self._space[: len(flight)][:, window[0], window[1]] |= flight
@@ -197,39 +210,43 @@ class _Search:
                     continue
                 self.grid.budget.spend(near.size + flight.size)
                 known = self._ground.setdefault(top, np.zeros_like(near))
-                met = flight[self.grid.slabs(lowest - _EDGE_DEPTH, top + _TOUCH)[: len(flight)]].any(axis=0)
-                new = met & near[window] & ~known[window]
+                touched = flight[self.grid.slabs(lowest - _EDGE_DEPTH, top + _TOUCH)[: len(flight)]].any(axis=0)
+                new = touched & near[window] & ~known[window]
                 if new.any():
                     known[window] |= new
-                    waiting.setdefault(top, np.zeros_like(near))[window] |= new
+                    pending.setdefault(top, np.zeros_like(near))[window] |= new
         return self._space
 
     def _walk(self, free: Space, height: float, fresh: Field) -> None:
-        """Add to ground that is ``fresh`` what is side by side with it, at the same height."""
+        """Extend the ``fresh`` ground by connected ground at the same height."""
         same = np.logical_or.reduce([near for (_, top), near in self._tops.items() if top == height] or [fresh])
         same &= free[self.grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)].any(axis=0)
         fresh |= flood((same | fresh)[None], fresh[None], self.grid.budget)[0] & ~self._ground[height]
         self._ground[height] |= fresh
 
     def _flight(self, free: Space, height: float, ground: Field) -> tuple[tuple[slice, slice], Space]:
-        """Where a jump, a leap or a fall from some ground leads: the rows and columns looked at, and the space there.
+        """Return the window of rows and columns, and the space in it, that a flight can reach.
 
-        That space has the slabs from the lowest up to the greatest height of a jump.
+        A flight is a jump, a leap or a fall from some ground. The space has the slabs from the
+        lowest one to the greatest height of a jump.
         """
         grid = self.grid
         times = np.array([self._time(height - low) for low in grid.lows[grid.highs <= height + self._lift + _ROUNDING]])
         leaps = self._kind.sprint_speed * times / grid.cell
-        most = int(leaps[0]) + 2
+        max_leap = int(leaps[0]) + 2
         inner = span(np.any(ground, axis=1)), span(np.any(ground, axis=0))
-        rows, columns = (slice(max(0, part.start - most), part.stop + most) for part in inner)
-        afar = distances(ground[rows, columns], most)
-        allowed = free[: len(leaps)][:, rows, columns] & (afar[None] <= leaps[:, None, None])
+        rows, columns = (slice(max(0, part.start - max_leap), part.stop + max_leap) for part in inner)
+        cells_away = distances(ground[rows, columns], max_leap)
+        allowed = free[: len(leaps)][:, rows, columns] & (cells_away[None] <= leaps[:, None, None])
         seeds = np.zeros_like(allowed)
         seeds[grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)[: len(leaps)]] = ground[rows, columns]
         return (rows, columns), flood(allowed, seeds, grid.budget)
 
     def _time(self, drop: float) -> float:
-        """The longest time from ground to ``drop`` metres below it, by a jump that lifts the feet all the way up."""
+        """The longest time from ground to ``drop`` metres below it.
+
+        It starts with a jump that lifts the feet by the full lift.
+        """
         speed, gravity, fastest = sqrt(2 * self._kind.gravity * self._lift), self._kind.gravity, self._kind.fall_speed
         until_fastest = (speed + fastest) / gravity
         below = (fastest**2 - speed**2) / (2 * gravity)
@@ -240,7 +257,7 @@ class _Search:
 
 @record
 class _Top:
-    """What one can stand on: who gets onto it at ``lowest`` or higher is taken up to ``height``."""
+    """A surface to stand on; a player at ``lowest`` or above is carried up to ``height``."""
 
     box: Box
     lowest: float
@@ -248,7 +265,7 @@ class _Top:
 
 
 def _ride(mover: Mover, gravity: float) -> _Top:
-    """A mover, all along its way."""
+    """The surface of a mover, swept along its whole path."""
     lows = [min(point[axis] for point in mover.path) - mover.size[axis] / 2 for axis in range(3)]
     highs = [max(point[axis] for point in mover.path) + mover.size[axis] / 2 for axis in range(3)]
     swept = Box((lows[0], lows[1], lows[2]), (highs[0], highs[1], highs[2]))

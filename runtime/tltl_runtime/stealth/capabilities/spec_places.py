@@ -1,4 +1,4 @@
-"""Where a spec speaks of an entity, a signal, its level or its clock: what messages about the spec point at."""
+"""Find where a spec mentions an entity, a signal, its level or its clock."""
 
 from __future__ import annotations
 
@@ -14,42 +14,56 @@ from tltlc.resolve.spec import Spec
 
 
 class SpecPlaces:
-    """The places in the source text of a spec, one label each, by default that of the spec's name.
+    """The labels of things in the source of a spec; the default is the label of the spec's name.
 
-    Without a ``spec``, as for an artefact, nothing has a place, and there are no labels.
+    Without a ``spec``, for an artefact, there are no labels.
     """
 
     def __init__(self, spec: Spec | None) -> None:
         self._spec = spec
         self._all: Sequence[Declaration] = parse(spec.source)[0].declarations if spec else ()
-        self._own = [each for each in self._all if isinstance(each, SpecDecl) and spec and each.name == spec.name]
+        self._own = [
+            declaration
+            for declaration in self._all
+            if isinstance(declaration, SpecDecl) and spec and declaration.name == spec.name
+        ]
 
     def entity(self, name: str) -> tuple[Label, ...]:
-        """Where the spec uses an entity first; where only a definition does, there; else where it is declared."""
-        names = (each for declared in self._all if isinstance(declared, EntityDecl) for each in declared.names)
+        """Return the first use of an entity in the spec, else in another declaration.
+
+        If nothing uses the entity, return its declaration.
+        """
+        declared = (
+            entity for declaration in self._all if isinstance(declaration, EntityDecl) for entity in declaration.names
+        )
         return self._label(
-            _use(self._own, name) or _use(self._all, name) or _first(each.span for each in names if each.name == name)
+            _use(self._own, name)
+            or _use(self._all, name)
+            or _first(entity.span for entity in declared if entity.name == name)
         )
 
     def signal(self, name: str) -> tuple[Label, ...]:
-        """Where the spec uses a signal first, itself or by an atom; else where it is declared."""
+        """Return the first use of a signal in the spec, directly or through an atom.
+
+        If the spec does not use the signal, return its declaration.
+        """
         users = [name, *self._atoms_of(name)]
-        used = (_use(self._own, each.partition("(")[0]) for each in users)
+        used = (_use(self._own, user.partition("(")[0]) for user in users)
         return self._label(self._written(name) or next(filter(None, used), None) or self._declared(name))
 
     def declaration(self, signal: str) -> tuple[Label, ...]:
-        """Where a signal is declared, if that is in the spec's own file, else where it is used."""
+        """Return the declaration of a signal if it is in the spec's file, else its first use."""
         place = self._declared(signal)
         return self._label(place) if place else self.signal(signal)
 
     def level(self) -> tuple[Label, ...]:
-        """Where the spec names its level."""
-        clauses = (clause for each in self._own for clause in each.clauses)
+        """Return the clause that names the spec's level."""
+        clauses = (clause for declaration in self._own for clause in declaration.clauses)
         return self._label(_first(clause.span for clause in clauses if clause.kind == "level"))
 
     def clock(self) -> tuple[Label, ...]:
-        """Where the clock is declared."""
-        return self._label(_first(each.span for each in self._all if isinstance(each, ClockDecl)))
+        """Return the declaration of the clock."""
+        return self._label(_first(declaration.span for declaration in self._all if isinstance(declaration, ClockDecl)))
 
     def _atoms_of(self, signal: str) -> list[str]:
         """The atoms that are computed from a signal."""
@@ -58,10 +72,14 @@ class SpecPlaces:
 
     def _declared(self, signal: str) -> Span | None:
         base = signal.partition("(")[0]
-        return _first(each.name_span for each in self._all if isinstance(each, SignalDecl) and each.name == base)
+        return _first(
+            declaration.name_span
+            for declaration in self._all
+            if isinstance(declaration, SignalDecl) and declaration.name == base
+        )
 
     def _written(self, text: str) -> Span | None:
-        """The first part of the spec's expressions that is written so, but for blanks."""
+        """The first part of the spec's expressions with this text, ignoring blanks."""
         if self._spec is None:
             return None
         source, bare = self._spec.source, "".join(text.split())
@@ -72,7 +90,7 @@ class SpecPlaces:
 
 
 def _use(declarations: Iterable[Declaration], name: str) -> Span | None:
-    """The first name, or call, of that name in the expressions of some declarations."""
+    """The first name or call of that name in the expressions of some declarations."""
     for part in _parts(declarations):
         if isinstance(part, Call) and part.name == name:
             return part.name_span

@@ -1,4 +1,4 @@
-"""What a level gives a spec: signals with their types and ranges, and params."""
+"""The vocabulary that a level offers to specs: signals with types and ranges, and params."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltlc.resolve.spec import ValueType
 
 @record
 class Offer:
-    """A signal of a level: its type, and the range of its values in SI units; None is an open end."""
+    """A signal of a level: its type, and its range in SI units; None is an open end."""
 
     type: ValueType
     low: float | None
@@ -20,13 +20,13 @@ class Offer:
 
 
 def offers(level: Level) -> dict[str, Offer]:
-    """The signals of a level, by name, its further names included."""
-    meant = dict(level.signals)
-    return {name: _offer(meant.get(name, name), level) for name in readers(level)}
+    """Return the signals of a level, by name, including aliases."""
+    aliases = dict(level.signals)
+    return {name: _offer(aliases.get(name, name), level) for name in readers(level)}
 
 
 def params(level: Level) -> dict[str, float]:
-    """The params of specs that a level knows: ``level_size`` is the diagonal of its bounds, in metres."""
+    """Return a level's params: ``level_size``, the diagonal of its bounds in metres."""
     return {"level_size": dist(level.bounds.low, level.bounds.high)}
 
 

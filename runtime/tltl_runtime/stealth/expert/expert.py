@@ -1,4 +1,7 @@
-"""A scripted player that finishes levels: it knows the level and the spec, and sees what a player sees."""
+"""A scripted player that finishes levels.
+
+It knows the level and the spec, and sees what a player sees.
+"""
 
 from __future__ import annotations
 
@@ -17,15 +20,16 @@ from tltl_runtime.stealth.snapshot import Snapshot, places
 from tltl_runtime.stealth.world.player import Action
 
 _ROOM: Final = 0.5
-"""Metres from where a moving obstacle can be within which a way meets it."""
+"""A route passes a mover if it comes within this distance of the mover's path, in metres."""
 
 
 class Expert:
-    """Plays ``env``, a TltlEnv over a GameEnv or wrappers around one: ``reset`` after each of its resets, then ``act``.
+    """Plays ``env``, a TltlEnv over a GameEnv, or wrappers around one.
 
-    Where to go it reads off the automaton, how to get there off the level and what there is to see; where a shut
-    barrier is in the way, a switch comes first.  ``careful`` keeps out of the sight of enemies where the way is on the
-    floor, and moves as if there were none elsewhere.
+    Call ``reset`` after each reset of the environment, then ``act`` for each action. The expert
+    reads its goal from the automaton, and its route from the level and the snapshot; if a shut
+    barrier is in the way, it goes to a switch first. A ``careful`` expert avoids the sight of
+    enemies while its route is on the floor; elsewhere it ignores enemies.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:
@@ -48,7 +52,7 @@ class Expert:
         self._sneaks = False
 
     def act(self) -> Action:
-        """What to do now; nothing where the automaton sends the player nowhere."""
+        """Return the next action; stay if the automaton has no goal for the player."""
         snapshot = self._game.snapshot()
         goal = self.goal(snapshot)
         if goal is None:
@@ -60,30 +64,30 @@ class Expert:
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._next)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
-        """Where the automaton sends the player now, None where there is no such place."""
+        """Return the place that the automaton sends the player to, or None."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
-        there = places(self.level, snapshot)
-        goals = next_goals(self._task.fspa, state, sample, self._task.params, there)
-        return there[goals[0]] if goals else None
+        positions = places(self.level, snapshot)
+        goals = next_goals(self._task.fspa, state, sample, self._task.params, positions)
+        return positions[goals[0]] if goals else None
 
     def _on_the_way(self, snapshot: Snapshot, goal: Point) -> Point:
-        """The goal, or where no way leads there the nearest switch that is of use and that one leads to."""
+        """Return the goal if it can be reached, else the nearest useful switch that can."""
         here, routes = snapshot.player.position, routes_of(self.level, shut_of(snapshot))
         if routes.leads(here, goal):
             return goal
-        of_use = {unlock.switch for unlock in self.level.unlocks}
+        useful = {unlock.switch for unlock in self.level.unlocks}
         for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True):
-            of_use.update(() if is_open else barrier.opened_by)
-        left = [
+            useful.update(() if is_open else barrier.opened_by)
+        candidates = [
             switch.position
             for switch, active in zip(self.level.switches, snapshot.active, strict=True)
-            if not active and switch.name in of_use and routes.leads(here, switch.position)
+            if not active and switch.name in useful and routes.leads(here, switch.position)
         ]
-        return min(left, key=lambda place: dist(here, place), default=goal)
+        return min(candidates, key=lambda place: dist(here, place), default=goal)
 
     def _is_plain(self, snapshot: Snapshot, goal: Point) -> bool:
-        """Whether the way to a goal is on the floor, and past no moving obstacle."""
+        """Whether the route to a goal is on the floor and passes no mover."""
         here = snapshot.player.position
         way = routes_of(self.level, shut_of(snapshot)).field_from(here, goal).way(here)
         return all(leg.kind in ("walk", "crouch") and not self._meets_mover(leg) for leg in way)
@@ -93,7 +97,10 @@ class Expert:
 
 
 def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dict[str, Any]:
-    """Play one episode to its end; its last ``info``.  Give a ``RecordEpisode`` to have the episode itself."""
+    """Play one episode to its end and return its last ``info``.
+
+    To get the episode itself, pass a ``RecordEpisode``.
+    """
     _, info = env.reset(seed=seed)
     expert.reset()
     over = False

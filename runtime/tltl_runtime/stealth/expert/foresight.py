@@ -1,7 +1,7 @@
-"""What to do in the next seconds: a beam search over decisions, with the motion that they would have.
+"""Plan the next seconds: a beam search over decisions, with a prediction of their motion.
 
-Bodies are judged on the ground, by the time that has passed and how long their way still is.  A jump and a fall are one
-move, played to its end before it is judged.
+Bodies on the ground are compared by the time that has passed and the time left on their route. A
+jump or a fall is one move, simulated to its end before it is evaluated.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from tltl_runtime.stealth.world.player import DECISION, Action, PlayerState
 from tltlc.core.record import record
 
 LONGEST_FALL: Final = 9
-"""Decisions after which a body that still falls is given up."""
+"""A body that is still falling after this many decisions is given up."""
 _STAMINA: Final = 0.3
-"""Seconds that a full stamina is worth."""
+"""The worth of a full stamina, in seconds."""
 _TOUCHED: Final = 3.0
-"""Seconds that it costs to touch a moving obstacle."""
+"""The cost of touching a mover, in seconds."""
 _THERE: Final = 0.1
-"""Seconds from the goal that count as there."""
+"""A body at most this many seconds from the goal has arrived."""
 
 
 @record
 class Move:
-    """An action; a body that it takes off the ground keeps its direction for ``hold`` decisions in all."""
+    """An action; in the air, a body keeps its direction for ``hold`` decisions in all."""
 
     action: Action
     hold: int = LONGEST_FALL
@@ -39,7 +39,7 @@ class Move:
 
 @record
 class Plan:
-    """Actions, and where the feet are foreseen to be after each."""
+    """A sequence of actions, and the predicted position of the feet after each."""
 
     actions: tuple[Action, ...]
     places: tuple[Point, ...]
@@ -47,28 +47,28 @@ class Plan:
 
 @record
 class _Bodies:
-    """Bodies [n] on the ground at one time, what they are judged by beside the time, and how they came there."""
+    """Bodies [n] on the ground at one time, their costs, and the moves that led to them."""
 
     poses: Poses
     costs: Floats
-    """Seconds that what they touched is reckoned as."""
+    """The costs of touching movers, in seconds."""
     left: Floats
-    """Seconds of the way to the goal."""
+    """The time left on the route to the goal, in seconds."""
     began: NDArray[np.int64]
-    """The time, in decisions from now, at which their last move began."""
+    """When their last move began, in decisions from now."""
     parents: NDArray[np.int64]
-    """Which of the bodies of that time they were."""
+    """The indices of the bodies at that time from which they come."""
     moves: NDArray[np.int64]
-    """Which move they made."""
+    """The indices of their last moves."""
     trails: Floats
-    """Where the feet were after each decision of that move, [n, LONGEST_FALL, 3]."""
+    """The positions of the feet after each decision of that move, [n, LONGEST_FALL, 3]."""
 
-    def take(self, which: NDArray[np.intp]) -> _Bodies:
-        """Those of some indices."""
-        return _Bodies(self.poses.take(which), *(getattr(self, name)[which] for name in _COLUMNS))
+    def take(self, indices: NDArray[np.intp]) -> _Bodies:
+        """Return the bodies with these indices."""
+        return _Bodies(self.poses.take(indices), *(getattr(self, name)[indices] for name in _COLUMNS))
 
     def judged(self) -> Floats:
-        """Less is better, among bodies of one time."""
+        """Return the score of each body; among bodies of the same time, less is better."""
         return self.costs + self.left - _STAMINA * self.poses.stamina
 
 
@@ -76,9 +76,10 @@ _COLUMNS: Final = ("costs", "left", "began", "parents", "moves", "trails")
 
 
 class Foresight:
-    """The search for the next ``ahead`` decisions, of each of which the ``kept`` best bodies go on.
+    """The search over the next ``ahead`` decisions; after each, the ``kept`` best bodies continue.
 
-    ``movers`` are the boxes that moving obstacles sweep in each decision to come, LONGEST_FALL more than ``ahead``.
+    ``movers`` are the boxes swept by movers in each decision, for LONGEST_FALL decisions more than
+    ``ahead``.
     """
 
     def __init__(
@@ -97,7 +98,7 @@ class Foresight:
         self._ahead, self._kept = ahead, kept
 
     def plan(self, player: PlayerState) -> Plan:
-        """What to do; nothing where every move ends where there is no way on."""
+        """Return the best plan; it is empty if no move leads to a place with a route."""
         due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL)]
         due[0] = [_root(player)]
         passed: dict[int, _Bodies] = {}
@@ -111,12 +112,12 @@ class Foresight:
             if time and judged.size and judged.min() < best:
                 best, end = float(judged.min()), (time, int(judged.argmin()))
             if time < self._ahead and bodies.left.size:
-                for later, landed in self._moved(bodies, time):
+                for later, landed in self._apply_moves(bodies, time):
                     due[time + later].append(landed)
-        return self._traced(passed, *end)
+        return self._trace(passed, *end)
 
-    def _moved(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
-        """Every body after every move, grouped by the number of decisions that the move took."""
+    def _apply_moves(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
+        """Apply every move to every body; group the results by the decisions that they took."""
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)
         poses, costs = bodies.poses.take(parents), bodies.costs[parents]
@@ -127,15 +128,15 @@ class Foresight:
             if step:
                 actions = actions * (self._holds[moves] > step)[:, None]
                 actions[:, 2] = 0
-            poses, met = self._motion.step(poses, actions, self._movers[time + step])
-            costs = costs + met * _TOUCHED
+            poses, touched = self._motion.step(poses, actions, self._movers[time + step])
+            costs = costs + touched * _TOUCHED
             trails[:, step] = np.stack([poses.x, poses.y, poses.z], axis=1)
             down = np.flatnonzero(poses.grounded)
             if down.size:
-                here = poses.take(down)
-                left = self._field.at(here.x, here.y, here.z)
+                landed_poses = poses.take(down)
+                left = self._field.at(landed_poses.x, landed_poses.y, landed_poses.z)
                 began = np.full(down.size, time)
-                ends = _Bodies(here, costs[down], left, began, parents[down], moves[down], trails[down])
+                ends = _Bodies(landed_poses, costs[down], left, began, parents[down], moves[down], trails[down])
                 landed.append((step + 1, self._best(ends.take(np.flatnonzero(np.isfinite(left))))))
             up = np.flatnonzero(~poses.grounded)
             if not up.size:
@@ -145,15 +146,15 @@ class Foresight:
         return landed
 
     def _best(self, bodies: _Bodies) -> _Bodies:
-        """The best body of each quarter of a metre, and of those the best."""
+        """Keep the best body of each quarter of a metre, and of these the ``kept`` best."""
         poses = bodies.poses
         order = bodies.judged().argsort(kind="stable")
         cells = np.floor(np.stack([poses.x * 4, poses.y * 4, poses.z * 4 + 0.5, poses.crouching], axis=1))[order]
         _, first = np.unique(cells, axis=0, return_index=True)
         return bodies.take(order[np.sort(first)[: self._kept]])
 
-    def _traced(self, passed: Mapping[int, _Bodies], time: int, row: int) -> Plan:
-        """What led to a body of a time."""
+    def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> Plan:
+        """Trace back the plan that led to a body."""
         actions: list[Action] = []
         places: list[Point] = []
         while time:
@@ -170,7 +171,7 @@ class Foresight:
 
 
 def _root(player: PlayerState) -> _Bodies:
-    """The body from which all others come."""
+    """The body of the player now, from which all others descend."""
     none, zero = np.array([-1]), np.zeros(1)
     return _Bodies(poses_of(player), zero, np.array([inf]), none, none, none, np.zeros((1, LONGEST_FALL, 3)))
 

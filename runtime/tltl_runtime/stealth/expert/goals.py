@@ -1,4 +1,4 @@
-"""Where a spec sends the player next: read off the automaton, with no knowledge of the level."""
+"""The next goals of a spec, read from the automaton without knowledge of the level."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ _DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")
 def next_goals(
     fspa: Fspa, state: int, sample: Mapping[str, SupportsFloat], params: Mapping[str, float], places: Collection[str]
 ) -> tuple[str, ...]:
-    """The entities of ``places`` to come near to, for the automaton to leave ``state`` towards acceptance.
+    """Return the entities to approach so that the automaton leaves ``state`` towards acceptance.
 
-    Each is one of several choices; those that lead nearer to acceptance come first.  An edge counts where its atoms
-    that speak of no distance have, in ``sample``, the truth that its guard asks for; ``sample`` and ``params`` are
-    in SI units.
+    Only entities in ``places`` are returned. Each is an alternative; those that lead nearer to
+    acceptance come first. An edge is considered if its atoms that do not depend on a distance have,
+    in ``sample``, the truth values that its guard requires. ``sample`` and ``params`` are in SI
+    units.
     """
-    here = fspa.states[state].distance
-    if not here:
+    current = fspa.states[state].distance
+    if not current:
         return ()
     values = {**{param.name: param.value for param in fspa.params}, **params}
     signals = {name: float(sample[name]) for name in {signal.name for signal in fspa.signals}}
@@ -33,19 +34,22 @@ def next_goals(
         None if entity is not None else evaluate(atom.expression, signals, values) > 0.0
         for atom, entity in zip(fspa.atoms, entities, strict=True)
     ]
-    found: list[tuple[int, str]] = []
+    candidates: list[tuple[int, str]] = []
     for edge in fspa.edges_from(state):
         distance = fspa.states[edge.target].distance
-        if distance is None or distance >= here:
+        if distance is None or distance >= current:
             continue
         for implicant in edge.guard.primes:
             goals = _goals(implicant, entities, settled)
-            found += [(distance, goal) for goal in goals]
-    return tuple(dict.fromkeys(goal for _, goal in sorted(found, key=lambda each: each[0])))
+            candidates += [(distance, goal) for goal in goals]
+    return tuple(dict.fromkeys(goal for _, goal in sorted(candidates, key=lambda candidate: candidate[0])))
 
 
 def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool | None]) -> list[str]:
-    """The entities that an implicant asks to be near to; none where another of its atoms fails now."""
+    """The entities that an implicant requires to be near.
+
+    There are none if another of its atoms fails now.
+    """
     goals = []
     for atom, holds in implicant:
         entity = entities[atom]
@@ -58,7 +62,7 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 
 def _entity(atom: Atom, places: Collection[str]) -> str | None:
-    """The entity whose distance an atom is about."""
+    """The entity whose distance an atom depends on, or None."""
     for node in nodes(atom.expression):
         if isinstance(node, Signal) and (entity := distant_entity(node.name)) in places:
             return entity
@@ -66,6 +70,6 @@ def _entity(atom: Atom, places: Collection[str]) -> str | None:
 
 
 def distant_entity(signal: str) -> str | None:
-    """The entity to which a signal of that name is the distance, None where it is none."""
+    """Return the entity of a signal ``distance(ENTITY)``, or None for other signals."""
     match = _DISTANCE.match(signal)
     return match[1] if match else None

@@ -1,7 +1,8 @@
-"""The floor as a lattice of places, and what each action of one decision does on it.
+"""The floor as a lattice of places, and the effect of each action in one decision.
 
-Places lie 0.4 m apart where a player fits between everything that stands on the floor.  An action moves by its exact
-way, which ends between places: a value there is interpolated from the four around it.
+Places are 0.4 m apart, where the player fits between the things on the floor. An action moves
+the player by its exact displacement, which ends between places; values there are interpolated from
+the four places around.
 """
 
 from __future__ import annotations
@@ -20,28 +21,28 @@ from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.world.player import DECISION, SIGN, Action, PlayerKind
 
 _SPACING: Final = 0.4
-"""Metres from place to place."""
+"""The distance between neighbouring places, in metres."""
 _MARGIN: Final = 0.03
-"""Kept to what stops bodies, beside the player's radius."""
+"""The distance to keep from obstacles, in addition to the player's radius, in metres."""
 FAR: Final = np.float32(1e6)
-"""The value of what cannot be."""
+"""The cost of what is impossible."""
 
 Costs = NDArray[np.float32]
-"""Decisions that the rest of the way costs, [places] where nothing else is said."""
+"""The cost of the remaining route, in decisions; the shape is [places] unless stated otherwise."""
 
 
 def _actions() -> tuple[tuple[Action, ...], NDArray[np.float64]]:
-    """All actions without a jump that differ, and how far each moves, in metres [actions, 2]."""
+    """The distinct actions without a jump, and their displacements in metres [actions, 2]."""
     kind = PlayerKind()
     actions: list[Action] = []
-    ways: list[tuple[float, float]] = []
+    displacements: list[tuple[float, float]] = []
     for crouch, sprint, speed in ((0, 0, kind.walk_speed), (0, 1, kind.sprint_speed), (1, 0, kind.crouch_speed)):
         for x, y in product(range(3), repeat=2):
             if x or y or not sprint:
                 length = hypot(SIGN[x], SIGN[y]) or 1.0
                 actions.append((x, y, 0, crouch, sprint))
-                ways.append((SIGN[x] / length * speed * DECISION, SIGN[y] / length * speed * DECISION))
-    return tuple(actions), np.array(ways)
+                displacements.append((SIGN[x] / length * speed * DECISION, SIGN[y] / length * speed * DECISION))
+    return tuple(actions), np.array(displacements)
 
 
 ACTIONS, WAYS = _actions()
@@ -51,15 +52,15 @@ SPRINTS: Final = np.array([sprint == 1 for *_, sprint in ACTIONS])
 
 @lru_cache(maxsize=64)
 def lattice_of(level: Level, shut: frozenset[int]) -> Lattice:
-    """The lattice of a level while the barriers with these indices are shut, made once in a process."""
+    """Return the lattice of a level while the given barriers are shut, cached per process."""
     return Lattice(level, shut)
 
 
 class Lattice:
-    """The places of a floor.  ``places`` float64 [n, 2] are their x and y, in metres."""
+    """The places of a floor. ``places`` float64 [n, 2] are their x and y, in metres."""
 
     def __init__(self, level: Level, shut: Collection[int]) -> None:
-        boxes = [each.box for each in level.solids] + [level.barriers[index].box for index in sorted(shut)]
+        boxes = [solid.box for solid in level.solids] + [level.barriers[index].box for index in sorted(shut)]
         kind = PlayerKind()
         self._obstacles = (
             _grown(boxes, kind.radius + _MARGIN, kind.step_height, kind.height),
@@ -68,13 +69,13 @@ class Lattice:
         (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
         self._low = np.array((x0, y0)) + _SPACING / 2
         columns, rows = int((x1 - x0) / _SPACING), int((y1 - y0) / _SPACING)
-        every = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), -1).reshape(-1, 2)
-        centres = self._low + every * _SPACING
+        cells = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), -1).reshape(-1, 2)
+        centres = self._low + cells * _SPACING
         free = ~_crossed(centres, centres, self._obstacles[1])
         self.places: NDArray[np.float64] = centres[free]
-        # A frame of three columns and rows that belong to no place, for ways that lead out of the bounds.
+        # Three extra columns and rows at each side hold no places, for moves that leave the bounds.
         self._number = np.full((columns + 6, rows + 6), -1, dtype=np.int64)
-        self._number[every[free, 0] + 3, every[free, 1] + 3] = np.arange(len(self.places))
+        self._number[cells[free, 0] + 3, cells[free, 1] + 3] = np.arange(len(self.places))
         ends = self.places[None] + WAYS[:, None]
         self._corners, self._shares = self._between(ends.reshape(-1, 2))
         shape = (len(ACTIONS), len(self.places), 4)
@@ -85,45 +86,60 @@ class Lattice:
         self._forbidden[self._shares.sum(-1) == 0] = FAR
 
     def feasible(self, places: NDArray[Any]) -> NDArray[np.bool_]:
-        """Whether each action's way is free from each of the places [n, 2]: bool [actions, n]."""
-        found = np.zeros((len(ACTIONS), len(places)), dtype=bool)
+        """Whether each action can be executed from each of the places [n, 2]: bool [actions, n]."""
+        feasible = np.zeros((len(ACTIONS), len(places)), dtype=bool)
         for crouched in (0, 1):
-            mine = np.flatnonzero(crouched == CROUCHED)
-            starts = np.broadcast_to(places[None], (len(mine), *places.shape)).reshape(-1, 2)
-            ends = (places[None] + WAYS[mine, None]).reshape(-1, 2)
-            found[mine] = ~_crossed(starts, ends, self._obstacles[crouched]).reshape(len(mine), -1)
-        return found
+            actions = np.flatnonzero(crouched == CROUCHED)
+            starts = np.broadcast_to(places[None], (len(actions), *places.shape)).reshape(-1, 2)
+            ends = (places[None] + WAYS[actions, None]).reshape(-1, 2)
+            feasible[actions] = ~_crossed(starts, ends, self._obstacles[crouched]).reshape(len(actions), -1)
+        return feasible
 
     def values(self, value: Costs, places: NDArray[Any]) -> Costs:
-        """The value [n] that is known at the lattice's places, at any places [m, 2]; FAR where none is near."""
+        """Interpolate values [n] of the lattice's places at any places [m, 2].
+
+        The value is FAR where no place of the lattice is near.
+        """
         corners, shares = self._between(places)
-        found: Costs = (value[corners] * shares).sum(-1)
-        found[shares.sum(-1) == 0] = FAR
-        return found
+        values: Costs = (value[corners] * shares).sum(-1)
+        values[shares.sum(-1) == 0] = FAR
+        return values
 
     def best(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
-        """At each place the least of what the actions lead to: a value where they end, by stance, and ``extra``."""
+        """Return the least cost over all actions at each place.
+
+        The cost of an action is the value, for its stance, at the place where it ends, plus
+        ``extra``.
+        """
         both = np.concatenate((standing, crouched))
-        led: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
-        led += self._forbidden
-        led += extra[:, None]
-        least: Costs = led.min(axis=0)
+        costs: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
+        costs += self._forbidden
+        costs += extra[:, None]
+        least: Costs = costs.min(axis=0)
         return least
 
     def way_to(self, goal: Point, within: float) -> Costs:
-        """Decisions that a walk takes from each place to within a distance of the goal, FAR where there is none."""
-        there = np.hypot(*(self.places - goal[:2]).T) <= within
-        found: Costs = np.where(there, np.float32(0), FAR)
+        """The decisions of a walk from each place to within a distance of the goal.
+
+        The value is FAR where there is no path.
+        """
+        at_goal = np.hypot(*(self.places - goal[:2]).T) <= within
+        decisions: Costs = np.where(at_goal, np.float32(0), FAR)
         extra = np.where(SPRINTS, FAR, np.float32(1))
         for _ in range(10_000):
-            better: Costs = np.where(there, np.float32(0), np.minimum(found, self.best(found, found, extra)))
-            if np.abs(better - found).max() < 0.01:
+            updated: Costs = np.where(
+                at_goal, np.float32(0), np.minimum(decisions, self.best(decisions, decisions, extra))
+            )
+            if np.abs(updated - decisions).max() < 0.01:
                 break
-            found = better
-        return found
+            decisions = updated
+        return decisions
 
     def _between(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
-        """The four places around each point [m, 2], and their shares: those that are free, by their nearness."""
+        """The four places around each point [m, 2], and their weights.
+
+        Free places are weighted by nearness, the others by 0.
+        """
         position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)
         part = position - base
@@ -149,7 +165,7 @@ def _grown(boxes: list[Box], grow: float, step: float, height: float) -> list[Re
 
 
 def _crossed(starts: NDArray[Any], ends: NDArray[Any], rectangles: list[Rectangle]) -> NDArray[np.bool_]:
-    """Whether the segments between points [m, 2] go through the inside of a rectangle."""
+    """Whether the segments between points [m, 2] pass through the inside of a rectangle."""
     crossed: NDArray[np.bool_] = np.zeros(len(starts), dtype=bool)
     enter: Any
     leave: Any

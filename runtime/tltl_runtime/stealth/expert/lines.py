@@ -1,4 +1,4 @@
-"""From where what is seen: the places of a lattice that lie in an enemy's line of sight, standing and crouched."""
+"""Lines of sight: which places of a lattice an enemy sees, for a standing and a crouched player."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from tltl_runtime.stealth.expert.lattice import lattice_of
 from tltl_runtime.stealth.level import Level
 
 ROUNDED: Final = 0.2
-"""Enemies are taken to stand at multiples of this, in metres."""
+"""The positions of enemies are rounded to multiples of this, in metres."""
 _KEPT: Final = 4096
 _ASIDE: Final = 0.15
-"""Places are looked at in five points: the middle, and so far to each side."""
+"""A place is tested at five points: its middle, and this far to each side, in metres."""
 
 
 @lru_cache(maxsize=64)
 def lines_of(level: Level, shut: frozenset[int]) -> Lines:
-    """The lines of sight in a level while the barriers with these indices are shut, kept in a process."""
+    """Return the lines of sight while the given barriers are shut, cached per process."""
     return Lines(level, shut)
 
 
 class Lines:
-    """Lines of sight to a lattice's places, each found when it is first asked for.  Moving obstacles hide nobody."""
+    """Lines of sight to the places of a lattice, computed on demand; movers do not block them."""
 
     def __init__(self, level: Level, shut: frozenset[int]) -> None:
-        boxes = [each.box for each in level.solids if each.box.high[2] > 0.0]
-        boxes += [level.barriers[each].box for each in sorted(shut) if level.barriers[each].kind == "solid"]
+        boxes = [solid.box for solid in level.solids if solid.box.high[2] > 0.0]
+        boxes += [level.barriers[index].box for index in sorted(shut) if level.barriers[index].kind == "solid"]
         self._low = np.array([box.low for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
         self._high = np.array([box.high for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
         places = lattice_of(level, shut).places
@@ -40,14 +40,17 @@ class Lines:
         self._kept: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
     def seen_from(self, x: float, y: float) -> NDArray[np.float32]:
-        """How much of each place is in the line of sight of eyes at x, y: float32 [2, places], standing, crouched."""
+        """The share of each place that eyes at x, y can see.
+
+        The result is float32 [2, places], for a standing and a crouched player.
+        """
         key = (round(x / ROUNDED), round(y / ROUNDED))
-        found = self._kept.get(key)
-        if found is None:
-            found = self._kept[key] = self._look(key[0] * ROUNDED, key[1] * ROUNDED)
+        shares = self._kept.get(key)
+        if shares is None:
+            shares = self._kept[key] = self._look(key[0] * ROUNDED, key[1] * ROUNDED)
             if len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
-        return found
+        return shares
 
     def _look(self, x: float, y: float) -> NDArray[np.float32]:
         eye = np.array((x, y), dtype=np.float32)

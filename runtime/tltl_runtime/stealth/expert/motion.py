@@ -1,7 +1,7 @@
-"""The motion of :mod:`~tltl_runtime.stealth.world.physics`, foreseen for thousands of bodies at once.
+"""A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
-This is the player's feel for its own body, not the game: boxes push a capsule out as the physics does, to a few
-centimetres, and moving obstacles count as touched where they pass in the same decision.
+It is a model of the player's body, not the game itself: boxes push a capsule out as in the physics,
+to within a few centimetres, and movers count as touched if they pass in the same decision.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ Floats = NDArray[np.float64]
 Truths = NDArray[np.bool_]
 
 _TOUCH: Final = 0.02
-"""How near a body is to what it stands on."""
+"""A body at most this far from a surface stands on it, in metres."""
 _COARSE: Final = 3
-"""Physics steps that are foreseen in a decision of bodies that all walk."""
+"""Physics steps simulated per decision if all bodies walk."""
 _BERTH: Final = 0.06
-"""How wide a berth moving obstacles are given."""
+"""The distance to keep from movers, in metres."""
 
 
 @record
 class Poses:
-    """Bodies [n]: feet in metres, the speed of their fall upwards, and what they can do next."""
+    """Bodies [n]: position of the feet in metres, upward speed ``vz``, stance, contact, stamina."""
 
     x: Floats
     y: Floats
@@ -39,23 +39,23 @@ class Poses:
     grounded: Truths
     stamina: Floats
 
-    def take(self, which: Any) -> Poses:
-        """Those of some indices, or of a mask."""
-        return Poses(*(getattr(self, name)[which] for name in _FIELDS))
+    def take(self, indices: Any) -> Poses:
+        """Return the bodies with these indices, which may be a mask."""
+        return Poses(*(getattr(self, name)[indices] for name in _FIELDS))
 
 
 _FIELDS: Final = ("x", "y", "z", "vz", "crouching", "grounded", "stamina")
 
 
 def poses_of(state: PlayerState) -> Poses:
-    """One body, the player's."""
+    """Return the player as a single body."""
     x, y, z = state.position
     values = (x, y, z, state.velocity[2], state.crouching, state.grounded, state.stamina)
     return Poses(*(np.array([value]) for value in values))
 
 
 def joined(parts: Sequence[Poses]) -> Poses:
-    """All bodies of several groups."""
+    """Concatenate groups of bodies."""
     return Poses(*(np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS))
 
 
@@ -68,7 +68,7 @@ class _Boxes:
 
 
 class Motion:
-    """Bodies among boxes that stand still."""
+    """Bodies among static boxes."""
 
     def __init__(self, kind: PlayerKind, boxes: Sequence[Box]) -> None:
         self.kind = kind
@@ -76,9 +76,9 @@ class Motion:
         self._boxes = _Boxes(corners[:, :3].T, corners[:, 3:].T)
 
     def step(self, poses: Poses, actions: NDArray[np.int64], movers: Sequence[Box] = ()) -> tuple[Poses, Truths]:
-        """The bodies after one decision with these actions [n, 5], and which of them met one of ``movers``.
+        """Return the bodies after one decision, and which of them touched a mover.
 
-        ``movers`` are the boxes that moving obstacles sweep in this decision.
+        ``actions`` is [n, 5]. ``movers`` are the boxes swept by movers in this decision.
         """
         kind = self.kind
         boxes = self._reached(poses)
@@ -93,21 +93,21 @@ class Motion:
         vz[lift > 0.0] = 0.0
         substeps = SUBSTEPS if (jumps | ~poses.grounded).any() else _COARSE
         seconds = DECISION / substeps
-        met = np.zeros(x.shape, dtype=np.bool_)
+        touched = np.zeros(x.shape, dtype=np.bool_)
         for _ in range(substeps):
             vz -= kind.gravity * seconds
             x += vx * seconds
             y += vy * seconds
             z += vz * seconds
             for box in movers:
-                met |= _meets(x, y, z, height, kind.radius + _BERTH, box)
+                touched |= _meets(x, y, z, height, kind.radius + _BERTH, box)
             self._push_out(x, y, z, vx, vy, vz, height, boxes)
         depth, normal = self._contacts(x, y, z, height, boxes)
         grounded = ((depth > -_TOUCH) & (normal[2] > 0.5)).any(axis=1)
-        return Poses(x, y, z, vz, crouching, grounded, stamina), met
+        return Poses(x, y, z, vz, crouching, grounded, stamina), touched
 
     def _wish(self, poses: Poses, actions: NDArray[np.int64], crouching: Truths) -> tuple[Floats, Floats, Floats]:
-        """The speed along x and y that is asked for, and the stamina that is left (``player.control``)."""
+        """The requested speeds along x and y, and the stamina left (see ``player.control``)."""
         kind = self.kind
         sign = np.array(SIGN)
         dx, dy = sign[actions[:, 0]], sign[actions[:, 1]]
@@ -119,7 +119,7 @@ class Motion:
         return dx * speed, dy * speed, np.where(sprints, np.maximum(0.0, poses.stamina - spent), refilled)
 
     def _reached(self, poses: Poses) -> _Boxes:
-        """The boxes that any of the bodies may meet in one decision."""
+        """The boxes that any of the bodies can touch in one decision."""
         reach = self.kind.radius + self.kind.sprint_speed * DECISION + _TOUCH
         low, high = self._boxes.low, self._boxes.high
         near = (low[0] < poses.x.max() + reach) & (high[0] > poses.x.min() - reach)
@@ -127,7 +127,7 @@ class Motion:
         return _Boxes(low[:, near], high[:, near])
 
     def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
-        """How high each body is lifted by a stair in its way; 0 where there is none."""
+        """How high a stair in its way lifts each body; 0 if there is none."""
         lift = np.zeros(poses.x.shape)
         kind = self.kind
         low, high = boxes.low, boxes.high
@@ -136,27 +136,30 @@ class Motion:
         stairs &= (np.maximum(low[0] - poses.x[:, None], poses.x[:, None] - high[0]) < reach) & (
             np.maximum(low[1] - poses.y[:, None], poses.y[:, None] - high[1]) < reach
         )
-        some = np.flatnonzero(stairs.any(axis=1) & ((vx != 0.0) | (vy != 0.0)))
-        if not some.size:
+        candidates = np.flatnonzero(stairs.any(axis=1) & ((vx != 0.0) | (vy != 0.0)))
+        if not candidates.size:
             return lift
-        here, z = poses.take(some), poses.z[some, None]
+        candidate_poses, z = poses.take(candidates), poses.z[candidates, None]
         in_way = (z + _TOUCH < high[2]) & (low[2] < z + kind.radius)
         for wx, wy in ((vx, vy), (vx, np.zeros_like(vx)), (np.zeros_like(vy), vy)):
-            undecided = np.ones(some.size, dtype=np.bool_)
+            undecided = np.ones(candidates.size, dtype=np.bool_)
             for share in (1 / 3, 2 / 3, 1.0):
-                ahead_x, ahead_y = here.x + wx[some] * DECISION * share, here.y + wy[some] * DECISION * share
-                depth, _ = self._contacts(ahead_x, ahead_y, here.z, height[some], boxes)
+                ahead_x, ahead_y = (
+                    candidate_poses.x + wx[candidates] * DECISION * share,
+                    candidate_poses.y + wy[candidates] * DECISION * share,
+                )
+                depth, _ = self._contacts(ahead_x, ahead_y, candidate_poses.z, height[candidates], boxes)
                 tops = np.where(in_way & (depth > _TOUCH), high[2], -np.inf).max(axis=1)
-                step = tops - here.z + 0.005
+                step = tops - candidate_poses.z + 0.005
                 first = undecided & np.isfinite(tops)
-                lift[some] = np.where(
-                    first & (step <= kind.step_height + _TOUCH), np.maximum(lift[some], step), lift[some]
+                lift[candidates] = np.where(
+                    first & (step <= kind.step_height + _TOUCH), np.maximum(lift[candidates], step), lift[candidates]
                 )
                 undecided &= ~first
         return lift
 
     def _room(self, poses: Poses, boxes: _Boxes) -> Truths:
-        """Whether there is room to stand."""
+        """Whether each body has room to stand."""
         depth, _ = self._contacts(poses.x, poses.y, poses.z, np.full(poses.x.shape, self.kind.height), boxes)
         free: Truths = np.logical_and.reduce(depth <= _TOUCH, axis=1)
         return free
@@ -164,7 +167,7 @@ class Motion:
     def _push_out(
         self, x: Floats, y: Floats, z: Floats, vx: Floats, vy: Floats, vz: Floats, height: Floats, boxes: _Boxes
     ) -> None:
-        """Move bodies out of the boxes, and take away the speed into them: all in place."""
+        """Move bodies out of the boxes and remove their speed into the boxes, all in place."""
         depth, normal = self._contacts(x, y, z, height, boxes)
         touched = np.flatnonzero((depth > 0.0).any(axis=1))
         if not touched.size:
@@ -173,7 +176,7 @@ class Motion:
         for axis, place in enumerate((x, y, z)):
             push = deep * normal[axis]
             place[touched] += push.max(axis=1, initial=0.0) + push.min(axis=1, initial=0.0)
-        # The speed into what is met: the deepest first, then what is left of it against the others.
+        # Remove the speed into the contact that it opposes most, then the rest of it against the others.
         speed = np.stack([vx[touched], vy[touched], vz[touched]])
         rows = np.arange(touched.size)
         for _ in range(2):
@@ -184,7 +187,10 @@ class Motion:
         vx[touched], vy[touched], vz[touched] = speed
 
     def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
-        """How far each capsule reaches into each box [n, boxes], and the directions out of them [3, n, boxes]."""
+        """The overlap of each capsule with each box, and the directions out of the boxes.
+
+        The shapes are [n, boxes] and [3, n, boxes].
+        """
         radius = self.kind.radius
         low, high = boxes.low, boxes.high
         away = np.empty((3, x.size, low.shape[1]))
@@ -199,7 +205,7 @@ class Motion:
 
 
 def _meets(x: Floats, y: Floats, z: Floats, height: Floats, radius: float, box: Box) -> Truths:
-    """Whether capsules of ``radius`` reach into a box."""
+    """Whether capsules of ``radius`` overlap a box."""
     dx = np.maximum(np.maximum(box.low[0] - x, x - box.high[0]), 0.0)
     dy = np.maximum(np.maximum(box.low[1] - y, y - box.high[1]), 0.0)
     dz = np.maximum(np.maximum(box.low[2] - (z + height - radius), z + radius - box.high[2]), 0.0)

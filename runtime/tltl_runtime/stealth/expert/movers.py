@@ -1,4 +1,7 @@
-"""Where moving obstacles will be: their paths are known, their clocks are told by looking at them."""
+"""Predict where movers will be.
+
+Their paths are known, and their clocks are derived from snapshots.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +16,11 @@ from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS
 from tltl_runtime.stealth.world.way import Way
 
 _SEEN: Final = 1e-6
-"""Metres from where a clock puts a mover at which it is somewhere else."""
+"""A mover farther than this from its predicted position, in metres, is somewhere else."""
 
 
 class Clocks:
-    """The clock of each mover, in seconds of its own: it stands still while the player is in the mover's way."""
+    """The clock of each mover, in its own seconds; it stops while the player blocks the mover."""
 
     def __init__(self, level: Level) -> None:
         self._movers = level.movers
@@ -26,16 +29,19 @@ class Clocks:
         self._time = 0.0
 
     def see(self, snapshot: Snapshot) -> None:
-        """Set the clocks by what there is to see; to be called after each decision."""
+        """Update the clocks from a snapshot; call this after each decision."""
         passed = snapshot.time - self._time
         self._time = snapshot.time
         for index, (way, place) in enumerate(zip(self._ways, snapshot.movers, strict=True)):
             lags = [passed - step * DECISION / SUBSTEPS for step in range(round(passed / DECISION * SUBSTEPS) + 1)]
-            now = next((lag for lag in lags if dist(way.at(self._clocks[index] + lag), place) < _SEEN), passed)
-            self._clocks[index] += now
+            elapsed = next((lag for lag in lags if dist(way.at(self._clocks[index] + lag), place) < _SEEN), passed)
+            self._clocks[index] += elapsed
 
     def swept(self, first: int, last: int | None = None) -> list[Box]:
-        """The box that each mover sweeps from the beginning of decision ``first`` from now to the end of ``last``."""
+        """Return the box that each mover sweeps from decision ``first`` to the end of ``last``.
+
+        Decisions are counted from now.
+        """
         boxes = []
         for mover, way, clock in zip(self._movers, self._ways, self._clocks, strict=True):
             steps = range(first, (first if last is None else last) + 2)
@@ -45,12 +51,12 @@ class Clocks:
 
 
 def reach_of(mover: Mover) -> Box:
-    """The box of all places where a moving obstacle can be."""
+    """Return the bounding box of all positions of a mover."""
     return _hull([around(place, mover.size) for place in mover.path])
 
 
 def _hull(boxes: Sequence[tuple[Point, Point]]) -> Box:
-    """The least box that holds all of some boxes, each given by its corners."""
+    """The bounding box of boxes that are given by their corners."""
     lows, highs = [box[0] for box in boxes], [box[1] for box in boxes]
     return Box(
         (min(low[0] for low in lows), min(low[1] for low in lows), min(low[2] for low in lows)),

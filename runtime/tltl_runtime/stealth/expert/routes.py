@@ -1,8 +1,8 @@
-"""How long the way to a goal is from everywhere: walked, crouched, climbed, leapt and dropped.
+"""Route times from everywhere to a goal: walking, crouching, climbing, leaping and dropping.
 
-The places of :class:`~tltl_runtime.stealth.expert.surfaces.Surfaces` are joined by what a player can do from one to the
-other; obstacles that move and enemies are not in it.  Times are rough, the ways are not: an edge is there only where
-the body passes with room to spare.
+The places of :class:`~tltl_runtime.stealth.expert.surfaces.Surfaces` are connected by what a player
+can do; movers and enemies are ignored. Times are approximate, but routes are safe: an edge exists
+only if the body passes with room to spare.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ _Edges = tuple[NDArray[np.intp], NDArray[np.intp], Seconds, NDArray[np.intp]]
 
 _DIRECTIONS: Final = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _CLIMB: Final = 1.0
-"""The highest edge that a jump reaches."""
+"""The highest edge that a jump reaches, in metres."""
 _CLIMB_REACH, _DROP_REACH, _LEAP_REACH = 1.0, 1.0, 3.0
-"""How far from where a climb, a drop and a leap begin they end at most, in metres from centre to centre."""
+"""The greatest lengths of a climb, a drop and a leap, in metres from centre to centre."""
 _JUMP_TIME: Final = 0.3
-"""Seconds that a jump costs beside its way."""
+"""The extra time of a jump, in seconds, on top of the time for its distance."""
 _GOAL: Final = 0.6
-"""Metres from a goal that count as there."""
+"""A place within this distance of a goal counts as the goal, in metres."""
 _CLOSE_TO_WALL: Final = 1.25
-"""What a way past a wall with hardly any room costs more."""
+"""The factor on the time of a walk past a wall with hardly any room."""
 
 Kind = Literal["walk", "crouch", "climb", "drop", "leap"]
 
@@ -43,7 +43,7 @@ _KINDS: Final[tuple[Kind, ...]] = ("walk", "crouch", "climb", "drop", "leap")
 
 @record
 class Leg:
-    """A piece of a way: how one gets to ``place``."""
+    """A piece of a route: how to get to ``place``."""
 
     kind: Kind
     place: Point
@@ -51,9 +51,10 @@ class Leg:
 
 @record
 class Field:
-    """The seconds from each place to a goal [layers, rows, columns]; infinite where no way leads there.
+    """The seconds from each place to a goal [layers, rows, columns]; infinite if there is no route.
 
-    ``towards`` [places] holds where the way goes from each, -1 at the goal and where there is none, ``kinds`` how.
+    ``towards`` [places] is the next place on the route, or -1 at the goal and where there is no
+    route; ``kinds`` [places] is how to get there, an index into ``_KINDS``.
     """
 
     surfaces: Surfaces
@@ -62,20 +63,20 @@ class Field:
     kinds: NDArray[np.uint8]
 
     def way(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
-        """The way from the place nearest to ``start``, so far and no further."""
+        """Return the route from the place nearest to ``start``, up to about ``metres``."""
         place = self.surfaces.nearest(start)
         legs = []
-        here, length = self.surfaces.point(place), 0.0
+        point, length = self.surfaces.point(place), 0.0
         while self.towards[place] >= 0 and length <= metres:
             kind, place = _KINDS[self.kinds[place]], int(self.towards[place])
-            there = self.surfaces.point(place)
-            legs.append(Leg(kind, there))
-            length += dist(here, there)
-            here = there
+            next_point = self.surfaces.point(place)
+            legs.append(Leg(kind, next_point))
+            length += dist(point, next_point)
+            point = next_point
         return tuple(legs)
 
     def at(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
-        """The seconds from points [n] on the ground, by the best of the places around each."""
+        """Return the seconds from points [n] on the ground, by the best of the places nearby."""
         surfaces, speed = self.surfaces, self.surfaces.kind.walk_speed
         _, rows, columns = self.seconds.shape
         column = np.floor((x - surfaces.origin[0]) / CELL).astype(np.intp)
@@ -93,37 +94,40 @@ class Field:
 
 
 class Routes:
-    """The ways of a level while some barriers are shut."""
+    """The routes of a level while some barriers are shut."""
 
     def __init__(self, level: Level, shut: Collection[int]) -> None:
         self.surfaces = Surfaces(level, shut)
         self._roomy = Surfaces(level, shut, margin=0.2).crouched
         self._into: list[list[tuple[int, float, int]]] = [[] for _ in range(self.surfaces.places.size)]
         for sources, targets, seconds, kinds in self._edges():
-            columns = (each.tolist() for each in (sources, targets, seconds, kinds))
+            columns = (column.tolist() for column in (sources, targets, seconds, kinds))
             for source, target, cost, kind in zip(*columns, strict=True):
                 self._into[target].append((source, cost, kind))
         self._fields: dict[object, Field] = {}
 
     def field(self, goal: Point) -> Field:
-        """The way from everywhere to ``goal``."""
+        """Return the routes from everywhere to ``goal``."""
         if goal not in self._fields:
             self._fields[goal] = self._field(self.surfaces.near(goal, _GOAL))
         return self._fields[goal]
 
     def leads(self, start: Point, goal: Point) -> bool:
-        """Whether a way leads to ``goal`` from the place nearest to ``start``."""
+        """Whether a route leads from the place nearest to ``start`` to ``goal``."""
         return bool(np.isfinite(self.field(goal).seconds.flat[self.surfaces.nearest(start)]))
 
     def field_from(self, start: Point, goal: Point) -> Field:
-        """The way to ``goal``, or where none leads there from ``start`` to the nearest place that one leads to."""
+        """Return the routes to ``goal``, or to the reachable place nearest to it.
+
+        Reachable means reachable from ``start``.
+        """
         field = self.field(goal)
         place = self.surfaces.nearest(start)
         if np.isfinite(field.seconds.flat[place]):
             return field
         key = (goal, place)
         if key not in self._fields:
-            reached = min(self._reached(place), key=lambda each: dist(self.surfaces.point(each), goal))
+            reached = min(self._reached(place), key=lambda candidate: dist(self.surfaces.point(candidate), goal))
             self._fields[key] = self._field(np.array([reached]))
         return self._fields[key]
 
@@ -147,20 +151,20 @@ class Routes:
         return Field(self.surfaces, *columns)
 
     def _reached(self, start: int) -> set[int]:
-        """The places that a way leads to from ``start``."""
-        out: dict[int, list[int]] = {}
+        """The places that can be reached from ``start``."""
+        successors: dict[int, list[int]] = {}
         for target, sources in enumerate(self._into):
             for source, _, _ in sources:
-                out.setdefault(source, []).append(target)
-        reached, left = {start}, [start]
-        while left:
-            for target in out.get(left.pop(), ()):
+                successors.setdefault(source, []).append(target)
+        reached, pending = {start}, [start]
+        while pending:
+            for target in successors.get(pending.pop(), ()):
                 if target not in reached:
                     reached.add(target)
-                    left.append(target)
+                    pending.append(target)
         return reached
 
-    # Edges: arrays of sources, targets, seconds and kinds, one direction and pair of layers at a time.
+    # Edges: arrays of sources, targets, seconds and kinds, for one direction and one pair of layers each.
 
     def _edges(self) -> Iterator[_Edges]:
         heights = self.surfaces.heights
@@ -210,7 +214,7 @@ class Routes:
             yield self._timed(self._joined(layer, target, direction, lands, steps), length, fall, "drop")
 
     def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Jumps across what cannot be walked on, to a place no higher."""
+        """Jumps across what cannot be walked on, to a place that is not higher."""
         surfaces = self.surfaces
         column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
         begin = surfaces.places[layer] & surfaces.leaping[layer]
@@ -224,7 +228,10 @@ class Routes:
     def _joined(
         self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """The places of ``begin`` [rows, columns] and those of another layer so many steps from them, as indices."""
+        """The places in ``begin`` [rows, columns] and the places of ``target``, ``steps`` away.
+
+        Both are returned as flat indices.
+        """
         _, rows, columns = self.surfaces.places.shape
         places = begin & _shifted(self.surfaces.places[target], direction, steps)
         row, column = np.nonzero(places)
@@ -242,34 +249,34 @@ class Routes:
 
 @lru_cache(maxsize=32)
 def routes_of(level: Level, shut: frozenset[int]) -> Routes:
-    """The ways of a level while these barriers are shut, made once in a process."""
+    """Return the routes of a level while the given barriers are shut, cached per process."""
     return Routes(level, shut)
 
 
 def shut_of(snapshot: Snapshot) -> frozenset[int]:
-    """The indices of the barriers that are shut."""
+    """Return the indices of the barriers that are shut."""
     return frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """The numbers of steps in a direction, from ``least`` to those that go as far as ``reach``, with their lengths."""
+    """Yield the numbers of steps from ``least`` up to ``reach`` metres, with their lengths."""
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
         yield steps, steps * length
 
 
 def _within(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
-    """Indices out of range, moved to its ends."""
+    """Clamp indices to the range of ``count``."""
     return np.minimum(np.maximum(index, 0), count - 1)
 
 
 def _shifted(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
-    """For each cell, what holds so many steps from it; beyond the border nothing does."""
+    """Shift cells: each gets the value of the cell ``steps`` away, False beyond the border."""
     dy, dx = direction[0] * steps, direction[1] * steps
     rows, columns = cells.shape
-    found = np.zeros_like(cells)
+    shifted = np.zeros_like(cells)
     if abs(dy) < rows and abs(dx) < columns:
-        found[max(0, -dy) : rows - max(0, dy), max(0, -dx) : columns - max(0, dx)] = cells[
+        shifted[max(0, -dy) : rows - max(0, dy), max(0, -dx) : columns - max(0, dx)] = cells[
             max(0, dy) : rows + min(0, dy), max(0, dx) : columns + min(0, dx)
         ]
-    return found
+    return shifted

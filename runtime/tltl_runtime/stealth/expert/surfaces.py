@@ -1,7 +1,8 @@
-"""Where a player can stand: the tops of everything, cell by cell.
+"""The places where a player can stand: the tops of all boxes, cell by cell.
 
-A level is cut into square cells.  Each height at which some box ends is a layer; a place is a layer and a cell
-whose centre lies on such a top with room for the body above it.  The body is taken for an upright cylinder.
+A level is cut into square cells. Each height at which a box ends is a layer. A place is a layer and
+a cell whose centre lies on such a top, with room for the body above it. The body is approximated by
+an upright cylinder.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.world.player import PlayerKind
 
 CELL: Final = 0.25
-"""Metres to a side of a cell."""
+"""The side of a cell, in metres."""
 
 Cells = NDArray[np.bool_]
-"""[layers, rows, columns]: rows along y, columns along x."""
+"""[layers, rows, columns]; rows run along y, columns along x."""
 
 _TOUCH: Final = 1e-6
 
@@ -28,10 +29,11 @@ _TOUCH: Final = 1e-6
 class Surfaces:
     """The places of a level while the barriers with the indices ``shut`` are shut, lasers included.
 
-    ``heights`` [layers] are those of the tops, in metres, upwards; ``xs`` [columns] and ``ys`` [rows] the middles of
-    the cells.  Of each layer, row and column, ``places`` says whether it is one; ``standing``, ``crouched`` and
-    ``leaping`` whether the room above is free for a body that stands, is crouched, or stands and jumps, with ``margin``
-    metres to all sides.  What rises no higher than a stair is no obstacle.
+    ``heights`` [layers] are the heights of the tops, upwards; ``xs`` [columns] and ``ys`` [rows]
+    are the centres of the cells, all in metres. ``places`` marks the places. ``standing``,
+    ``crouched`` and ``leaping`` mark where the room above is free for a body that stands, that is
+    crouched, and that jumps upright, with ``margin`` metres to all sides. Boxes no higher than a
+    stair are not obstacles.
     """
 
     def __init__(self, level: Level, shut: Collection[int] = (), *, margin: float = 0.04) -> None:
@@ -56,15 +58,15 @@ class Surfaces:
         self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)
 
     def near(self, point: Point, radius: float) -> NDArray[np.intp]:
-        """The places within ``radius`` metres of a point, as flat indices into ``places``."""
+        """Return the places within ``radius`` metres of a point, as flat indices."""
         return self._flat[self._squares(point) <= radius * radius]
 
     def nearest(self, point: Point) -> int:
-        """The place nearest to a point, as a flat index into ``places``."""
+        """Return the place nearest to a point, as a flat index into ``places``."""
         return int(self._flat[self._squares(point).argmin()])
 
     def point(self, place: int) -> Point:
-        """The middle of a place that is given by its flat index."""
+        """Return the position of a place, given its flat index."""
         layer, row, column = np.unravel_index(place, self.places.shape)
         return float(self.xs[column]), float(self.ys[row]), float(self.heights[layer])
 
@@ -74,15 +76,15 @@ class Surfaces:
         return squares
 
     def _supported(self, boxes: list[Box]) -> Cells:
-        found = self._nothing()
+        supported = self._nothing()
         for box in boxes:
             layer = np.flatnonzero(np.abs(self.heights - box.high[2]) < _TOUCH)
             rows, columns = self._over(box)
-            found[layer] |= (rows[:, None] & columns[None, :])[None]
-        return found
+            supported[layer] |= (rows[:, None] & columns[None, :])[None]
+        return supported
 
     def _free(self, boxes: list[Box], height: float, margin: float) -> Cells:
-        """Where no box meets a cylinder of this height, above what it steps on."""
+        """Mark where no box touches a cylinder of this height, above the height of a stair."""
         taken = self._nothing()
         radius = self.kind.radius + margin
         for box in boxes:
@@ -96,16 +98,16 @@ class Surfaces:
         return ~taken
 
     def _buried(self, boxes: list[Box]) -> Cells:
-        """Where the centre itself is inside a box, however low it is."""
-        found = self._nothing()
+        """Mark where the centre itself is inside a box, however low the box is."""
+        buried = self._nothing()
         for box in boxes:
             rows, columns = self._over(box)
             layers = (box.high[2] > self.heights + _TOUCH) & (box.low[2] < self.heights + _TOUCH)
-            found[layers] |= (rows[:, None] & columns[None, :])[None]
-        return found
+            buried[layers] |= (rows[:, None] & columns[None, :])[None]
+        return buried
 
     def _over(self, box: Box) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """The rows and the columns whose centres are above a box."""
+        """The rows and columns whose centres are above a box."""
         rows = (self.ys >= box.low[1]) & (self.ys <= box.high[1])
         columns = (self.xs >= box.low[0]) & (self.xs <= box.high[0])
         return rows, columns

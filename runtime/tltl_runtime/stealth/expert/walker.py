@@ -1,8 +1,8 @@
-"""A player that knows the way and fears nobody.
+"""A player that follows the shortest route and ignores enemies.
 
-The way as a whole is that of :mod:`~tltl_runtime.stealth.expert.routes`; what to do in the next seconds is searched
-for by :mod:`~tltl_runtime.stealth.expert.foresight`, in good time before jumps, drops and moving obstacles with more of
-both.
+:mod:`~tltl_runtime.stealth.expert.routes` gives the whole route;
+:mod:`~tltl_runtime.stealth.expert.foresight` searches for the actions of the next seconds. Near
+jumps, drops and movers, the search looks further ahead and keeps more bodies.
 """
 
 from __future__ import annotations
@@ -25,37 +25,37 @@ _DIRECTIONS: Final = tuple((x, y) for x, y in product(range(3), range(3)) if x o
 _WALKS: Final = (STAY, *((x, y, 0, 0, sprint) for x, y in _DIRECTIONS for sprint in (0, 1)))
 _CROUCHES: Final = ((0, 0, 0, 1, 0), *((x, y, 0, 1, 0) for x, y in _DIRECTIONS))
 _HOLDS: Final = (2, 3, LONGEST_FALL)
-"""For how many decisions a jump keeps its direction, before it falls straight down."""
+"""The numbers of decisions that a jump may keep its direction, before it falls straight down."""
 
 _NEAR: Final = 3.0
-"""A jump, a drop or a mover, so many metres ahead is reckoned with."""
+"""Jumps, drops and movers are considered up to this distance ahead, in metres."""
 _BOXES: Final = 5.0
-"""Boxes within so many metres are what a body can meet while it is foreseen."""
+"""Boxes within this distance can be touched during the search, in metres."""
 _SHORT: Final = (8, 16)
 _LONG: Final = (14, 32)
-"""Decisions that are looked ahead, and bodies that are kept of each, in plain and in hard places."""
+"""Decisions searched ahead, and bodies kept after each, in simple and in difficult places."""
 _FOLLOWED: Final = 6
-"""Decisions after which the search is done anew."""
+"""The search is repeated after this many decisions."""
 _ASTRAY: Final = 0.08
-"""Metres from where it was foreseen at which a body has gone astray."""
+"""The search is repeated when the player is this far from its prediction, in metres."""
 
 
 class Walker:
-    """Finds the way to a goal, whatever enemies do: ``act`` gives the next action, decision by decision."""
+    """Walks to a goal, ignoring enemies; ``act`` returns the next action, decision by decision."""
 
     def __init__(self, level: Level) -> None:
         self.level = level
         self.reset()
 
     def reset(self) -> None:
-        """Forget the episode before."""
+        """Forget the previous episode."""
         self._clocks = Clocks(self.level)
         self._plan = Plan((), ())
         self._for: object = None
         self._followed = 0
 
     def act(self, snapshot: Snapshot, goal: Point) -> Action:
-        """The next action on the way to ``goal``, or to the place nearest to it that there is a way to."""
+        """Return the next action towards ``goal``, or towards the reachable place nearest to it."""
         self._clocks.see(snapshot)
         purpose = (goal, snapshot.open)
         if purpose != self._for or self._is_played() or self._is_astray(snapshot):
@@ -84,14 +84,14 @@ class Walker:
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
     def _moves(self, field: Field, snapshot: Snapshot) -> list[Move]:
-        """The moves to choose from in this place."""
+        """The moves to choose from at this place."""
         player = snapshot.player
         way = field.way(player.position, _NEAR)
         movers = any(_away(box, player.position) <= _NEAR for box in self._clocks.swept(0, 8))
         moves = [Move(action) for action in _WALKS]
         if movers or player.crouching or any(leg.kind == "crouch" for leg in way):
             moves += [Move(action) for action in _CROUCHES]
-        # Past movers one may jump anywhere on the way, else where it asks for it.
+        # Near movers, jumps are allowed everywhere on the route, else only where the route needs them.
         headings = _headings(player.position, [(movers or leg.kind in ("climb", "leap"), leg.place) for leg in way])
         for x, y in sorted(headings):
             moves += [Move((x, y, 1, 0, sprint), hold) for sprint in (0, 1) for hold in _HOLDS]
@@ -101,17 +101,17 @@ class Walker:
 
 
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
-    """The directions, as actions, within 45 degrees of those of the legs that count."""
-    found = set()
+    """The directions of actions within 45 degrees of the directions of the legs that count."""
+    headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):
         dx, dy = place[0] - before[0], place[1] - before[1]
         for x, y in _DIRECTIONS if counts else ():
             along = (SIGN[x] * dx + SIGN[y] * dy) / (hypot(SIGN[x], SIGN[y]) * max(hypot(dx, dy), 1e-9))
             if along > 0.7:
-                found.add((x, y))
-    return found
+                headings.add((x, y))
+    return headings
 
 
 def _away(box: Box, point: Point) -> float:
-    """Metres from a box to a point, seen from above."""
+    """The horizontal distance from a box to a point, in metres."""
     return hypot(*(max(box.low[axis] - point[axis], 0.0, point[axis] - box.high[axis]) for axis in (0, 1)))

@@ -1,8 +1,9 @@
-"""What a player who watches the enemies can tell of what they will do.
+"""Predict what the enemies will do, from what a player can see of them.
 
-A belief of some guards for each enemy: models that were seen to do what the enemy did.  They are the game's own guards
-with dice of the watcher's, and start from what is known, the enemies' routes and numbers.  Where an enemy does what
-none of its models did, all are put to where it is, and what they are up to is guessed anew.
+The belief about each enemy is a set of models that have behaved as the enemy was seen to behave. A
+model is one of the game's own guards with a random generator of the watcher. It starts from what is
+known: the enemy's route and parameters. If an enemy does what none of its models did, all models
+are moved to its pose, and their intentions are guessed again.
 """
 
 from __future__ import annotations
@@ -23,20 +24,21 @@ from tltl_runtime.stealth.world.player import DECISION
 from tltlc.core.record import record
 
 _MODELS: Final = 12
-"""Models of each enemy."""
+"""The number of models of each enemy."""
 _SAME: Final = 0.02
-"""Metres and radians by which a model and its enemy may differ."""
+"""The greatest difference between a model and its enemy, in metres and in radians."""
 _GUESSED: Final = 0.7
-"""The share of models that are given another guess where none was right."""
+"""The share of models that get a new guess if none was right."""
 _BURIED: Final = -1000.0
-"""Where a player's feet are whom nobody sees."""
+"""The height of the feet of a player whom no enemy can see, in metres."""
 
 
 @record
 class Outlook:
-    """How an enemy may go on: ``poses`` float64 [models, decisions, 4], each model as likely as its share.
+    """The predictions for an enemy: ``poses`` float64 [models, decisions, 4].
 
-    A pose is x, y, yaw, and 1 while the enemy knows of the player, for it sees to all sides then.
+    ``shares`` are the probabilities of the models. A pose is x, y, yaw, and 1 while the enemy knows
+    the player's position, because it then sees in all directions.
     """
 
     poses: NDArray[np.float64]
@@ -44,7 +46,7 @@ class Outlook:
 
 
 class Watch:
-    """Watches the enemies of a level from the reset of an episode on: ``see`` each snapshot, once."""
+    """Watches the enemies of a level from the reset on; pass each snapshot to ``see`` once."""
 
     def __init__(self, level: Level, seed: int = 0) -> None:
         self.level = level
@@ -52,16 +54,16 @@ class Watch:
         self.reset()
 
     def reset(self) -> None:
-        """Before an episode."""
+        """Prepare for a new episode."""
         self._rng = np.random.default_rng(self._seed)
         self._open: tuple[bool, ...] = (False,) * len(self.level.barriers)
-        self.floor = self._changed()
+        self.floor = self._update_floor()
         self.models = [[Guard(enemy, self.floor, self._rng) for _ in range(_MODELS)] for enemy in self.level.enemies]
         self._time = 0.0
         self._player = self.level.start.position
 
     def see(self, snapshot: Snapshot) -> bool:
-        """Take in what there is to see now; returns whether an enemy did what no model had foreseen."""
+        """Update the models from a snapshot; return whether an enemy surprised all its models."""
         surprised = False
         if snapshot.time > self._time:
             player = player_view(snapshot.player)
@@ -71,46 +73,46 @@ class Watch:
         self._time, self._player = snapshot.time, snapshot.player.position
         if snapshot.open != self._open:
             self._open = snapshot.open
-            self.floor = self._changed()
-            for model in (each for models in self.models for each in models):
+            self.floor = self._update_floor()
+            for model in (model for models in self.models for model in models):
                 model.floor = self.floor
                 model.forget_way()
         for index, models in enumerate(self.models):
             x, y, _ = snapshot.enemies[index]
             pose, mode = (x, y, snapshot.yaws[index]), cast("Mode", snapshot.modes[index])
-            right = [model for model in models if _is_at(model, pose) and model.mode == mode]
-            surprised |= not right
-            if not right:
-                right = [self._put(model, pose, mode) for model in models]
-            if len(right) < _MODELS:
-                self.models[index] = [right[each % len(right)].fork(self._rng) for each in range(_MODELS)]
+            matching = [model for model in models if _is_at(model, pose) and model.mode == mode]
+            surprised |= not matching
+            if not matching:
+                matching = [self._put(model, pose, mode) for model in models]
+            if len(matching) < _MODELS:
+                self.models[index] = [matching[number % len(matching)].fork(self._rng) for number in range(_MODELS)]
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
-        """How each enemy may go on from now if it does not see the player from now on."""
+        """Predict how each enemy moves on if it does not see the player from now on."""
         x, y, _ = self._player
-        nobody = PlayerView((x, y, _BURIED))
-        return [self._outlook(models, decisions, nobody) for models in self.models]
+        unseen = PlayerView((x, y, _BURIED))
+        return [self._outlook(models, decisions, unseen) for models in self.models]
 
-    def _outlook(self, models: Sequence[Guard], decisions: int, nobody: PlayerView) -> Outlook:
-        different: dict[tuple[object, ...], tuple[Guard, int]] = {}
+    def _outlook(self, models: Sequence[Guard], decisions: int, unseen: PlayerView) -> Outlook:
+        distinct: dict[tuple[object, ...], tuple[Guard, int]] = {}
         for model in models:
-            # What draws goes another way each time; of others that are in the same state one will do.
+            # A model that draws moves differently each time; of other models in the same state one is enough.
             draws = model.kind.branches or model.mode == "search"
             key = (id(model),) if draws else model.state
-            first, count = different.get(key, (model, 0))
-            different[key] = (first, count + 1)
-        poses = np.empty((len(different), decisions, 4))
-        for row, (model, _) in enumerate(different.values()):
-            ahead = model.fork(self._rng)
+            first, count = distinct.get(key, (model, 0))
+            distinct[key] = (first, count + 1)
+        poses = np.empty((len(distinct), decisions, 4))
+        for row, (model, _) in enumerate(distinct.values()):
+            guard = model.fork(self._rng)
             for step in range(decisions):
-                ahead.step(DECISION, nobody, ())
-                poses[row, step] = ahead.x, ahead.y, ahead.yaw, ahead.knows
-        shares = np.array([count for _, count in different.values()], dtype=np.float64)
+                guard.step(DECISION, unseen, ())
+                poses[row, step] = guard.x, guard.y, guard.yaw, guard.knows
+        shares = np.array([count for _, count in distinct.values()], dtype=np.float64)
         return Outlook(poses, shares / shares.sum())
 
     def _put(self, model: Guard, pose: tuple[float, float, float], mode: Mode) -> Guard:
-        """The model where its enemy is, up to something that fits the enemy's mode."""
+        """Move a model to its enemy's pose, with a task that fits the enemy's mode."""
         before = model.mode
         model.x, model.y, model.yaw = pose
         model.forget_way()
@@ -130,16 +132,16 @@ class Watch:
         return model
 
     def _guess(self, model: Guard) -> None:
-        """Some point of the route that it may be on its way to, or some narrow place beside it."""
+        """Guess the point of the route, or the narrow place beside it, that the model walks to."""
         model.leg = int(self._rng.integers(len(model.route)))
         model.gap = model.next_gap() if model.kind.branches and self._rng.random() < _GUESSED else None
 
-    def _changed(self) -> Floor:
-        """The floor as it is now, and the boxes that stop sight."""
+    def _update_floor(self) -> Floor:
+        """Return the current floor, and update the boxes that block sight."""
         level = self.level
         shut = [index for index, is_open in enumerate(self._open) if not is_open]
-        self.boxes: list[Corners] = [corners(each.box) for each in level.solids if each.box.high[2] > 0.0]
-        self.boxes += [corners(level.barriers[each].box) for each in shut if level.barriers[each].kind == "solid"]
+        self.boxes: list[Corners] = [corners(solid.box) for solid in level.solids if solid.box.high[2] > 0.0]
+        self.boxes += [corners(level.barriers[index].box) for index in shut if level.barriers[index].kind == "solid"]
         return grid_of(level).floor(shut)
 
 
