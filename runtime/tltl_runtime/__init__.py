@@ -1,7 +1,8 @@
-"""The runtime of .tltl specifications: a stealth game, environments that reward by a spec, and many automata at once.
+"""The runtime of ``.tltl`` specs: a stealth game, environments with rewards from a spec, and batched automata.
 
-Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0`` and
-``tltl/Branching-v0`` and loads neither torch nor pybullet.  It needs the extra ``game``, ``batch`` the extra ``rl``.
+Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0``
+and ``tltl/Branching-v0``.  It loads neither torch nor pybullet.  The package needs the extra
+``game``; ``batch`` needs the extra ``rl``.
 """
 
 from __future__ import annotations

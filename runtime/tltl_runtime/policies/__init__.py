@@ -1,1 +1,1 @@
-"""Policies: the networks that play, the files that hold them, and what they were trained for."""
+"""Policies: the networks, their files, and the cards that describe their training."""

@@ -1,4 +1,4 @@
-"""The distribution over actions of several branches, each one of a few."""
+"""The distribution over actions with several discrete branches."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from torch import Tensor, nn
 
 
 class MultiCategorical(Distribution):
-    """Independent categorical distributions, one a branch: Gymnasium's ``MultiDiscrete(branches)``.
+    """Independent categorical distributions, one per branch: Gymnasium's ``MultiDiscrete(branches)``.
 
-    The network gives ``sum(branches)`` logits, those of the first branch first.  An action is a row of
-    ``len(branches)`` numbers, the choice of each branch, held as floats as all actions of rsl-rl are.  Logarithms of
-    probabilities, entropies and divergences are sums over the branches, in nats.
+    The network outputs ``sum(branches)`` logits, the first branch first.  An action is a row of
+    ``len(branches)`` numbers, one choice per branch, stored as floats like all actions in rsl-rl.
+    Log probabilities, entropies and divergences are sums over the branches, in nats.
 
     Raises:
-        ValueError: there are not as many branches as the environment's actions have, or one has no choice.
+        ValueError: the number of branches is not ``output_dim``, or a branch has no choice.
     """
 
     def __init__(self, output_dim: int, branches: Sequence[int]) -> None:
@@ -27,37 +27,43 @@ class MultiCategorical(Distribution):
             raise ValueError(f"{output_dim} branches of at least one choice are needed, not {list(branches)}")
         self.branches = tuple(branches)
         self._logs: tuple[Tensor, ...] = ()
-        """The logarithms of the probabilities, a tensor [..., choices] a branch."""
+        """The log probabilities, one tensor [..., choices] per branch."""
 
     @property
     def input_dim(self) -> int:
-        """How many logits the network gives."""
+        """The number of logits that the network outputs."""
         return sum(self.branches)
 
     def update(self, mlp_output: Tensor) -> None:
-        """Take the logits [..., sum(branches)]."""
+        """Set the distribution to logits [..., sum(branches)]."""
         self._logs = tuple(part.log_softmax(-1) for part in mlp_output.split(self.branches, dim=-1))
 
     def sample(self) -> Tensor:
-        """A choice of each branch [..., branches], by a race of exponential clocks: the first to ring is chosen."""
+        """Sample a choice for each branch [..., branches].
+
+        The sample is the argmax of p / E with E ~ Exp(1), an exponential race.
+        """
         return _greatest([log.exp() / torch.empty_like(log).exponential_() for log in self._logs])
 
     def deterministic_output(self, mlp_output: Tensor) -> Tensor:
-        """The likeliest choice of each branch [..., branches]; of equal ones the first."""
+        """Return the likeliest choice of each branch [..., branches]; the first one on ties."""
         return _greatest(mlp_output.split(self.branches, dim=-1))
 
     def as_deterministic_output_module(self) -> nn.Module:
-        """A module that makes the likeliest choices of logits."""
+        """Return a module that maps logits to the likeliest choices."""
         return _Likeliest(self.branches)
 
     @property
     def mean(self) -> Tensor:
-        """The likeliest choice of each branch: choices have no mean."""
+        """The likeliest choice of each branch, because a categorical distribution has no mean."""
         return _greatest([*self._logs])
 
     @property
     def std(self) -> Tensor:
-        """The entropy of each branch [..., branches]: choices have no deviation, and rsl-rl but reports this."""
+        """The entropy of each branch [..., branches].
+
+        A categorical distribution has no standard deviation.  rsl-rl only reports this value.
+        """
         return torch.stack([_entropy(log) for log in self._logs], -1)
 
     @property
@@ -67,23 +73,23 @@ class MultiCategorical(Distribution):
 
     @property
     def params(self) -> tuple[Tensor, ...]:
-        """The logarithms of the probabilities [..., choices], a tensor a branch."""
+        """The log probabilities, one tensor [..., choices] per branch."""
         return self._logs
 
     def log_prob(self, outputs: Tensor) -> Tensor:
-        """The logarithm of the probability of actions [..., branches]."""
-        chosen = outputs.long().unsqueeze(-1).unbind(-2)
+        """Return the log probability of actions [..., branches]."""
+        choices = outputs.long().unsqueeze(-1).unbind(-2)
         return torch.stack(
-            [log.gather(-1, each).squeeze(-1) for log, each in zip(self._logs, chosen, strict=True)]
+            [log.gather(-1, choice).squeeze(-1) for log, choice in zip(self._logs, choices, strict=True)]
         ).sum(0)
 
     def kl_divergence(self, old_params: tuple[Tensor, ...], new_params: tuple[Tensor, ...]) -> Tensor:
-        """KL(old || new) [...] of two sets of ``params``."""
+        """Return the divergence KL(old || new) [...] of two values of ``params``."""
         pairs = zip(old_params, new_params, strict=True)
         return torch.stack([(old.exp() * (old - new)).sum(-1) for old, new in pairs]).sum(0)
 
     def init_mlp_weights(self, mlp: Any) -> None:
-        """Begin with choices that are nearly equally likely, so that nothing is ruled out before it was tried."""
+        """Start with nearly uniform probabilities, so that every choice is tried."""
         last = [layer for layer in mlp if isinstance(layer, nn.Linear)][-1]
         nn.init.orthogonal_(last.weight, gain=0.01)
         nn.init.zeros_(last.bias)
@@ -99,8 +105,8 @@ class _Likeliest(nn.Module):
 
 
 def _greatest(branches: list[Tensor]) -> Tensor:
-    """The place of the greatest value of each branch [..., branches], in their type; of equal ones the first."""
-    # TorchScript, to which rsl-rl may export an actor, knows lists and no sequences.
+    """Return the index of the maximum of each branch [..., branches], as their dtype; the first one on ties."""
+    # A list, not a sequence: rsl-rl may export an actor to TorchScript, which has no sequences.
     return torch.stack([values.argmax(-1) for values in branches], -1).to(branches[0].dtype)
 
 

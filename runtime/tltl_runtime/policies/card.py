@@ -1,4 +1,4 @@
-"""What a policy file says beside the weights."""
+"""The card of a policy: the data that a policy file stores with the weights."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from tltlc.core.record import record
 from tltlc.monitor import RewardOptions
 
 OBSERVATION: Final = 1
-"""The version of what the environments show an agent: another one wherever the same numbers mean something else."""
+"""The version of the observations.  It changes whenever the same numbers get another meaning."""
 
 
 @record
 class Card:
     """What a policy was trained for, and how.
 
-    ``level`` and ``variant`` name where it was trained, ``level_hash`` is that place's
-    (:func:`~tltl_runtime.policies.identity.level_hash`); ``fspa`` is the spec's automaton with ``params`` in SI units;
-    ``sensors`` are all that it senses.  ``shapes`` are those of the observation by key, in the order in which the
-    network takes them, ``branches`` those of the action.  ``training`` is the record of its training, JSON data.
+    ``level`` and ``variant`` name the level of the training; ``level_hash`` is its
+    :func:`~tltl_runtime.policies.identity.level_hash`.  ``fspa`` is the automaton of the spec, with
+    ``params`` in SI units.  ``sensors`` are all sensors of the policy.  ``shapes`` maps the keys of
+    the observation to shapes, in the order of the network's inputs.  ``branches`` are the numbers of
+    choices of an action.  ``training`` is the record of the training as JSON data.
     """
 
     level: str

@@ -1,4 +1,7 @@
-"""The file of a policy: safetensors, ``docs/policy-file.md`` describes it; nothing in it is ever executed."""
+"""Read and write policy files.
+
+The format is safetensors; ``docs/policy-file.md`` describes it.  Nothing in a file is executed.
+"""
 
 from __future__ import annotations
 
@@ -35,25 +38,26 @@ SUFFIX: Final = ".safetensors"
 FORMAT: Final = "tltl-policy"
 VERSION: Final = 1
 MAX_BYTES: Final = POLICY.size
-"""Greatest size of a file, thirty million weights: 64 MiB."""
+"""The maximum size of a file: 64 MiB, or thirty million weights."""
 _RECORD_BYTES: Final = 1 << 20
-"""What is enough for all in a card but the artefact."""
+"""The bytes that :func:`check_size` reserves for the card without its artefact."""
 
 _PREFIX: Final = "actor."
 _KEY: Final = "card"
-"""The one text beside the weights: with several, equal policies would give files that differ in their order."""
+"""The only metadata key.  With several, their order could differ between the files of equal policies."""
 
 _REFUSALS: Final = Refusals("a policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 
 def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "name another place") -> None:
-    """Write a policy to a file, which is there as a whole or not at all, after a loss of power, too.
+    """Write a policy to a file, so that even a power failure leaves no partial file.
 
-    Equal policies give equal bytes.  ``advice`` says what to do where the system refuses.
+    Equal policies give equal bytes.  ``advice`` is the help of the error if the system refuses.
 
     Raises:
-        TltlError: TLT0005 where the system refuses; TLT0862, it is larger than :data:`MAX_BYTES`.
+        TltlError: TLT0005, the system refuses to write; TLT0862, the file would be larger than
+            :data:`MAX_BYTES`.
         ValueError: the record of the training is not JSON data.
     """
     write_file(Path(path), to_bytes(policy), advice, durable=True, over_inputs=True)
@@ -61,20 +65,21 @@ def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "na
 
 @bounded()
 def read_policy(path: str | os.PathLike[str]) -> Policy:
-    """The policy in a file.
+    """Read a policy from a file.
 
     Raises:
-        TltlError: TLT0001 it cannot be read; TLT0840 it is no policy, or is damaged; TLT0841 of another version;
-            TLT0842 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0604.
+        TltlError: TLT0001, the file cannot be read; TLT0840, it is not a policy, or is damaged;
+            TLT0841, it has another version; TLT0842, something in it is invalid; TLT0601 to TLT0604,
+            its artefact is invalid.
     """
     name = os.fspath(path)
     return from_bytes(read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(policy: Policy) -> bytes:
-    """What :func:`write_policy` writes."""
+    """Return the bytes that :func:`write_policy` writes."""
     text = json.dumps(card_json(policy.card), ensure_ascii=False, allow_nan=False)
-    weights = {f"{_PREFIX}{name}": each for name, each in policy.weights().items()}
+    weights = {f"{_PREFIX}{name}": tensor for name, tensor in policy.weights().items()}
     data = save(weights, {_KEY: text})
     if len(data) > MAX_BYTES:
         raise _too_large(len(data))
@@ -82,9 +87,9 @@ def to_bytes(policy: Policy) -> bytes:
 
 
 def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
-    """Raise TltlError, TLT0862, where a file cannot hold a policy of the game with such a network."""
+    """Raise TltlError, TLT0862, if a policy of the game with this network is too large for a file."""
     (artefact,) = emit("json", fspa).values()
-    # It is a text within a text.
+    # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
     weights = 2 * weight_count(network, _observed(fspa, sensors), BRANCHES)
     size = weights + len(text.encode()) + _RECORD_BYTES
@@ -93,7 +98,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
 
 
 def card_json(card: Card) -> dict[str, Any]:
-    """What a file says beside the weights: the fields of the card, with the artefact of the spec."""
+    """Return the card as JSON data: its fields, with the artefact of the spec in place of ``fspa``."""
     (artefact,) = emit("json", card.fspa).values()
     document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name != "fspa"}
@@ -101,7 +106,10 @@ def card_json(card: Card) -> dict[str, Any]:
 
 
 def from_bytes(data: bytes, name: str) -> Policy:
-    """The policy in the bytes of a file, which messages call ``name``; errors as of :func:`read_policy`."""
+    """Return the policy in the bytes of a file; messages call the file ``name``.
+
+    Raises the errors of :func:`read_policy`, except TLT0001.
+    """
     if len(data) > MAX_BYTES:
         raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     header = _header(data, name)
@@ -116,11 +124,11 @@ def _too_large(size: int) -> TltlError:
     return TltlError([Diagnostic("TLT0862", title, help=help_)])
 
 
-# --- reading what nobody vouches for ----------------------------------------------------------------
+# --- reading untrusted files ------------------------------------------------------------------------
 
 
 def _header(data: bytes, name: str) -> dict[str, Any]:
-    """What the file says of itself: a JSON object, of as many bytes as its first eight say."""
+    """Return the JSON header of a file.  The first eight bytes of the file are the length of the header."""
     length = int.from_bytes(data[:8], "little")
     try:
         header = loads(data[8 : 8 + length], ARTEFACT) if length <= len(data) - 8 else None
@@ -156,7 +164,7 @@ def _fspa(document: object, name: str) -> Fspa:
 
 
 def _fault(card: Card) -> str | None:
-    """What is wrong with a card whose parts are of the right types."""
+    """Return what is wrong with a card whose fields have the right types, or None."""
     shapes = dict(card.shapes)
     seen = _observed(card.fspa, card.sensors)
     if len(shapes) < len(card.shapes) or shapes != seen or max(map(prod, shapes.values())) > MAX_BYTES:
@@ -167,7 +175,7 @@ def _fault(card: Card) -> str | None:
 
 
 def _observed(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
-    """The shapes of what an agent sees with such a spec and such sensors."""
+    """Return the shapes of the observation by key, for a spec and sensors."""
     shapes: dict[str, tuple[int, ...]] = {"automaton": (len(fspa.states),), "progress": (1,)}
     if sensors.entities:
         shapes["entities"] = (3 * len(sensors.entities),)
@@ -179,29 +187,29 @@ def _observed(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
-    """That there are the weights of the card's network, no more and no less, before memory is taken for them."""
+    """Check that the header lists exactly the weights of the card's network, before memory is allocated for them."""
     try:
-        wanted = {f"{_PREFIX}{key}": list(each.shape) for key, each in blank_actor(card).state_dict().items()}
+        wanted = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:
         raise _REFUSALS.broken(name, f"its card describes no network: {error!s:.80}") from None
-    there = {key: each for key, each in header.items() if key != "__metadata__"}
-    for key in sorted(wanted.keys() | there.keys()):
-        if key not in there:
+    stored = {key: entry for key, entry in header.items() if key != "__metadata__"}
+    for key in sorted(wanted.keys() | stored.keys()):
+        if key not in stored:
             raise _REFUSALS.broken(name, f"the tensor `{key}` is missing")
         if key not in wanted:
             raise _REFUSALS.broken(name, f"there is a tensor `{key:.60}`, which its network has no use for")
-        found = there[key] if isinstance(there[key], dict) else {}
-        if found.get("dtype") != "F16" or found.get("shape") != wanted[key]:
-            is_ = f"{found.get('dtype')!s:.20} of shape {found.get('shape')!s:.40}"
+        entry = stored[key] if isinstance(stored[key], dict) else {}
+        if entry.get("dtype") != "F16" or entry.get("shape") != wanted[key]:
+            is_ = f"{entry.get('dtype')!s:.20} of shape {entry.get('shape')!s:.40}"
             raise _REFUSALS.broken(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
 
 
 def _weights(data: bytes, name: str) -> dict[str, Tensor]:
     try:
-        found = load(data)
+        tensors = load(data)
     except (SafetensorError, ValueError):
         raise _REFUSALS.unreadable(name, "its weights are cut off or damaged") from None
-    for key, each in found.items():
-        if not bool(each.isfinite().all()):
+    for key, tensor in tensors.items():
+        if not bool(tensor.isfinite().all()):
             raise _REFUSALS.broken(name, f"the tensor `{key}` has values that are no finite numbers")
-    return {key.removeprefix(_PREFIX): each for key, each in found.items()}
+    return {key.removeprefix(_PREFIX): tensor for key, tensor in tensors.items()}

@@ -1,4 +1,4 @@
-"""Whether a policy can play somewhere: the spec that it was trained for, and the senses that it was trained with."""
+"""Check whether a policy fits a level and a spec."""
 
 from __future__ import annotations
 
@@ -15,38 +15,41 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _MOST: Final = 3
-"""Differences that a message names."""
+"""A message names at most this many differences."""
 
 
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
-    """Refuse a policy that cannot play ``level``, or not by the spec ``fspa`` (by default its own).
+    """Check that a policy can play ``level`` by the spec ``fspa`` (by default its own).
 
-    Another variant will do, and so will another level that has what the policy senses; so will a spec that is called
-    otherwise and judges alike.
+    Another variant fits.  Another level fits if it has everything that the policy senses.  Another
+    spec fits if it judges episodes in the same way; its name does not matter.
 
     Raises:
         TltlError: TLT0843, the policy does not fit; the message says what differs.
     """
     if card.observation != OBSERVATION:
-        made = "a newer" if card.observation > OBSERVATION else "an older"
-        way_out = "use that one, or train a policy with this one"
-        raise _unfit(f"the policy was trained with {made} tltlc, which shows agents other things", way_out)
+        age = "a newer" if card.observation > OBSERVATION else "an older"
+        suggestion = "use that one, or train a policy with this one"
+        raise _unfit(f"the policy was trained with {age} tltlc, which shows agents other things", suggestion)
     if card.branches != BRANCHES:
         raise _unfit(f"the policy chooses among {_sizes(card.branches)} actions, and the game has {_sizes(BRANCHES)}")
     missing = [*_missing(card, level)]
     if missing:
         title = f"the policy senses {listed(missing, _MOST)}, which the level `{level.name}` does not have"
-        way_out = f"let it play `{card.level}`, where it was trained"
+        suggestion = f"let it play `{card.level}`, where it was trained"
         if card.level == level.name:
-            way_out = "put back what was there when it was trained"
-        raise _unfit(title, f"{way_out}, or train one for `{level.name}`")
+            suggestion = "put back what was there when it was trained"
+        raise _unfit(title, f"{suggestion}, or train one for `{level.name}`")
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
         title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
         raise _unfit(title, "let it play its own spec, or train one for this spec")
 
 
 def differences(own: Fspa, fspa: Fspa) -> str:
-    """In what the spec ``fspa`` differs from ``own``, as which it does not judge; what the designer wrote first."""
+    """Describe how the spec ``fspa`` differs from ``own``, which judges differently.
+
+    Differences in what the designer wrote come before differences in the automaton.
+    """
     return listed([*_differences(own, fspa)], _MOST)
 
 
@@ -90,7 +93,7 @@ def _compared(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) ->
 
 
 def _states(before: Fspa, after: Fspa) -> Iterator[str]:
-    """The states that something else is made of."""
+    """Yield the states whose verdict or edges differ, and whether the exclusive atoms differ."""
     for old, new in zip(before.states, after.states, strict=True):
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)
         primes = [[(edge.target, edge.guard.primes) for edge in fspa.edges_from(new.id)] for fspa in (before, after)]

@@ -1,4 +1,4 @@
-"""What two specs or two levels have in common that are called the same: hashes of what counts."""
+"""Hashes that identify specs and levels by their content."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from tltlc.expression.json import to_json as expression_json
 
 
 def spec_hash(fspa: Fspa) -> str:
-    """SHA-256, in hexadecimal, of all that judges an episode; names, labels and documentation of the spec do not."""
+    """Return the SHA-256, in hexadecimal, of everything in a spec that affects how episodes are judged.
+
+    The names of the spec and its atoms, labels and documentation do not count.
+    """
     return _hash(
         {
             "semantics": fspa.semantics,
@@ -29,9 +32,12 @@ def spec_hash(fspa: Fspa) -> str:
 
 
 def level_hash(level: Level) -> str:
-    """SHA-256, in hexadecimal, of what is in a level; what it is called, made for and read from does not count."""
-    aside = ("name", "variant", "doc", "spec", "files", "regions")
-    return _hash({name: value for name, value in to_json(level).items() if name not in aside})
+    """Return the SHA-256, in hexadecimal, of the content of a level.
+
+    Its name, variant, documentation, spec, files and regions do not count.
+    """
+    left_out = ("name", "variant", "doc", "spec", "files", "regions")
+    return _hash({name: value for name, value in to_json(level).items() if name not in left_out})
 
 
 def _hash(document: object) -> str:

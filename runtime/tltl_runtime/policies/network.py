@@ -1,8 +1,9 @@
 """The network of a policy: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section V.
 
-One-hot automaton state, progress, entities and variables join the convolved semantic map; two fully connected layers
-follow.  Progress among the inputs, a channel of the map for each type, where the paper's cells hold a number, and two
-convolutions in place of one are not the paper's.
+The inputs are the automaton state (one-hot), progress, entities, variables and the semantic map
+after its convolutions.  Two fully connected layers follow.  Three points differ from the paper:
+progress is an input; the map has a channel for each type, where the paper's cells hold a number;
+and there are two convolutions instead of one.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any, Final, Literal, get_args
 from tltlc.core.record import record
 
 Shapes = Mapping[str, tuple[int, ...]]
-"""The shapes of observations by key, as of one environment: (n,), or (channels, height, width)."""
+"""The shapes of one environment's observation by key: (n,) or (channels, height, width)."""
 
 Activation = Literal["elu", "selu", "relu", "lrelu", "tanh", "sigmoid", "softplus", "gelu", "swish", "mish"]
 
@@ -25,12 +26,14 @@ MAX_STRIDE: Final = 8
 
 @record
 class Network:
-    """``hidden`` widths of the connected layers, after a convolution of each map by ``channels`` in turn.
+    """The layers of a network.
 
-    ``activation`` is a name that rsl-rl knows; ``kernel`` and ``stride`` are in cells, the same for each convolution.
+    ``channels`` are the output channels of the convolutions of each map, ``hidden`` the widths of
+    the fully connected layers after them.  ``activation`` is a name that rsl-rl knows.  ``kernel``
+    and ``stride`` are in cells and hold for all convolutions.
 
     Raises:
-        ValueError: there is no such activation, or a number is out of range.
+        ValueError: the activation is unknown, or a number is out of range.
     """
 
     hidden: tuple[int, ...] = (512, 512)
@@ -52,7 +55,7 @@ class Network:
 
 
 def model_config(network: Network, shapes: Shapes, branches: Sequence[int] | None = None) -> dict[str, Any]:
-    """rsl-rl's configuration of a model: of an actor with these ``branches`` of actions, or of a critic."""
+    """Return rsl-rl's configuration of an actor with these action ``branches``, or of a critic without them."""
     config: dict[str, Any] = {
         "class_name": "MLPModel",
         "hidden_dims": list(network.hidden),

@@ -1,4 +1,4 @@
-"""Policies for other engines: an ONNX model that says itself what its numbers are."""
+"""Export policies to other engines as ONNX models that describe their inputs and outputs."""
 
 from __future__ import annotations
 
@@ -27,11 +27,12 @@ _OPSET: Final = 18
 
 
 def to_onnx(policy: Policy) -> bytes:
-    """The policy as an ONNX model; equal policies give equal bytes.
+    """Return the policy as an ONNX model.  Equal policies give equal bytes.
 
-    Inputs are the parts of an observation by their keys, float32 [batch, ...]; outputs are the ``logits``
-    float32 [batch, sum(branches)], those of the first branch first, and the ``action`` int64 [batch, branches], the
-    likeliest choice of each branch, of equal ones the first.  ``docs/policy-file.md`` describes the texts in it.
+    The inputs are the parts of an observation, named by their keys, float32 [batch, ...].  The
+    outputs are ``logits``, float32 [batch, sum(branches)], the first branch first; and ``action``,
+    int64 [batch, branches], the likeliest choice of each branch, the first one on ties.
+    ``docs/policy-file.md`` describes the metadata.
     """
     keys = [key for key, _ in policy.card.shapes]
     batch = torch.export.Dim("batch", min=1)
@@ -53,7 +54,7 @@ def to_onnx(policy: Policy) -> bytes:
 
 
 class _Player(nn.Module):
-    """From the parts of observations to logits and actions."""
+    """Maps the parts of observations to logits and actions."""
 
     def __init__(self, policy: Policy) -> None:
         super().__init__()
@@ -66,13 +67,13 @@ class _Player(nn.Module):
 
 
 def _texts(card: Card) -> dict[str, str]:
-    """What the model says of itself; all but ``spec_hash`` is JSON."""
+    """Return the metadata of the model.  All values but ``spec_hash`` are JSON."""
     names = list(CHOICES.items()) if card.branches == BRANCHES else []
     texts = {
         "inputs": _inputs(card),
         "actions": [{"name": name, "choices": choices} for name, choices in names],
-        "states": [{"label": each.label.ascii, "english": each.label.english} for each in card.fspa.states],
-        # How it was trained is for those who train, and they have the policy's file.
+        "states": [{"label": state.label.ascii, "english": state.label.english} for state in card.fspa.states],
+        # The record of the training stays in the policy file: an engine has no use for it.
         "card": card_json(replace(card, training={})),
     }
     return {"spec_hash": spec_hash(card.fspa)} | {
@@ -81,7 +82,7 @@ def _texts(card: Card) -> dict[str, str]:
 
 
 def _inputs(card: Card) -> dict[str, list[str]]:
-    """What the numbers of each input are, along its first axis."""
+    """Return names for the first axis of each input."""
     sensors = card.sensors
     names: Mapping[str, list[str]] = {
         "automaton": [f"state {state.id}" for state in card.fspa.states],
@@ -94,17 +95,17 @@ def _inputs(card: Card) -> dict[str, list[str]]:
 
 
 def _forget_source(model: ModelProto) -> None:
-    """Take away where in whose files each node of the graph comes from."""
-    for each in (*model.graph.node, *model.graph.value_info, *model.graph.input, *model.graph.output):
-        each.ClearField("metadata_props")
-        each.ClearField("doc_string")
+    """Remove the metadata that names the source files of each node."""
+    for part in (*model.graph.node, *model.graph.value_info, *model.graph.input, *model.graph.output):
+        part.ClearField("metadata_props")
+        part.ClearField("doc_string")
     model.graph.ClearField("metadata_props")
     model.graph.ClearField("doc_string")
 
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Within, torch does not tell of its own workings: a model that comes out is checked by tests, not by readers."""
+    """Silence the messages of torch's exporter; the tests check the exported model."""
     log = logging.getLogger("torch.onnx")
     before = log.level
     log.setLevel(logging.ERROR)

@@ -1,4 +1,4 @@
-"""A policy: the actor's network, and what it was trained for."""
+"""A policy: the network of an actor and its card."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
 class NoNumbersError(ValueError):
-    """What a network is made of, what goes into it, or what comes out of it, is not finite; the message says what."""
+    """The weights, the input or the output of a network are not finite; the message says which."""
 
 
 class Policy:
-    """An actor's weights with their card.
+    """The weights of an actor with their card.
 
-    The ``weights``, by name, are taken as they are now and rounded to half precision: what a file holds is what plays,
-    bit for bit, and a training that goes on changes nothing.  What a policy chooses depends on nothing but the
-    observation, and on the generator where it samples: an observation is taken alone, never in a batch, whose size
-    would change the last bits of the logits.
+    ``weights``, by name, are copied and rounded to half precision.  So a policy plays with exactly
+    the weights in its file, and a training that continues does not change it.  An action depends
+    only on the observation, and on the generator if it is sampled.  Observations are never batched:
+    the batch size would change the last bits of the logits.
 
     Raises:
-        NoNumbersError: a weight is no finite number in half precision.
-        ValueError: the weights are not those of the network that the card describes.
+        NoNumbersError: a weight is not finite in half precision.
+        ValueError: the weights do not fit the network that the card describes.
     """
 
     def __init__(self, card: Card, weights: Mapping[str, Tensor]) -> None:
-        # With an order of their own in memory they would be computed with in another one, too.
-        rounded = {name: each.detach().cpu().half().contiguous() for name, each in weights.items()}
-        if not all(bool(each.isfinite().all()) for each in rounded.values()):
+        # `contiguous`: with another memory layout, torch would compute in another order.
+        rounded = {name: tensor.detach().cpu().half().contiguous() for name, tensor in weights.items()}
+        if not all(bool(tensor.isfinite().all()) for tensor in rounded.values()):
             raise NoNumbersError(
                 "a weight of the actor is no finite number in half precision: its training has diverged"
             )
@@ -45,12 +45,12 @@ class Policy:
         self.actor = _actor_of(card, rounded)
 
     def weights(self) -> dict[str, Tensor]:
-        """The weights by name, in half precision, without loss."""
-        return {name: each.to(torch.float16) for name, each in self.actor.state_dict().items()}
+        """Return the weights by name, in half precision.  No precision is lost."""
+        return {name: tensor.to(torch.float16) for name, tensor in self.actor.state_dict().items()}
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
-        """The logits [sum(branches)] of the observation of one environment."""
-        # A plain dict will do for the model: a TensorDict takes as long to make as the network to run.
+        """Return the logits [sum(branches)] for the observation of one environment."""
+        # The model accepts a plain dict.  Making a TensorDict takes as long as running the network.
         batch = {key: torch.from_numpy(np.asarray(observation[key], np.float32)[None]) for key, _ in self.card.shapes}
         with torch.inference_mode():
             return self.actor.mlp(self.actor.get_latent(batch))[0].numpy()  # type: ignore[no-any-return]
@@ -58,51 +58,57 @@ class Policy:
     def choose(
         self, observation: Mapping[str, NDArray[Any]], generator: np.random.Generator | None = None
     ) -> NDArray[np.int64]:
-        """The action [branches]: sampled with ``generator``, without one the likeliest choice of each branch.
+        """Return an action [branches]: sampled with ``generator``, or the likeliest choices without one.
 
-        Of equally likely choices the first is taken.
+        On ties, the first choice is taken.
 
         Raises:
-            NoNumbersError: the observation, or what the network makes of it, has values that are no finite numbers.
+            NoNumbersError: the observation or the output of the network is not finite.
         """
         logits = self.logits(observation).astype(np.float64)
         if not np.isfinite(logits).all():
             raise NoNumbersError(_no_numbers(observation))
         if generator is not None:
-            # Of logits with such noise the greatest is a sample of their softmax.
+            # The Gumbel-max trick: the argmax of logits plus Gumbel noise is a sample of their softmax.
             logits += generator.gumbel(size=len(logits))
         ends = np.cumsum(self.card.branches)
         return np.array([logits[end - size : end].argmax() for size, end in zip(self.card.branches, ends, strict=True)])
 
 
 def _no_numbers(observation: Mapping[str, NDArray[Any]]) -> str:
-    parts = [key for key, each in observation.items() if not np.isfinite(each).all()]
-    what = f"`{parts[0]}` of the observation has values" if parts else "the policy's network gives values"
-    return f"{what} that are no finite numbers"
+    parts = [key for key, values in observation.items() if not np.isfinite(values).all()]
+    cause = f"`{parts[0]}` of the observation has values" if parts else "the policy's network gives values"
+    return f"{cause} that are no finite numbers"
 
 
 def new_actor(card: Card) -> MLPModel:
-    """An actor as the card describes it, its weights as they are drawn; raises ValueError for what is no network."""
+    """Return the actor that the card describes, with random weights.
+
+    Raises ValueError if the card describes no network.
+    """
     return _actor(card.network, dict(card.shapes), card.branches)
 
 
 def blank_actor(card: Card) -> MLPModel:
-    """An actor as the card describes it that has no weights yet but their names and shapes; nothing is drawn."""
+    """Return the actor that the card describes, with names and shapes of weights but no values.
+
+    No random numbers are drawn.
+    """
     with torch.device("meta"):
         return new_actor(card)
 
 
 def weight_count(network: Network, shapes: Shapes, branches: Sequence[int]) -> int:
-    """How many weights an actor has; none is made."""
+    """Return the number of weights of an actor, without allocating them."""
     with torch.device("meta"):
-        return sum(each.numel() for each in _actor(network, shapes, branches).state_dict().values())
+        return sum(tensor.numel() for tensor in _actor(network, shapes, branches).state_dict().values())
 
 
 def _actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
-    """An actor with a copy of such weights, ready to play."""
+    """Return an actor with a copy of the weights, in evaluation mode."""
     actor = blank_actor(card)
     try:
-        actor.load_state_dict({name: each.float() for name, each in weights.items()}, assign=True)
+        actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()}, assign=True)
     except RuntimeError as error:
         raise ValueError(f"the weights are of another network than the card describes: {error}") from None
     return actor.requires_grad_(False).eval()

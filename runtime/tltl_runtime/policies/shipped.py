@@ -1,4 +1,4 @@
-"""The policies that come with the package, one for each of its levels."""
+"""The policies that ship with the package, one for each of its levels."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _FOLDER: Final = Path(__file__).with_name("shipped")
 
 
 def shipped_policies() -> dict[str, Path]:
-    """The files of the policies, by the names of their levels."""
+    """Return the files of the policies, by the names of their levels."""
     return {path.name.removesuffix(SUFFIX): path for path in sorted(_FOLDER.glob(f"*{SUFFIX}"))}
 
 
 def shipped_policy(level: str) -> Path | None:
-    """The file of the policy for the level of that name, None where there is none."""
+    """Return the file of the policy for the level with this name, or None."""
     return shipped_policies().get(level)

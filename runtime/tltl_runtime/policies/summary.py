@@ -1,4 +1,4 @@
-"""What there is to say of a policy: what it was trained for, what it senses and chooses, how its training went."""
+"""Summaries of policies: what they were trained for, their inputs and outputs, and how training went."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _ENDS: Final[Mapping[str, str]] = {
     "steps": "by the limit of steps",
     "minutes": "by the limit of minutes",
 }
-"""Why a training ended, by what its record says."""
+"""Why a training ended, by the ``end`` of its record."""
 
 
 def summary(policy: Policy) -> dict[str, Any]:
-    """What there is to say of a policy, as JSON can say it."""
+    """Return a summary of a policy as JSON data."""
     card = policy.card
     return {
         "level": card.level,
@@ -35,35 +35,38 @@ def summary(policy: Policy) -> dict[str, Any]:
         "sensors": to_json(card.sensors),
         "branches": card.branches,
         "network": to_json(card.network),
-        "weights": sum(each.numel() for each in policy.actor.parameters()),
+        "weights": sum(parameter.numel() for parameter in policy.actor.parameters()),
         "reward": to_json(card.reward),
         "versions": dict(card.versions),
         "training": to_json(card.training),
     }
 
 
-def summary_text(said: Mapping[str, Any]) -> str:
-    """A summary for people; signs that are none, which a stranger's file may have in its names, are replaced."""
-    sensors, network = said["sensors"], said["network"]
+def summary_text(values: Mapping[str, Any]) -> str:
+    """Return a summary as text.
+
+    Unprintable characters, which an untrusted file may have in its names, are replaced.
+    """
+    sensors, network = values["sensors"], values["network"]
     map_ = sensors["map"]
     layers = " + ".join(map(str, network["hidden"]))
     if map_ is not None:
         layers = f"convolution {' + '.join(map(str, network['channels']))}, then {layers}"
     rows = {
-        "level": f"{said['level']} {said['variant']} (hash {said['level_hash'][:12]})",
-        "spec": f"{said['spec']} (hash {said['spec_hash'][:12]}): {said['english']}",
+        "level": f"{values['level']} {values['variant']} (hash {values['level_hash'][:12]})",
+        "spec": f"{values['spec']} (hash {values['spec_hash'][:12]}): {values['english']}",
         "senses": ", ".join((*sensors["entities"], *sensors["variables"])) or "neither entities nor variables",
         "map": _map(map_) if map_ else "",
-        "network": f"{layers} ({network['activation']}), {said['weights']:,} weights",
-        "training": _training(said["training"]),
-        "initial": _initial(said["training"]),
-        "kept": _kept(said["training"]),
-        "ended": _ENDS.get(str(said["training"].get("end")), ""),
-        "search": _search(said["training"]),
-        "imitated": _imitated(said["training"]),
-        "versions": ", ".join(f"{name} {version}" for name, version in said["versions"].items()),
+        "network": f"{layers} ({network['activation']}), {values['weights']:,} weights",
+        "training": _training(values["training"]),
+        "initial": _initial(values["training"]),
+        "kept": _kept(values["training"]),
+        "ended": _ENDS.get(str(values["training"].get("end")), ""),
+        "search": _search(values["training"]),
+        "imitated": _imitated(values["training"]),
+        "versions": ", ".join(f"{name} {version}" for name, version in values["versions"].items()),
     }
-    shown = {name: "".join(sign if sign.isprintable() else "\ufffd" for sign in text) for name, text in rows.items()}
+    shown = {name: "".join(char if char.isprintable() else "\ufffd" for char in text) for name, text in rows.items()}
     return "".join(column(f"  {name:9}", text) + "\n" for name, text in shown.items() if text)
 
 
@@ -72,9 +75,9 @@ def _map(sensor: Mapping[str, Any]) -> str:
 
 
 def _training(record: Mapping[str, Any]) -> str:
-    """How the training went, as far as its record tells in numbers."""
+    """Describe how the training went; numbers that the record lacks are left out."""
     window = record.get("window")
-    # Of no episodes there is no rate.
+    # Without episodes there is no pass rate.
     values = {**(window if isinstance(window, dict) and window.get("episodes") else {}), **record}
     wordings: tuple[tuple[str, Callable[[Any], str]], ...] = (
         ("seed", "seed {}".format),
@@ -82,11 +85,11 @@ def _training(record: Mapping[str, Any]) -> str:
         ("seconds", "{:,.0f} s".format),
         ("pass_rate", lambda rate: f"pass rate {share(rate)} in its last episodes"),
     )
-    return ", ".join(said(values[key]) for key, said in wordings if isinstance(values.get(key), (int, float)))
+    return ", ".join(wording(values[key]) for key, wording in wordings if isinstance(values.get(key), (int, float)))
 
 
 def _kept(record: Mapping[str, Any]) -> str:
-    """How good the policy was that the training kept, as far as its record tells."""
+    """Describe the best policy, which the training kept; empty if the record does not say."""
     best = record.get("best")
     if not isinstance(best, dict) or not isinstance(best.get("pass_rate"), (int, float)):
         return ""
@@ -96,7 +99,7 @@ def _kept(record: Mapping[str, Any]) -> str:
 
 
 def _initial(record: Mapping[str, Any]) -> str:
-    """Which policy the training began with, as far as its record tells."""
+    """Describe the policy that the training began with; empty if the record names none."""
     initial = record.get("initial")
     if not isinstance(initial, dict):
         return ""
@@ -105,21 +108,21 @@ def _initial(record: Mapping[str, Any]) -> str:
 
 
 def _search(record: Mapping[str, Any]) -> str:
-    """What the search before the training found, as far as its record tells."""
+    """Describe the result of the search before the training; empty if the record has none."""
     search = record.get("search")
     lengths = search.get("lengths") if isinstance(search, dict) else None
-    if not isinstance(lengths, list) or not all(type(each) is int for each in lengths):
+    if not isinstance(lengths, list) or not all(type(length) is int for length in lengths):
         return ""
     ways = f"{len(lengths)} way{'s' * (len(lengths) != 1)} to meet the spec"
     return f"{ways}, the shortest of {min(lengths)} steps" if lengths else "no way to meet the spec was found"
 
 
 def _imitated(record: Mapping[str, Any]) -> str:
-    """What a training by imitation learned from, as far as its record tells."""
+    """Describe the demonstrations of a training by imitation; empty if the record has none."""
     imitated = record.get("imitated")
     if not isinstance(imitated, dict) or not all(type(imitated.get(key)) is int for key in ("episodes", "decisions")):
         return ""
-    many = f"{imitated['episodes']} demonstration{'s' * (imitated['episodes'] != 1)}"
+    demonstrations = f"{imitated['episodes']} demonstration{'s' * (imitated['episodes'] != 1)}"
     players = imitated.get("players")
     by = f", by {' and '.join(map(str, players))}" if isinstance(players, list) and players else ""
-    return f"{many} of {imitated['decisions']:,} decisions{by}"
+    return f"{demonstrations} of {imitated['decisions']:,} decisions{by}"

@@ -1,4 +1,4 @@
-"""How many threads torch uses: with more than one the last bits of a network's output are another matter."""
+"""Set the number of threads of torch: the last bits of a network's output depend on it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import torch
 
 @contextmanager
 def threads(count: int) -> Iterator[None]:
-    """Within, torch computes in ``count`` threads."""
+    """Let torch compute in ``count`` threads inside the block."""
     before = torch.get_num_threads()
     torch.set_num_threads(count)
     try:
