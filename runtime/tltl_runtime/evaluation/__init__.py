@@ -1,1 +1,1 @@
-"""Episodes that policies play, each the same whenever and wherever it is played, and what they show."""
+"""Evaluations of policies: reproducible episodes and their statistics."""

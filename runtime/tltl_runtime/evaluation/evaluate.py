@@ -1,4 +1,4 @@
-"""Evaluations: a policy plays many episodes, on one core, on several or on a Ray cluster."""
+"""Evaluate a policy over many episodes, on one core, on several or on a Ray cluster."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Pool = int | Literal["ray"]
-"""This process (1), so many others (0: one for each core), or those of a Ray cluster."""
+"""Where episodes are played: this process (1), this many workers (0: one per core), or a Ray cluster."""
 
 
 def evaluate(
@@ -38,17 +38,18 @@ def evaluate(
     sampled: bool = True,
     spec: str | Path | Fspa | None = None,
 ) -> Iterator[Played]:
-    """Have a policy play ``episodes``, and tell how each went, in their order and as soon as they are over.
+    """Play ``episodes`` episodes with a policy; yield each result in order, as soon as it is available.
 
-    ``level``, ``variant`` and ``spec`` are by default those that the policy was trained for; the variant of another
-    level is ``v0``.  The episodes are the same whichever ``workers`` play.  A process starts by importing the main
-    module, so a script's own work stands under ``if __name__ == "__main__"``.
+    ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another
+    level, the variant defaults to ``v0``.  The episodes do not depend on ``workers``.  Worker
+    processes import the main module, so put the code of a script under
+    ``if __name__ == "__main__"``.
 
     Raises:
-        TltlError: what :func:`set_up`, :func:`results` and ``read_policy`` raise.
+        TltlError: the errors of :func:`set_up`, :func:`results` and ``read_policy``.
     """
-    read = policy if isinstance(policy, Policy) else read_policy(Path(policy))
-    setup = set_up(read, level, variant, spec, seed)
+    loaded = policy if isinstance(policy, Policy) else read_policy(Path(policy))
+    setup = set_up(loaded, level, variant, spec, seed)
     for result in results(setup, [Task(index, sampled) for index in range(episodes)], workers):
         yield result.played
 
@@ -61,27 +62,28 @@ def set_up(
     seed: int,
     recorded: Recorded | None = None,
 ) -> Setup:
-    """An evaluation that can be played.
+    """Return the setup of an evaluation, checked.
 
     Raises:
-        TltlError: there is no such level, variant or spec; what the spec asks of the level and does not get; what
-            :func:`~tltl_runtime.policies.fit.check_policy` finds; TLT0851, the spec has no limit.
+        TltlError: the level, variant or spec does not exist; the level lacks something that the spec
+            needs; the errors of :func:`~tltl_runtime.policies.fit.check_policy`; TLT0851, the spec
+            has no limit.
     """
     card = policy.card
     name = level or card.level
-    chosen = variant or (card.variant if level is None else "v0")
-    place = load_level(name, chosen)
-    offered = level_params(place)
+    variant_name = variant or (card.variant if level is None else "v0")
+    loaded_level = load_level(name, variant_name)
+    offered = level_params(loaded_level)
     own = {key: value for key, value in card.params.items() if key not in offered} if spec is None else {}
     task = load_task(card.fspa if spec is None else spec, own, offered=offered)
-    check_policy(card, place, task.fspa)
-    check_fit(place, task.fspa, card.fspa if spec is None else spec)
+    check_policy(card, loaded_level, task.fspa)
+    check_fit(loaded_level, task.fspa, card.fspa if spec is None else spec)
     check_limit(task.fspa)
-    return Setup(policy, name, chosen, task.fspa, seed, task.params, recorded)
+    return Setup(policy, name, variant_name, task.fspa, seed, task.params, recorded)
 
 
 def check_limit(fspa: Fspa) -> None:
-    """Raise TltlError, TLT0851, where a spec has no limit."""
+    """Raise TltlError, TLT0851, if a spec has no limit."""
     if fspa.limit_steps is None:
         title = f"`{fspa.name}` has no limit, so an episode may go on for ever"
         raise TltlError([Diagnostic("TLT0851", title, help="write `limit 60 s` or the like in the spec")])
@@ -94,15 +96,16 @@ def results(
     waiting: Callable[[float], None] = lambda left: None,
     alone: Alone | None = None,
 ) -> Generator[Result]:
-    """Play the tasks and give their results in order; closing the iterator ends the workers.
+    """Play the tasks and yield their results in order.  Closing the iterator ends the workers.
 
-    Where no core of a Ray cluster is free, ``waiting`` is told for how many more seconds one is waited for.  Where a
-    worker is lost, ``alone`` is the command that plays its episode, by default ``tltlc evaluate``.
+    While no core of a Ray cluster is free, ``waiting`` is called with the seconds that are left to
+    wait.  If a worker is lost, the error names the command of ``alone`` that plays its episode, by
+    default ``tltlc evaluate``.
 
     Raises:
-        TltlError: TLT0850, a worker was lost; TLT0730, Ray is asked for and is not installed; TLT0852, there is no
-            cluster, or no worker starts there in time; what the making of an environment raises.
-        ValueError: a number of workers below 0.
+        TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
+            there is no cluster, or no worker starts there in time; errors while an environment is made.
+        ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
         yield from results_here(partial(Player, setup), tasks, workers, setup.seed, alone)
@@ -116,12 +119,14 @@ def results(
 def results_here(
     make: Callable[[], Plays], tasks: Sequence[Task], workers: int, seed: int, alone: Alone | None = None
 ) -> Generator[Result]:
-    """As :func:`results`, on this machine, played by what ``make`` makes in each process, to which it is pickled.
+    """Play the tasks on this machine and yield their results in order, like :func:`results`.
+
+    ``make`` makes the player of each process.  It is pickled if there are worker processes.
 
     Raises:
-        TltlError: TLT0850, a worker was lost while it played an episode of the evaluation's ``seed``; what playing
-            raises.
-        ValueError: a number of workers below 0.
+        TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
+            ``seed``; errors while an episode is played.
+        ValueError: ``workers`` is below 0.
     """
     if workers == 1:
         with closing(make()) as player:
@@ -132,6 +137,6 @@ def results_here(
         raise ValueError(f"there are no {workers} workers")
     with ExitStack() as stack:
         team = [Process(make) for _ in range(min(workers or cores(), len(tasks)))]
-        for each in team:
-            stack.callback(each.close)
+        for worker in team:
+            stack.callback(worker.close)
         yield from spread(team, tasks, seed, alone)

@@ -1,4 +1,4 @@
-"""What episodes come to: the figures that are reported of them, and where those ended that failed."""
+"""The reported figures of an evaluation, and where failed episodes ended."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from tltlc.core.record import record
 
 @record
 class Ended:
-    """Failed episodes that ended alike: what remained in ``state`` (``label``), and how they ended.
+    """Failed episodes with the same end.
 
-    Of violated ones it is the state from which they were.  ``share`` is that of all episodes that were played;
-    ``episodes`` are their indices.
+    ``state`` is the automaton state at the end, or before the violation.  ``label`` says what
+    remained to be done there.  ``share`` is the share among all episodes that were played, in
+    [0, 1].  ``episodes`` are the indices.
     """
 
     state: int
@@ -29,9 +30,11 @@ class Ended:
 
 @record
 class Figures:
-    """The figures over so many ``episodes``: ``pass_rate`` with its Wilson interval of 95 %, the spread of the others.
+    """The figures over a number of ``episodes``.
 
-    ``progress`` is the best of an episode, in [0, 1], ``reward`` its undiscounted sum, ``steps`` are decisions.
+    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval.  For each episode,
+    ``progress`` is the best value, in [0, 1], ``reward`` the undiscounted return, and ``steps`` the
+    number of decisions.
     """
 
     episodes: int
@@ -44,7 +47,7 @@ class Figures:
 
 @record
 class Evaluation:
-    """What an evaluation comes to: figures, how failed episodes ended, and the episodes themselves."""
+    """The result of an evaluation: the figures, how failed episodes ended, and all episodes."""
 
     figures: Figures
     ended: tuple[Ended, ...]
@@ -52,33 +55,33 @@ class Evaluation:
 
 
 def figures_of(episodes: Sequence[TimedOutcome]) -> Figures:
-    """The figures over episodes; raises ValueError where there are none."""
-    passed = sum(each.success for each in episodes)
-    # First, since it says in words what is wrong with none.
+    """Return the figures over episodes.  Raises ValueError if there are none."""
+    passed = sum(episode.success for episode in episodes)
+    # First: without episodes, this raises the error with a clear message.
     interval = wilson(passed, len(episodes))
     return Figures(
         episodes=len(episodes),
         pass_rate=passed / len(episodes),
         pass_interval=interval,
-        progress=spread_of([each.progress for each in episodes]),
-        reward=spread_of([each.reward for each in episodes]),
-        steps=spread_of([float(each.steps) for each in episodes]),
+        progress=spread_of([episode.progress for episode in episodes]),
+        reward=spread_of([episode.reward for episode in episodes]),
+        steps=spread_of([float(episode.steps) for episode in episodes]),
     )
 
 
 def evaluation_of(episodes: Sequence[Played]) -> Evaluation:
-    """What these episodes come to; raises ValueError where there are none."""
+    """Return the evaluation of episodes.  Raises ValueError if there are none."""
     return Evaluation(figures_of(episodes), _ended(episodes), tuple(episodes))
 
 
 def _ended(episodes: Sequence[Played]) -> tuple[Ended, ...]:
-    """Those that failed, by state and end, the most frequent first."""
+    """Group the failed episodes by state and end, the most frequent group first."""
     groups: dict[tuple[int, str, End], list[int]] = {}
-    for each in episodes:
-        if not each.success:
-            groups.setdefault((each.unmet, each.label, each.end), []).append(each.index)
-    found = [
+    for episode in episodes:
+        if not episode.success:
+            groups.setdefault((episode.unmet, episode.label, episode.end), []).append(episode.index)
+    ended = [
         Ended(state, label, end, len(indices), len(indices) / len(episodes), tuple(indices))
         for (state, label, end), indices in groups.items()
     ]
-    return tuple(sorted(found, key=lambda each: (-each.count, each.state, each.end)))
+    return tuple(sorted(ended, key=lambda group: (-group.count, group.state, group.end)))

@@ -1,4 +1,4 @@
-"""Workers of this machine."""
+"""Worker processes on this machine."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from tltl_runtime.support.child_processes import interrupts_withheld
 
 
 class Process:
-    """A process of its own, an executor's only one: where it breaks, it is known what it was playing.
+    """A worker process, with an executor of its own: if it breaks, it is known which episode was lost.
 
-    Who plays there is what ``make`` makes there, which can be pickled.
+    ``make`` makes the player in that process.  It must be picklable.
     """
 
     def __init__(self, make: Callable[[], Plays]) -> None:
         self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
     def play(self, task: Task) -> Future[Result]:
-        """Begin an episode."""
+        """Start to play an episode."""
         future: Future[Result] = Future()
         try:
             with interrupts_withheld():
@@ -39,16 +39,17 @@ class Process:
         return future
 
     def close(self) -> None:
-        """Wait until the process has played its episode, and end it; others play theirs meanwhile."""
-        # An executor that still ends when Python does may fail, or never end.
+        """Wait until the process has played its current episode, then end it.  Other workers go on meanwhile."""
+        # Wait: an executor that is still shutting down when Python exits may fail or hang.
         self._executor.shutdown(wait=True, cancel_futures=True)
 
 
 def _context() -> BaseContext:
-    """How processes are started: on Linux as copies of one that has loaded torch, once for all of them.
+    """Return the context that starts workers: on Linux a fork server that loads torch once for all of them.
 
-    A copy has the locks of all threads, and not the threads: that process computes nothing, so torch has none there,
-    and OpenBLAS ends its own before a copy is made.
+    A forked process inherits the locks of all threads, but not the threads.  This is safe here: the
+    fork server computes nothing, so torch starts no threads in it, and OpenBLAS ends its threads
+    before a fork.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
@@ -61,19 +62,22 @@ _ENDED: Final = "its process ended; where it said nothing before, it was perhaps
 
 _make: Callable[[], Plays]
 _player: Plays | None = None
-"""Of a process that plays."""
+"""The player of this worker process, once it has been made."""
 
 
 def _begin(make: Callable[[], Plays]) -> None:
     global _make
-    # Whoever started this one decides what Ctrl-C means.
+    # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _make = make
 
 
 def _end_with_parent() -> None:
-    """An executor's process would wait for ever for the next task of a parent that was killed."""
+    """End this process when its parent has ended.
+
+    If the parent is killed, the process would otherwise wait forever for the next task.
+    """
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
@@ -81,7 +85,7 @@ def _end_with_parent() -> None:
 
 
 def _play(task: Task) -> Result:
-    # What is raised in `_begin` would be lost, and here it is told.
+    # The player is made here because an exception in `_begin` would be lost.
     global _player
     _player = _player or _make()
     return _player.play(task)

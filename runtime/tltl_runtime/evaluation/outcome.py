@@ -1,4 +1,4 @@
-"""What is looked at in an episode that was played, whoever tells of it."""
+"""Protocols for the results of episodes."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class Outcome(Protocol):
 
     @property
     def progress(self) -> float:
-        """The best, in [0, 1]."""
+        """The best progress, in [0, 1]."""
 
     @property
     def reward(self) -> float:
-        """The sum over the steps."""
+        """The sum of the rewards of all steps."""
 
 
 class TimedOutcome(Outcome, Protocol):
@@ -26,4 +26,4 @@ class TimedOutcome(Outcome, Protocol):
 
     @property
     def steps(self) -> int:
-        """How many decisions it took."""
+        """The number of decisions."""

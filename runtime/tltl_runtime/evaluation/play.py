@@ -1,4 +1,4 @@
-"""A policy plays an episode."""
+"""Play an episode with a policy."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
-"""The streams of random numbers of an episode."""
+"""The random streams of an episode: for the reset of the environment, and for sampled actions."""
 
 
 @record
 class Played:
-    """How episode ``index`` of an evaluation went; ``seed`` is that of the environment's reset.
+    """The result of episode ``index`` of an evaluation.
 
-    ``progress`` is the best, in [0, 1]; ``reward`` the sum over the ``steps``; ``seconds`` are those of the game.
-    ``state`` is the automaton's at the end.  ``unmet`` is that state, or the one before a violation, and ``label``
-    says in English what remained to be done there.
+    ``seed`` is the seed of the environment's reset.  ``progress`` is the best value, in [0, 1];
+    ``reward`` the sum over the ``steps``; ``seconds`` are game time.  ``state`` is the automaton
+    state at the end.  ``unmet`` is that state, or the state before a violation; ``label`` says in
+    English what remained to be done there.
     """
 
     index: int
@@ -40,14 +41,14 @@ class Played:
 
 
 def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> Played:
-    """Play episode ``index`` of an evaluation's ``seed``, with sampled or with the likeliest actions, to its end.
+    """Play episode ``index`` of an evaluation with ``seed`` to its end, with sampled or likeliest actions.
 
-    ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, or wrappers around one, whose spec has a limit.  The
-    episode
-    depends on policy, environment and these three numbers alone; sampled or not, the environment's seed is the same.
+    ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a limit.
+    The episode depends only on the policy, the environment, ``seed``, ``index`` and ``sampled``.  The
+    seed of the environment does not depend on ``sampled``.
 
     Raises:
-        TltlError: TLT0854, the environment or the policy gives values that are no finite numbers.
+        TltlError: TLT0854, the environment or the policy gives values that are not finite.
     """
     generator = np.random.default_rng(_stream(seed, index, _OF_ACTIONS)) if sampled else None
     reset_seed = episode_seed(seed, index)
@@ -60,8 +61,8 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
             where = f"episode {index} of seed {seed} (seed {reset_seed} of the level), step {steps + 1}"
             help_ = "mend the environment where it gives them, else train the policy again"
             raise TltlError([Diagnostic("TLT0854", f"{where}: {error}", help=help_)]) from None
-        observation, gained, terminated, truncated, info = env.step(action)
-        reward, steps, over = reward + float(gained), steps + 1, terminated or truncated
+        observation, step_reward, terminated, truncated, info = env.step(action)
+        reward, steps, over = reward + float(step_reward), steps + 1, terminated or truncated
     violated = info["verdict"] == "violated"
     fspa = env.get_wrapper_attr("task").fspa
     return Played(
@@ -81,7 +82,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
 
 
 def episode_seed(seed: int, index: int) -> int:
-    """The seed of the environment for episode ``index`` of an evaluation's ``seed``, in [0, 2**31)."""
+    """Return the seed of the environment, in [0, 2**31), for episode ``index`` of an evaluation with ``seed``."""
     return int(_stream(seed, index, _OF_LEVEL).generate_state(1)[0]) >> 1
 
 

@@ -1,4 +1,4 @@
-"""What is played in an evaluation, and who plays it: one of these stands in each worker."""
+"""The tasks of an evaluation, and the player that each worker has."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from tltlc.monitor import RewardOptions
 Recorded = Literal["none", "failures", "all"]
 
 CHOICES: Final = {True: "sampled", False: "arg-max"}
-"""What the ways to choose actions are called."""
+"""The names of the two ways to choose actions."""
 
 
 @record
 class Setup:
-    """What an evaluation plays: ``policy`` on a level with a spec, rewarded as every reported figure is.
+    """What an evaluation plays: ``policy`` on a level with a spec, with the default reward options.
 
-    ``level`` is what :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``params`` are in SI units.
-    ``recorded`` says of which episodes recordings are wanted; unless it is None, the trajectories of all are kept.
-    ``player`` is what recordings call the policy.
+    ``level`` is an argument of :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``params`` are
+    in SI units.  ``recorded`` says which episodes to record; unless it is None, the trajectories of
+    all episodes are kept.  ``player`` is the name of the policy in recordings.
     """
 
     policy: Policy
@@ -45,7 +45,7 @@ class Setup:
 
 @record
 class Task:
-    """Episode ``index``, with sampled or with the likeliest actions."""
+    """An episode to play: its ``index``, and whether actions are ``sampled`` or the likeliest ones."""
 
     index: int
     sampled: bool = True
@@ -53,7 +53,7 @@ class Task:
 
 @record
 class Result:
-    """An episode that was played; its trajectory and the bytes of its recording where these are wanted."""
+    """An episode that was played, with its trajectory and the bytes of its recording if requested."""
 
     task: Task
     played: Played
@@ -62,7 +62,7 @@ class Result:
 
 
 class Plays(Protocol):
-    """Who plays the episodes of an evaluation, one after the other."""
+    """Plays the episodes of an evaluation, one after the other."""
 
     def play(self, task: Task) -> Result:
         """Play one episode."""
@@ -72,7 +72,7 @@ class Plays(Protocol):
 
 
 class Player:
-    """Plays the episodes of an evaluation, one after the other in an environment of its own."""
+    """Plays the episodes of an evaluation one after the other, in an environment of its own."""
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
@@ -92,7 +92,7 @@ class Player:
     def play(self, task: Task) -> Result:
         """Play one episode."""
         setup = self._setup
-        # Equal observations give equal logits, on any number of cores.
+        # In one thread, equal observations give equal logits on any number of cores.
         with threads(1):
             played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
         if self._recorder is None:

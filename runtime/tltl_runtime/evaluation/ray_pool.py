@@ -1,4 +1,4 @@
-"""Workers of a Ray cluster."""
+"""Workers on a Ray cluster."""
 
 from __future__ import annotations
 
@@ -12,39 +12,39 @@ from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.vector.cluster import cluster, free_cores, there
 
 PATIENCE_S: Final = 120.0
-"""How long a cluster whose cores are busy may take to give one, in seconds."""
+"""How long to wait for a free core of a busy cluster, in seconds."""
 
 
 @contextmanager
 def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> Iterator[list[RayWorker]]:
-    """A worker on each free core of the cluster, up to ``most``.
+    """Start a worker on each free core of the cluster, up to ``most``; end them after the block.
 
-    ``waiting`` is told now and then for how many more seconds the first of them is waited for.
+    ``waiting`` is called now and then with the seconds that are left to wait for the first worker.
 
     Raises:
-        TltlError: as :func:`cluster`; TLT0852, too, where no worker starts in time.
+        TltlError: the errors of :func:`cluster`; TLT0852, also if no worker starts in time.
     """
     with cluster() as ray:
         shared = ray.put(setup)
         workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
         try:
-            came = there(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
-            yield [workers[place] for place in came]
+            ready = there(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
+            yield [workers[index] for index in ready]
         finally:
             for worker in workers:
                 worker.close()
 
 
 class RayWorker:
-    """A player somewhere in the cluster; ``setup`` is a reference to its :class:`Setup`."""
+    """A player in the cluster; ``setup`` is a Ray reference to its :class:`Setup`."""
 
     def __init__(self, ray: Any, setup: Any) -> None:
         self._ray, self._setup = ray, setup
-        # Ray would restart an actor and play again, silently, what has killed it.
+        # No restarts: Ray would silently play the episode again that killed the actor.
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
 
     def play(self, task: Task) -> Future[Result]:
-        """Begin an episode."""
+        """Start to play an episode."""
         future: Future[Result] = Future()
         playing = self.actor.play.remote(self._setup, task).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
@@ -62,12 +62,15 @@ class RayWorker:
             future.set_exception(error.cause)
         else:
             lines = str(error).splitlines() or [type(error).__name__]
-            # What kept an actor from beginning, such as a package that is missing there, comes last.
+            # The last line says why an actor did not start, for example a missing package.
             future.set_exception(LostError(lines[-1 if getattr(error, "actor_init_failed", False) else 0]))
 
 
 class _Actor:
-    """A player of whose beginning it is known what went wrong: of an actor's own Ray tells but that it failed."""
+    """An actor that makes its player in the first call of ``play``, where an error is reported.
+
+    If the constructor of an actor fails, Ray reports only that it failed.
+    """
 
     def __init__(self) -> None:
         self._player: Player | None = None

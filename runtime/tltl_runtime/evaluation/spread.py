@@ -1,4 +1,4 @@
-"""Episodes spread over workers, and their results in order."""
+"""Distribute episodes over workers and collect the results in order."""
 
 from __future__ import annotations
 
@@ -12,52 +12,53 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 class LostError(Exception):
-    """A worker ended in the middle of its work; the message says how."""
+    """A worker ended before it returned its result; the message says how."""
 
 
 class Worker(Protocol):
-    """Who plays one episode at a time, somewhere."""
+    """Plays one episode at a time, for example in another process."""
 
     def play(self, task: Task) -> Future[Result]:
-        """Begin an episode; the future raises what the game raised, or :class:`LostError`."""
+        """Start an episode; the future raises the exception of the game, or :class:`LostError`."""
 
     def close(self) -> None:
-        """Free what there is to free."""
+        """Free the resources."""
 
 
 Alone = Callable[[Task], str]
-"""The command that plays one episode alone."""
+"""Returns the command that plays a single episode."""
 
 
 def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int, alone: Alone | None = None) -> Iterator[Result]:
-    """Have the workers play, each the next task as soon as it is free; results in the order of the tasks.
+    """Give each free worker the next task; yield the results in the order of the tasks.
 
-    Where a task fails, the results that are there already come before the error, and those of others may be missing
-    among them.
+    If a task fails, the results that are already there are yielded before the error.  They may have
+    gaps.
 
     Raises:
-        TltlError: TLT0850, a worker was lost; it says which episode of the evaluation's ``seed`` it played.
+        TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
+            ``seed``.
     """
-    left = iter(enumerate(tasks))
+    remaining = iter(enumerate(tasks))
     running: dict[Future[Result], tuple[Worker, int]] = {}
-    found: dict[int, Result] = {}
-    for worker, (place, task) in zip(workers, left, strict=False):
-        running[worker.play(task)] = worker, place
+    results: dict[int, Result] = {}
+    for worker, (index, task) in zip(workers, remaining, strict=False):
+        running[worker.play(task)] = worker, index
     for wanted in range(len(tasks)):
-        while wanted not in found:
+        while wanted not in results:
             done, _ = wait(running, return_when=FIRST_COMPLETED)
             ended = [(future, *running.pop(future)) for future in done]
-            found |= {place: future.result() for future, _, place in ended if future.exception() is None}
-            for future, worker, place in ended:
+            results |= {index: future.result() for future, _, index in ended if future.exception() is None}
+            for future, worker, index in ended:
                 if (error := future.exception()) is not None:
-                    yield from (found[each] for each in sorted(found))
+                    yield from (results[played] for played in sorted(results))
                     if isinstance(error, LostError):
-                        raise _lost(error, tasks[place], seed, alone) from error
+                        raise _lost(error, tasks[index], seed, alone) from error
                     raise error
-                for next_place, task in left:
-                    running[worker.play(task)] = worker, next_place
+                for next_index, task in remaining:
+                    running[worker.play(task)] = worker, next_index
                     break
-        yield found.pop(wanted)
+        yield results.pop(wanted)
 
 
 def _lost(error: LostError, task: Task, seed: int, alone: Alone | None) -> TltlError:

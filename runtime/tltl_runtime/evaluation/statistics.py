@@ -1,4 +1,4 @@
-"""The statistics of reported figures."""
+"""Statistics for reported figures."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from typing import Final
 from tltlc.core.record import record
 
 Z_95: Final = NormalDist().inv_cdf(0.975)
-"""The quantile of the normal distribution for an interval of 95 %."""
+"""The quantile of the normal distribution for a two-sided 95 % interval."""
 
 
 @record
 class Spread:
-    """The mean of a sample and its standard deviation, that of a sample: the divisor is n - 1; 0 for a single value."""
+    """The mean and the sample standard deviation (divisor n - 1; 0 for a single value)."""
 
     mean: float
     std: float
 
 
 def spread_of(values: Sequence[float]) -> Spread:
-    """Mean and standard deviation; raises ValueError where there are no values."""
+    """Return mean and standard deviation.  Raises ValueError if there are no values."""
     if not values:
         raise ValueError("there are no values")
     return Spread(fmean(values), stdev(values) if len(values) > 1 else 0.0)
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
-    """The score interval of 95 % of a share: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
+    """Return the 95 % score interval of a share: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 
     Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
     """
@@ -39,7 +39,7 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
     middle = share + z * z / (2 * count)
     half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count))
     scale = 1 + z * z / count
-    # Rounding would leave the ends of [0, 1] by a hair.
+    # Exact ends: rounding errors would put them slightly off 0 and 1.
     low = (middle - half) / scale if successes else 0.0
     high = (middle + half) / scale if successes < count else 1.0
     return low, high
