@@ -1,1 +1,1 @@
-"""Training of agents by PPO of rsl-rl."""
+"""Train agents with rsl-rl's PPO."""

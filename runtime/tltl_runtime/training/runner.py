@@ -1,4 +1,4 @@
-"""The runner: rollouts and updates of rsl-rl, an iteration at a time."""
+"""The runner: rollouts and updates of rsl-rl, one iteration at a time."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 @record
 class Iteration:
-    """What a rollout and the update after it gave: ``number`` counts from 1, ``steps`` are those of all environments.
+    """The result of a rollout and the update after it.
 
-    ``losses`` are those of rsl-rl's PPO by name, and that of the ``imitation`` where there was one; ``collect_s`` and
+    ``number`` counts from 1.  ``steps`` counts the decisions of all environments.  ``losses`` are the
+    losses of rsl-rl's PPO by name, and ``imitation`` if there was self-imitation.  ``collect_s`` and
     ``learn_s`` are wall-clock seconds.
     """
 
@@ -38,11 +39,11 @@ class Iteration:
 
 
 class Runner(OnPolicyRunner):
-    """rsl-rl's runner whose loop yields after each iteration, so that who drives it sees, keeps and stops.
+    """An rsl-rl runner whose learning loop is a generator: it yields after each iteration.
 
-    It prints nothing.  Updates are computed in ``cfg["threads"]`` threads, since nobody plays meanwhile.  In the first
-    ``cfg["warm_up"]`` iterations the critic alone learns.  With several processes,
-    :func:`~tltl_runtime.training.ppo.distributed.joined` is around it.
+    It prints nothing.  Updates run in ``cfg["threads"]`` threads, because no environment steps
+    meanwhile.  In the first ``cfg["warm_up"]`` iterations only the critic learns.  Several processes
+    must use it within :func:`~tltl_runtime.training.ppo.distributed.joined`.
     """
 
     env: TrainingEnv
@@ -53,39 +54,40 @@ class Runner(OnPolicyRunner):
         with redirect_stdout(io.StringIO()):
             super().__init__(env, train_cfg, log_dir, device)
         if not self.is_distributed:
-            # Convolutions of small maps take two thirds of the time so; rsl-rl cannot average such gradients.
+            # In this layout, convolutions of small maps take two thirds of the time.  rsl-rl cannot average
+            # gradients in this layout over processes.
             for model in (self.alg.actor, self.alg.critic):
                 model.to(memory_format=torch.channels_last)
         for group in self.alg.optimizer.param_groups:
             if "fused" in group:
-                # The same steps in a tenth of the time.
+                # Fused, the optimiser takes the same steps in a tenth of the time.
                 group["fused"] = True
 
     def take_up(self, saved: Mapping[str, Any]) -> None:
-        """Take up what ``alg.save`` gave, also of a runner whose weights lie in another order in memory."""
+        """Restore what ``alg.save`` returned, also from a runner whose weights have another memory layout."""
         self.alg.load(saved, None, strict=True)
         for parameter, state in self.alg.optimizer.state.items():
-            # The fused optimiser takes it for granted that all of them lie as the weights do.
-            state |= {name: _like(each, parameter) for name, each in state.items() if each.shape == parameter.shape}
+            # The fused optimiser assumes that its averages have the memory layout of the weights.
+            state |= {name: _like(value, parameter) for name, value in state.items() if value.shape == parameter.shape}
 
     def begin_with(self, weights: Mapping[str, Tensor]) -> None:
-        """Give the actor these weights, by name; the critic's stay as they were drawn."""
-        self.alg.actor.load_state_dict({name: each.float() for name, each in weights.items()})
+        """Load weights, by name, into the actor.  The critic keeps its random weights."""
+        self.alg.actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
 
     def sharpen(self, factor: float) -> None:
-        """Multiply the actor's logits: by more than 1, what is likelier becomes likelier still.
+        """Multiply the actor's inverse temperature: a ``factor`` above 1 makes likely choices likelier.
 
-        In the first ``cfg["warm_up"]`` iterations they are left as they are.
+        In the first ``cfg["warm_up"]`` iterations this does nothing.
         """
         if self.current_learning_iteration <= self.cfg.get("warm_up", 0):
             return
         last = [layer for layer in self.alg.actor.mlp if isinstance(layer, nn.Linear)][-1]
         with torch.no_grad():
-            for each in last.parameters():
-                each.mul_(factor)
+            for parameter in last.parameters():
+                parameter.mul_(factor)
 
     def iterations(self) -> Iterator[Iteration]:
-        """Run an iteration each time that one is asked for, without end."""
+        """Run iterations without end; yield each one."""
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
@@ -98,7 +100,7 @@ class Runner(OnPolicyRunner):
                 self.alg.compute_returns(observation)
             collected = time.perf_counter()
             warms_up = self.current_learning_iteration < self.cfg.get("warm_up", 0)
-            # What has no gradient is left as it is by PPO's optimiser, its moments among it.
+            # PPO's optimiser skips parameters without gradients and leaves their moments as they are.
             self.alg.actor.requires_grad_(not warms_up)
             with threads(self.cfg.get("threads", 1)):
                 losses = {**self.alg.update(), **({} if warms_up else self._imitate())}
@@ -113,7 +115,7 @@ class Runner(OnPolicyRunner):
             )
 
     def _configure_multi_gpu(self) -> None:
-        """What rsl-rl's own does, but for any device, and for a group of processes that is there already."""
+        """Like rsl-rl's method, but for any device and for a process group that exists already."""
         own = peers()
         self.gpu_world_size, self.gpu_global_rank, self.gpu_local_rank = own.count, own.rank, own.local_rank
         self.is_distributed = own.count > 1
@@ -124,23 +126,26 @@ class Runner(OnPolicyRunner):
         actions = self.alg.act(observation)
         observation, rewards, dones, extras = self.env.step(actions)
         self._check(observation, rewards, dones)
-        observation, rewards, dones = (each.to(self.device) for each in (observation, rewards, dones))
+        observation, rewards, dones = (values.to(self.device) for values in (observation, rewards, dones))
         self.alg.process_env_step(observation, rewards, dones, extras)
         return observation
 
     def _imitate(self) -> dict[str, float]:
-        """Imitate where there is something to; processes do it together, so that their weights stay equal."""
+        """Take the steps of self-imitation; return the mean loss, or nothing if there was nothing to imitate.
+
+        If any process has a batch, all take the step together, so that their weights stay equal.
+        """
         lessons, losses = self.env.lessons, []
         for _ in range(self.cfg["imitation"] if lessons else 0):
-            drawn = lessons.draw() if lessons else None
-            if not any(peers().gather(drawn is not None)):
+            batch = lessons.draw() if lessons else None
+            if not any(peers().gather(batch is not None)):
                 break
-            observations, actions = drawn or (self.env.get_observations()[:0], torch.zeros(0, self.env.num_actions))
+            observations, actions = batch or (self.env.get_observations()[:0], torch.zeros(0, self.env.num_actions))
             losses.append(imitate(self.alg, observations.to(self.device), actions.to(self.device)))
         return {"imitation": sum(losses) / len(losses)} if losses else {}
 
     def _check(self, observation: Any, rewards: Tensor, dones: Tensor) -> None:
-        """Raise TltlError, TLT0854, where the environment gave values that are no numbers."""
+        """Raise TltlError, TLT0854, if the environment gave values that are not numbers."""
         try:
             check_nan(observation, rewards, dones)
         except ValueError as error:
@@ -150,5 +155,5 @@ class Runner(OnPolicyRunner):
 
 
 def _like(tensor: Tensor, parameter: Tensor) -> Tensor:
-    """The same numbers, in the order in memory of a parameter."""
+    """Return a copy of a tensor in the memory layout of a parameter."""
     return torch.empty_like(parameter, requires_grad=False).copy_(tensor)

@@ -1,6 +1,6 @@
-"""Demonstrations: recorded episodes that meet a spec on a level, kept in a folder; what does not meet it is not kept.
+"""Demonstrations: recorded episodes that meet a spec on a level, kept in a folder.
 
-Nothing here needs what the training needs, so that ``tltlc record`` plays without it.
+This module needs none of the packages for training, so ``tltlc record`` works without them.
 """
 
 from __future__ import annotations
@@ -25,13 +25,15 @@ from tltlc.io.writing import write_files
 PLAYER: Final = "expert"
 """The name of the scripted expert in recordings."""
 MOST_FAILURES: Final = 20
-"""After so many episodes in a row that fail, the expert gives up."""
+"""The expert gives up after this many failed episodes in a row."""
 
 
 @record
 class Tried:
-    """An episode that was played to be a demonstration, the ``path`` of its recording, None where it was not kept, and
-    how many demonstrations are ``kept`` by then.
+    """An attempt at a demonstration.
+
+    ``path`` is the file of its recording, None if it was not kept.  ``kept`` is the number of
+    demonstrations after it.
     """
 
     episode: Episode
@@ -41,17 +43,17 @@ class Tried:
 
 @record
 class Other:
-    """A recording that is no demonstration of a level and a task, and the reason in words."""
+    """A recording that is not a demonstration of a level and a task, and the reason in words."""
 
     path: Path
     why: str
 
 
 class Demonstrations:
-    """The demonstrations of a level and a task in ``folder``, which need not be there yet.
+    """The demonstrations of a level and a task in ``folder``, which need not exist yet.
 
-    A recording there is one where level, spec, params and success are right; ``others`` are the rest, those among them
-    that cannot be read.
+    A recording in the folder is a demonstration if its level, spec and params match and it meets the
+    spec.  ``others`` are the other recordings, including those that cannot be read.
     """
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
@@ -64,15 +66,15 @@ class Demonstrations:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """The number of demonstrations."""
         return len(self._played)
 
     def seeds(self, player: str) -> list[int]:
-        """The seeds of those that one played."""
+        """Return the seeds of the demonstrations of a player."""
         return [seed for name, seed in self._played if name == player]
 
     def add(self, episode: Episode) -> Tried:
-        """Write an episode to the folder where it is a demonstration.  Raises TltlError, TLT0005."""
+        """Write an episode to the folder if it is a demonstration.  Raises TltlError, TLT0005."""
         path = None
         if not self._why_none(episode):
             recording = to_bytes(episode)
@@ -87,13 +89,13 @@ class Demonstrations:
         except TltlError as error:
             self.others.append(Other(path, unreadable(error)))
             return
-        if why := self._why_none(episode):
-            self.others.append(Other(path, why))
+        if reason := self._why_none(episode):
+            self.others.append(Other(path, reason))
         else:
             self._played.append((episode.player, episode.seed))
 
     def _why_none(self, episode: Episode) -> str:
-        """Why an episode is no demonstration; empty where it is one."""
+        """Return why an episode is not a demonstration; empty if it is one."""
         if level_hash(episode.level) != self._level:
             return "it is of another level"
         if (spec_hash(episode.fspa), dict(episode.params)) != (self._spec, self._params):
@@ -102,25 +104,29 @@ class Demonstrations:
 
 
 def recordings(folder: Path) -> list[Path]:
-    """The recordings in a folder, by name; none where there is no such folder. Pipes and devices are left out."""
+    """Return the recordings in a folder, sorted by name; none if the folder does not exist.
+
+    Pipes and devices are left out.
+    """
     return sorted(filter(may_be_file, folder.glob(f"*{SUFFIX}")))
 
 
 def unreadable(error: TltlError) -> str:
-    """Why a recording cannot be read, in words."""
+    """Return, in words, why a recording cannot be read."""
     (first, *_) = error.diagnostics
     return f"{first.code}, {first.title}"
 
 
 def by_expert(env: RecordEpisode, made: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
-    """Have the scripted expert play until there are ``number`` demonstrations, each episode as it ends.
+    """Let the scripted expert play until there are ``number`` demonstrations; yield each episode.
 
-    Seeds count from ``seed`` on, beyond those that it has played already: what is broken off goes on where it was.
+    Seeds count up from ``seed``, after those of the expert's existing demonstrations, so that an
+    interrupted recording continues where it stopped.
 
     Raises:
-        TltlError: TLT0920, it fails too often; TLT0005, a recording cannot be written.
+        TltlError: TLT0920, the expert fails too often; TLT0005, a recording cannot be written.
     """
-    played = [each for each in made.seeds(PLAYER) if each >= seed]
+    played = [played_seed for played_seed in made.seeds(PLAYER) if played_seed >= seed]
     failures = 0
     for episode in expert_episodes(env, count(max(played, default=seed - 1) + 1)) if made.count < number else ():
         yield (tried := made.add(episode))
@@ -132,7 +138,7 @@ def by_expert(env: RecordEpisode, made: Demonstrations, number: int, seed: int =
 
 
 def expert_episodes(env: RecordEpisode, seeds: Iterable[int], *, careful: bool = True) -> Iterator[Episode]:
-    """Episodes of the scripted expert, one of each seed; ``careful`` as of :class:`Expert`."""
+    """Yield an episode of the scripted expert for each seed; ``careful`` is an argument of :class:`Expert`."""
     expert = Expert(env, careful)
     for seed in seeds:
         play_episode(env, expert, seed)

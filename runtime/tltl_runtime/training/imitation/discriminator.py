@@ -1,4 +1,4 @@
-"""What tells the decisions of demonstrations from those of an agent: the discriminator of GAIL."""
+"""The discriminator of GAIL, which tells decisions of demonstrations from decisions of an agent."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ Decisions = tuple[Mapping[str, Tensor], Tensor]
 
 @record
 class Judged:
-    """What a discriminator is to lower, ``loss``, and the mean probabilities that it gives decisions to be of
-    demonstrations: those that are, ``theirs``, and the ``agents``.
+    """The ``loss`` of a discriminator, and the mean probabilities of being demonstrated that it predicts.
+
+    ``theirs`` is the mean over decisions of demonstrations, ``agents`` the mean over the agent's.
     """
 
     loss: Tensor
@@ -28,10 +29,11 @@ class Judged:
 
 
 class Discriminator(nn.Module):
-    """Gives each decision a logit, the greater the likelier it is one of a demonstration.
+    """Predicts the logit of a decision being from a demonstration.
 
-    The network is that of ``config``, rsl-rl's of a model, over ``observations`` (an example of them) and the actions,
-    one-hot by ``branches``.  Ho and Ermon, Generative adversarial imitation learning, NIPS 2016.
+    Ho and Ermon, Generative adversarial imitation learning, NIPS 2016.  ``config`` is rsl-rl's
+    configuration of a model.  The network's inputs are observations (``observations`` is an example)
+    and actions, one-hot by ``branches``.
     """
 
     def __init__(self, observations: Mapping[str, Tensor], branches: Sequence[int], config: Mapping[str, Any]) -> None:
@@ -44,26 +46,30 @@ class Discriminator(nn.Module):
         self.network = model(joined, {"discriminator": [*joined]}, "discriminator", 1, **options)
 
     def forward(self, decisions: Decisions) -> Tensor:
-        """The logits [n]."""
+        """Return the logits [n]."""
         logits: Tensor = self.network(self._joined(decisions)).squeeze(-1)
         return logits
 
     def reward(self, decisions: Decisions) -> Tensor:
-        """What decisions are worth [n], with D their probability ``-log(1 - D)``, which is never below 0."""
+        """Return the rewards of decisions [n]: ``-log(1 - D) >= 0``, with D the probability of being demonstrated."""
         return softplus(self(decisions))
 
     def judged(self, theirs: Decisions, agents: Decisions, penalty: float) -> Judged:
-        """The cross entropy of as many decisions of demonstrations as of an agent, and the ``penalty`` on gradients."""
+        """Return the loss: the cross entropy, plus ``penalty`` times the gradient penalty.
+
+        ``theirs`` and ``agents`` are equally many decisions of demonstrations and of an agent.
+        """
         demonstrated, played = self(theirs), self(agents)
         loss = softplus(-demonstrated).mean() + softplus(played).mean()
         if penalty:
-            loss = loss + penalty * self._steepness(theirs, agents)
-        means = (each.detach().sigmoid().mean().item() for each in (demonstrated, played))
+            loss = loss + penalty * self._gradient_penalty(theirs, agents)
+        means = (logits.detach().sigmoid().mean().item() for logits in (demonstrated, played))
         return Judged(loss, *means)
 
-    def _steepness(self, theirs: Decisions, agents: Decisions) -> Tensor:
-        """How far from 1 the gradient's norm is between the two: Gulrajani et al., Improved training of Wasserstein
-        GANs, NIPS 2017, which ML-Agents does, too.
+    def _gradient_penalty(self, theirs: Decisions, agents: Decisions) -> Tensor:
+        """Return the mean squared deviation from 1 of the gradient's norm, between the two sets of decisions.
+
+        Gulrajani et al., Improved training of Wasserstein GANs, NIPS 2017; ML-Agents uses it, too.
         """
         one, other = self._joined(theirs), self._joined(agents)
         share = torch.rand(theirs[1].shape[0], device=theirs[1].device)
@@ -72,14 +78,14 @@ class Discriminator(nn.Module):
             for key in one
         }
         gradients = torch.autograd.grad(self.network(mixed).sum(), [*mixed.values()], create_graph=True)
-        squares = torch.stack([each.flatten(1).square().sum(1) for each in gradients]).sum(0)
-        # A root is not differentiable at 0.
+        squares = torch.stack([gradient.flatten(1).square().sum(1) for gradient in gradients]).sum(0)
+        # The square root is not differentiable at 0.
         norms = (squares + 1e-12).sqrt()
         return (norms - 1.0).square().mean()
 
     def _joined(self, decisions: Decisions) -> dict[str, Tensor]:
-        """Observations, and the actions beside them."""
+        """Return the observations by key, with the one-hot actions as another input."""
         observations, actions = decisions
-        chosen = [one_hot(each.long(), choices) for each, choices in zip(actions.T, self._branches, strict=True)]
+        one_hots = [one_hot(branch.long(), count) for branch, count in zip(actions.T, self._branches, strict=True)]
         joined = {key: observations[key] for key in self._keys}
-        return {**joined, "action": torch.cat(chosen, dim=-1).to(torch.float32)}
+        return {**joined, "action": torch.cat(one_hots, dim=-1).to(torch.float32)}

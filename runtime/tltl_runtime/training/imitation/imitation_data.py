@@ -1,4 +1,4 @@
-"""What an agent imitates: the decisions of demonstrations, with what it would have sensed before each."""
+"""The data to imitate: the decisions of demonstrations, each with the agent's observation before it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _Sensed = Mapping[str, NDArray[Any]]
 
 @record
 class Imitated:
-    """What is imitated, in numbers: ``episodes`` that meet the spec, ``decisions`` in them, the ``players``.
+    """Statistics of the demonstrations: the numbers of ``episodes`` and ``decisions``, and the ``players``.
 
     ``left_out`` are the names of the other recordings in the folder, each with the reason.
     """
@@ -46,51 +46,61 @@ class Imitated:
 
 @record
 class Demonstrated:
-    """All decisions: ``observations`` [n] as the environments give them, float32, and ``actions`` [n, branches]."""
+    """All decisions of the demonstrations.
+
+    ``observations`` [n] are those of the environment as float32, ``actions`` is [n, branches].
+    """
 
     observations: TensorDict
     actions: Tensor
     about: Imitated
 
     def rows(self, chosen: Tensor) -> tuple[TensorDict, Tensor]:
-        """The observations and actions of some decisions."""
+        """Return the observations and actions of the decisions at some indices."""
         return self.observations[chosen], self.actions[chosen]
 
     def drawn(self, count: int) -> tuple[TensorDict, Tensor]:
-        """Decisions drawn with torch's generator, each as likely, the same one more than once perhaps."""
+        """Draw decisions uniformly with replacement, with torch's generator."""
         return self.rows(torch.randint(len(self.actions), (count,)))
 
     def shuffled(self, size: int) -> Iterator[tuple[TensorDict, Tensor]]:
-        """All decisions once in an order drawn with torch's generator, ``size`` at a time, the last ones fewer."""
-        for chosen in torch.randperm(len(self.actions)).split(size):
-            yield self.rows(chosen)
+        """Yield all decisions once, in random order by torch's generator, in batches of ``size``.
+
+        The last batch may be smaller.
+        """
+        for indices in torch.randperm(len(self.actions)).split(size):
+            yield self.rows(indices)
 
     def to(self, device: str) -> Demonstrated:
-        """The same on a device."""
+        """Return a copy on a device."""
         return Demonstrated(self.observations.to(device), self.actions.to(device), self.about)
 
 
-def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], told: Callable[[Tried], None]) -> None:
-    """Record the expert's demonstrations that ``folder`` lacks of a ``number``; errors as of :func:`by_expert`."""
+def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report: Callable[[Tried], None]) -> None:
+    """Record demonstrations of the expert until ``folder`` has ``number``; raises the errors of :func:`by_expert`.
+
+    ``report`` is called with each attempt.
+    """
     env = RecordEpisode(make(), PLAYER)
     try:
-        made = Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
-        for tried in by_expert(env, made, number):
-            told(tried)
+        demonstrations = Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
+        for tried in by_expert(env, demonstrations, number):
+            report(tried)
     finally:
         env.close()
 
 
 def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrated:
-    """The demonstrations in a folder, each played again in the environment that ``make`` makes.
+    """Read the demonstrations in a folder; replay each one in an environment from ``make``.
 
-    One is left out whose level is another, that does not meet the spec when it is played again, or that cannot be read.
+    A recording is left out if it is of another level, does not meet the spec in the replay, or cannot
+    be read.
 
     Raises:
-        TltlError: TLT0921, none is left.
+        TltlError: TLT0921, no demonstration remains.
     """
     env = make()
-    along: list[_Sensed] = []
+    sensed: list[_Sensed] = []
     actions: list[NDArray[np.uint8]] = []
     players: set[str] = set()
     left_out: list[str] = []
@@ -101,31 +111,33 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrat
             except TltlError as error:
                 left_out.append(f"{path.name}: {unreadable(error)}")
                 continue
-            found = _sensed(env, episode)
-            if isinstance(found, str):
-                left_out.append(f"{path.name}: {found}")
+            replayed = _sensed(env, episode)
+            if isinstance(replayed, str):
+                left_out.append(f"{path.name}: {replayed}")
                 continue
-            along += found
+            sensed += replayed
             actions.append(episode.actions)
             players.add(episode.player)
     finally:
         env.close()
     if not actions:
         raise nothing_to_imitate(folder, left_out)
-    observations = {name: torch.from_numpy(np.stack([each[name] for each in along])).float() for name in along[0]}
+    observations = {
+        name: torch.from_numpy(np.stack([observation[name] for observation in sensed])).float() for name in sensed[0]
+    }
     return Demonstrated(
-        TensorDict(observations, batch_size=[len(along)]),
+        TensorDict(observations, batch_size=[len(sensed)]),
         torch.from_numpy(np.concatenate(actions)).float(),
-        Imitated(len(actions), len(along), tuple(sorted(players)), tuple(left_out)),
+        Imitated(len(actions), len(sensed), tuple(sorted(players)), tuple(left_out)),
     )
 
 
 def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
-    """TLT0921: a folder has no demonstration, and why its recordings are none."""
+    """Return error TLT0921: a folder has no demonstration.  It says why its recordings are none."""
     title = f"there is nothing to imitate in `{folder}`: "
     if left_out:
-        more = f", and {len(left_out) - 1} more" if len(left_out) > 1 else ""
-        title += f"{left_out[0]}{more}"
+        rest = f", and {len(left_out) - 1} more" if len(left_out) > 1 else ""
+        title += f"{left_out[0]}{rest}"
     else:
         title += "it holds no recording" if folder.is_dir() else "there is no such folder"
     help_ = "`tltlc record` makes demonstrations; without --demonstrations the expert's are recorded first"
@@ -133,17 +145,17 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
 
 
 def _sensed(env: TltlEnv, episode: Episode) -> list[_Sensed] | str:
-    """What is sensed before each decision of an episode that is played again; where it is no demonstration, why."""
+    """Replay an episode; return the observation before each decision, or why it is not a demonstration."""
     if level_hash(episode.level) != level_hash(env.get_wrapper_attr("level")):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"
     observation, info = env.reset(seed=episode.seed)
-    along: list[_Sensed] = []
+    sensed: list[_Sensed] = []
     over = False
     for action in episode.actions.tolist():
         if over:
             break
-        along.append(observation)
+        sensed.append(observation)
         observation, _, terminated, truncated, info = env.step(action)
         over = terminated or truncated
     spec = env.task.fspa.name
-    return along if over and info["success"] and len(along) == len(episode.actions) else f"it does not meet `{spec}`"
+    return sensed if over and info["success"] and len(sensed) == len(episode.actions) else f"it does not meet `{spec}`"
