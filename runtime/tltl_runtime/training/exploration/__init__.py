@@ -1,1 +1,1 @@
-"""Exploration: search, reset distributions and self-imitation."""
+"""Exploration: search, reset distribution, reverse curriculum and self-imitation."""

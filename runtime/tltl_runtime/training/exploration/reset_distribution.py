@@ -1,7 +1,7 @@
-"""Where episodes of a training begin: at the level's start, or in the midst of an episode that was played before.
+"""The reset distribution: episodes begin at the level's start, or in the middle of an earlier episode.
 
-Same seed and actions give the same episode, so that whatever was reached once is reached again by playing those
-actions again.  The agent's own decisions follow.
+Equal seeds and actions give equal episodes, so replaying the actions of an episode reaches the same
+state again.  The agent then continues from there.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ Actions = list[list[int]]
 
 @record
 class Start:
-    """The seed of an episode and the ``actions`` that are played before the agent's first, [n, branches].
+    """The start of an episode: its seed, and the ``actions`` [n, branches] to replay before the agent acts.
 
-    ``part`` says where on a way this is, the way's end and the number of its part, None: on none.  After
-    ``most`` decisions of the agent the episode is cut off, None: nowhere.
+    ``part`` locates the start on a way: the end of the way and the index of the part.  It is None if the
+    start is on no way.  The episode is cut off after ``most`` decisions of the agent; None: never.
     """
 
     seed: int
@@ -36,11 +36,12 @@ class Start:
 
 
 class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """An environment whose episodes begin with ``begin``: a seed, and actions that are played at once.
+    """An environment whose episodes begin with ``begin``: a seed, and actions that are replayed.
 
-    It stays what it is until it is set again, to anything but None; before, they begin as the environment's own do.
-    Of what ``make`` gives there are two: while one is played, the other one is brought to where the next episode
-    begins, by :meth:`prepare`.
+    ``begin`` stays as it is until it is set to another value; setting it to None does nothing.  Until
+    it is first set, episodes begin as in the wrapped environment.  There are two environments of
+    ``make``: while the agent plays in one, :meth:`prepare` brings the other one to the start of the
+    next episode.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
@@ -52,22 +53,22 @@ class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     @property
     def begin(self) -> tuple[int, NDArray[np.int8]] | None:
-        """What the next episodes begin with."""
+        """The seed and the replayed actions of the next episodes."""
         return self._begin
 
     @begin.setter
     def begin(self, begin: tuple[int, NDArray[np.int8]] | None) -> None:
-        # A vector environment sets all of its environments at once, and few of them begin anew.
+        # A vector environment sets the attribute of all its environments at once, with None for most of them.
         if begin is not None:
             self._begin = begin
             self._bringing = self._bring(*begin)
 
     def prepare(self) -> bool:
-        """Play a decision of what comes before the next episode's beginning; whether there was one to play."""
+        """Take a step of the replay towards the next start; return False once there is nothing left to do."""
         return self._bringing is not None and next(self._bringing, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode, and play what is to be played again; that does not end it."""
+        """Begin an episode and finish the replay.  The replay does not end the episode."""
         if self._begin is None:
             return self.env.reset(seed=seed, options=options)
         self._bringing = self._bringing or self._bring(*self._begin)
@@ -83,7 +84,7 @@ class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._other.close()
 
     def _bring(self, seed: int, actions: NDArray[np.int8]) -> Iterator[None]:
-        """Bring the other environment to where ``actions`` lead."""
+        """Replay ``actions`` in the other environment, one per step of the generator."""
         observation, info = self._other.reset(seed=seed)
         for action in actions:
             yield
@@ -92,12 +93,13 @@ class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 
 class Episodes:
-    """What each environment of ``env`` plays, with all actions so far; the next starts are those that ``draw`` gives.
+    """The current episode of each environment of ``env``: its start and all actions so far.
 
-    The environments are :class:`Replayed`.  ``observation`` is that of the first episodes, which begin here;
-    ``replayed`` counts the decisions that were played again.
+    The environments are :class:`Replayed`; ``draw`` draws the start of each next episode.  The
+    constructor begins the first episodes: ``observation`` is their first observation.  ``replayed``
+    counts the replayed decisions.
 
-    What it does raises WorkerError where a worker was lost, with the seeds of the starts.
+    All methods raise WorkerError, with the seeds of the starts, if a worker is lost.
     """
 
     def __init__(self, env: WorkerVectorEnv, draw: Callable[[], Start]) -> None:
@@ -113,21 +115,21 @@ class Episodes:
         self.turn(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        """Step all environments with the actions [num_envs, branches], and note these; what the environments give."""
-        for known, action in zip(self.actions, actions.tolist(), strict=True):
-            known.append(action)
+        """Record the actions [num_envs, branches] and step all environments; return their results."""
+        for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
+            past_actions.append(action)
         with self._telling():
             return self._env.step(actions)
 
     def turn(self, over: NDArray[np.bool_]) -> None:
-        """Take note that in these environments the next episodes have begun."""
+        """Record that the next episodes have begun in the environments of the mask ``over``."""
         rows = np.flatnonzero(over).tolist()
         if rows:
             self._go_on(rows)
             self._tell(rows)
 
     def cut(self, over: NDArray[np.bool_]) -> Any:
-        """Break off the episodes of these environments and begin the next ones; the observation of all."""
+        """Cut off the episodes of the mask ``over`` and begin the next ones; return all observations."""
         rows = np.flatnonzero(over).tolist()
         self._go_on(rows)
         with self._telling():
@@ -136,12 +138,12 @@ class Episodes:
         return observation
 
     def is_spent(self, row: int) -> bool:
-        """Whether the agent has had as many decisions as the start of the episode in this environment gave it."""
+        """Whether the agent has made all decisions that the start of this environment's episode allows."""
         start = self.starts[row]
         return start.most is not None and len(self.actions[row]) - len(start.actions) >= start.most
 
     def _go_on(self, rows: Iterable[int]) -> None:
-        """Go on to the next episodes of these environments."""
+        """Go on to the next episodes of these environments, and draw the starts after them."""
         for row in rows:
             start = self.starts[row] = self._next[row]
             self.actions[row] = [list(action) for action in start.actions]
@@ -150,19 +152,19 @@ class Episodes:
 
     @contextmanager
     def _telling(self) -> Iterator[None]:
-        """Tell of a worker that is lost the seeds of the starts, and steps with those played again."""
+        """Add the seeds of the starts and the replayed steps to the error about a lost worker."""
         try:
             yield
         except WorkerError as error:
             raise WorkerError(error.loss, tuple(map(self._placed, error.playing))) from error
 
     def _placed(self, playing: Playing) -> Playing:
-        """What is played, as this knows it: the environment was not told of the seeds."""
+        """Return ``playing`` with the actual seed and step, which the environment does not know."""
         row = playing.env
         return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 
     def _tell(self, rows: Iterable[int]) -> None:
-        """Tell the environments of these rows what their next episodes begin with."""
+        """Send the environments of these rows the starts of their next episodes."""
         begin: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
         for row in rows:
             begin[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)

@@ -1,8 +1,9 @@
-"""Where on known ways episodes of a training begin, so that the agent always has something within reach to learn.
+"""The reverse curriculum: at which points of known ways episodes begin, so that the next task is within reach.
 
-A way is divided into parts.  Those from which the agent succeeds now and then teach it most; they move from the end
-of the way to its beginning as it learns: Florensa et al., Reverse curriculum generation for reinforcement learning,
-CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge from a single demonstration, 2018.
+A way is an episode that met the spec.  It is divided into parts.  The agent learns most from parts
+where it succeeds sometimes.  As it learns, these move from the end of the way to its beginning:
+Florensa et al., Reverse curriculum generation for reinforcement learning, CoRL 2017; Salimans and
+Chen, Learning Montezuma's Revenge from a single demonstration, 2018.
 """
 
 from __future__ import annotations
@@ -19,40 +20,42 @@ from tltl_runtime.training.exploration.reset_distribution import Actions, Start
 from tltl_runtime.training.exploration.search import Failure, Way
 
 _WAYS = 6
-"""Of the ways with the same end, as many of the shortest are kept, each of another seed."""
+"""For each end, the shortest ways are kept, at most this many and one per seed."""
 _ENDS = 8
-"""Of the ends as many are kept as were found first."""
+"""At most this many ends are kept: those that were found first."""
 _FRESH = 0.2, 0.97
-"""The least share of decisions in episodes that begin at the level's start, and the greatest share of such episodes.
+"""For episodes from the level's start: the least share of decisions, and the greatest share of episodes.
 
-The former is one of decisions since an episode that gets nowhere may last until the spec's limit, or end soon in a
-violation.
+The minimum counts decisions, not episodes, because episodes without success differ in length: some
+last until the spec's limit, some end soon in a violation.
 """
 _LEAST = 0.005
-"""The weight of a part that teaches nothing any more: it may do so again."""
+"""Added to the weight of each part, because a part that teaches nothing now may do so again."""
 _REACHED = 0.2
-"""The success rate from which on a part counts as learned, in part at least."""
+"""A part counts as learned, at least partly, if its success rate is this or more."""
 _AHEAD = 0.1, 0.6
-"""The weight of the part before the first one that is, and by how much those before it weigh less, each than the next.
+"""The weight of the part just before the first learned one, and the factor for each earlier part.
 
-What is far from anything that was learned gives long episodes without any success, whose noise is all that PPO would
-then learn from.
+Parts far from everything learned give long episodes without success, and PPO would learn only from
+their noise.
 """
 _RATE = 0.1, 0.02
-"""How fast success rates follow the episodes: those of a part, that from the level's start; so do mean lengths."""
+"""The step sizes of running means: of the success rate of a part; of the success rate from the level's start, and
+of mean lengths."""
 _FAILURES = 32
-"""Of the episodes from the level's start that failed, as many of the last are kept."""
+"""This many of the last failed episodes from the level's start are kept."""
 _SPARE = 1.5, 20
-"""An episode may take so many times what is left of the way, and so many decisions more."""
+"""The limit of an episode on a way: the length of the rest of the way times the first, plus the second number."""
 
 
 class Restarts:
-    """Draws starts; ``generator`` is its own.
+    """Draws starts from the reverse curriculum; ``generator`` must not be shared.
 
-    ``ways`` has the shortest ones that are known for each end, since a spec may be met in more than one manner, and the
-    shortest of all would hide the others; the agent's own successes join them.  ``rates`` has for each end the success
-    rates from each part of its ways, in [0, 1]; ``passed`` is the success rate from the level's start.  ``lengths`` are
-    mean decisions of the agent in an episode, of those from the level's start and of those on ways.
+    ``ways`` has the shortest known ways for each end, including the agent's own successes.  They are
+    kept by end because a spec may be met in several ways, and the shortest of all would hide the
+    others.  ``rates`` has, for each end, the success rates from each part of its ways, in [0, 1].
+    ``passed`` is the success rate from the level's start.  ``lengths`` are the mean numbers of the
+    agent's decisions in episodes from the level's start and in episodes on ways.
     """
 
     def __init__(self, parts: int, generator: np.random.Generator) -> None:
@@ -65,22 +68,25 @@ class Restarts:
         self.failures: deque[Failure] = deque(maxlen=_FAILURES)
 
     def add(self, way: Way) -> None:
-        """Keep a way where it is among the shortest to its end."""
+        """Keep a way if it is among the shortest with its end."""
         if way.end not in self.ways:
             if len(self.ways) == _ENDS:
                 return
             self.ways[way.end] = []
             self.rates[way.end] = np.zeros(self._parts)
-            # The end of a way is where the learning begins.
+            # Learning begins at the last part of a way.
             self.rates[way.end][-1] = 0.5
         shortest: dict[int, Way] = {}
-        for each in sorted([*self.ways[way.end], way], key=lambda each: len(each.actions)):
-            # Of one seed no more than one: what guards do in it would be learned by heart.
-            shortest.setdefault(each.seed, each)
+        for candidate in sorted([*self.ways[way.end], way], key=lambda candidate: len(candidate.actions)):
+            # At most one way per seed, so that the agent does not memorise what the guards do in it.
+            shortest.setdefault(candidate.seed, candidate)
         self.ways[way.end] = list(shortest.values())[:_WAYS]
 
     def draw(self) -> Start:
-        """Where the next episode begins: the more often at the level's start, the better the agent is from there."""
+        """Draw the start of the next episode.
+
+        The better the agent is from the level's start, the more often episodes begin there.
+        """
         seed = int(self._random.integers(2**31))
         if not self.ways or self._random.random() < self._fresh():
             return Start(seed)
@@ -90,31 +96,34 @@ class Restarts:
         ways = self.ways[ends[index]]
         way = ways[self._random.integers(len(ways))]
         at = int(len(way.actions) * (part + self._random.random()) / self._parts)
-        times, more = _SPARE
-        return Start(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + more)
+        times, extra = _SPARE
+        return Start(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + extra)
 
     def lessons(self, count: int) -> list[tuple[Way, int]]:
-        """Up to ``count`` decisions on the ways, each a way and its number, there where episodes begin and fail.
+        """Draw up to ``count`` decisions to imitate, each as a way and an index into its actions.
 
-        Who succeeds from an earlier part, or from the level's start, needs no lesson on what comes later.
+        Decisions are drawn like starts.  A decision is dropped with the probability that the agent
+        succeeds from its part.  A success from an earlier part, or from the level's start, counts for
+        all later parts.
         """
         if not self.ways:
             return []
-        rates = np.concatenate([np.maximum.accumulate(np.maximum(each, self.passed)) for each in self.rates.values()])
-        weights = np.concatenate([_weights(each) for each in self.rates.values()])
+        rates = np.concatenate([np.maximum.accumulate(np.maximum(own, self.passed)) for own in self.rates.values()])
+        weights = np.concatenate([_weights(own) for own in self.rates.values()])
         drawn = self._random.choice(len(weights), size=count, p=weights / weights.sum())
         drawn = drawn[self._random.random(count) >= rates[drawn]]
-        ends, found = list(self.rates), []
+        ends, decisions = list(self.rates), []
         for index, part in zip(*divmod(drawn, self._parts), strict=True):
             ways = self.ways[ends[index]]
             way = ways[self._random.integers(len(ways))]
-            found.append((way, int(len(way.actions) * (part + self._random.random()) / self._parts)))
-        return found
+            decisions.append((way, int(len(way.actions) * (part + self._random.random()) / self._parts)))
+        return decisions
 
     def ended(self, start: Start, actions: Actions, end: int | None, state: int | None = None) -> None:
-        """Learn how an episode ended that began at ``start``: in success with this ``end``, or None, without.
+        """Update the curriculum with the result of an episode that began at ``start``.
 
-        ``actions`` are all of it; ``state`` is that in which it failed, None where it was cut off.
+        ``actions`` are all of its actions, including the replayed ones.  ``end`` is the end of a
+        success, or None.  ``state`` is the state in which the episode failed, None if it was cut off.
         """
         of_part, from_start = _RATE
         success = end is not None
@@ -131,18 +140,18 @@ class Restarts:
             self.add(Way(start.seed, actions, end))
 
     def state(self) -> dict[str, NDArray[Any]]:
-        """All but the generator, as arrays, for :meth:`load`."""
-        ways = [way for known in self.ways.values() for way in known]
+        """Return everything but the generator as arrays, for :meth:`load`."""
+        ways = [way for same_end in self.ways.values() for way in same_end]
         return {
             **_arrays("way", [(way.seed, way.actions, way.end) for way in ways]),
-            **_arrays("failure", [(each.seed, each.actions, each.state) for each in self.failures]),
+            **_arrays("failure", [(failure.seed, failure.actions, failure.state) for failure in self.failures]),
             "rates": np.array(list(self.rates.values())),
             "passed": np.array([self.passed]),
             "lengths": self.lengths.copy(),
         }
 
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Take up what :meth:`state` gave; raises ValueError where the arrays are none that it gives."""
+        """Restore what :meth:`state` returned.  Raises ValueError if the arrays are invalid."""
         for name in ("way", "failure"):
             _check_played(name, state)
         self.ways, self.rates = {}, {}
@@ -154,33 +163,33 @@ class Restarts:
         _check_figures(state)
         self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
         self.failures.clear()
-        self.failures.extend(Failure(*each) for each in _lists("failure", state))
+        self.failures.extend(Failure(*fields) for fields in _lists("failure", state))
         self.passed = float(state["passed"][0])
         self.lengths = state["lengths"].copy()
 
     def _fresh(self) -> float:
-        """How likely the next episode begins at the level's start."""
+        """Return the probability that the next episode begins at the level's start."""
         share, most = _FRESH
         from_start, on_ways = self.lengths
         least = min(most, share / (share + (1 - share) * from_start / on_ways))
-        # From the level's start itself there may have been few episodes.
+        # Few episodes may have begun at the level's start itself, so the first parts of the ways count, too.
         passed = max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
         return float(least + (most - least) * passed)
 
 
 def _arrays(name: str, played: Sequence[tuple[int, Actions, int]]) -> dict[str, NDArray[Any]]:
-    """Seeds, actions and ends of what was played, as arrays."""
+    """Return the seeds, actions and ends (or states) of episodes as arrays."""
     return {
         f"{name}_seeds": np.array([seed for seed, _, _ in played], dtype=np.int64),
         f"{name}_ends": np.array([end for _, _, end in played], dtype=np.int64),
         f"{name}_lengths": np.array([len(actions) for _, actions, _ in played], dtype=np.int64),
-        f"{name}_actions": np.array([each for _, actions, _ in played for each in actions], dtype=np.int8),
+        f"{name}_actions": np.array([action for _, actions, _ in played for action in actions], dtype=np.int8),
     }
 
 
 def _lists(name: str, arrays: Mapping[str, NDArray[Any]]) -> Iterator[tuple[int, Actions, int]]:
-    """What :func:`_arrays` was given."""
-    seeds, ends, lengths = (arrays[f"{name}_{what}"].tolist() for what in ("seeds", "ends", "lengths"))
+    """Yield the episodes that :func:`_arrays` was given."""
+    seeds, ends, lengths = (arrays[f"{name}_{field}"].tolist() for field in ("seeds", "ends", "lengths"))
     actions = np.split(arrays[f"{name}_actions"], np.cumsum(lengths)[:-1]) if lengths else []
     for seed, own, end in zip(seeds, actions, ends, strict=True):
         yield seed, own.tolist(), end
@@ -189,17 +198,17 @@ def _lists(name: str, arrays: Mapping[str, NDArray[Any]]) -> Iterator[tuple[int,
 def _check_array(
     name: str, arrays: Mapping[str, NDArray[Any]], dtype: type[np.generic], shape: tuple[int, ...]
 ) -> None:
-    found = arrays.get(name)
-    if found is None or found.dtype != dtype or found.shape != shape:
-        kind = "" if found is None else f", not {found.dtype} of the shape {list(found.shape)}"
+    array = arrays.get(name)
+    if array is None or array.dtype != dtype or array.shape != shape:
+        kind = "" if array is None else f", not {array.dtype} of the shape {list(array.shape)}"
         raise ValueError(f"`{name}` must be {np.dtype(dtype)} of the shape {list(shape)}{kind}")
 
 
 def _check_played(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Raise ValueError for arrays that :func:`_arrays` does not make."""
+    """Raise ValueError for arrays that :func:`_arrays` cannot have returned."""
     count = arrays[f"{name}_seeds"].size if f"{name}_seeds" in arrays else 0
-    for what in ("seeds", "ends", "lengths"):
-        _check_array(f"{name}_{what}", arrays, np.int64, (count,))
+    for field in ("seeds", "ends", "lengths"):
+        _check_array(f"{name}_{field}", arrays, np.int64, (count,))
     lengths = arrays[f"{name}_lengths"]
     actions = sum(lengths.tolist())
     _check_array(f"{name}_actions", arrays, np.int8, (actions, len(BRANCHES)) if actions else (0,))
@@ -211,7 +220,7 @@ def _check_played(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Raise ValueError for success rates outside [0, 1], and for lengths that are no positive numbers."""
+    """Raise ValueError for success rates outside [0, 1] and lengths that are not positive and finite."""
     rates = np.append(arrays["rates"].ravel(), arrays["passed"])
     if not ((rates >= 0) & (rates <= 1)).all():
         raise ValueError("`rates` or `passed` holds a number outside 0 to 1")
@@ -220,7 +229,7 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How likely episodes begin in each part, given the success rates from there."""
+    """Return the unnormalised probabilities of starts in each part, given the success rates from there."""
     first = int(np.argmax(rates >= _REACHED)) if rates.max() >= _REACHED else len(rates) - 1
     weights: NDArray[np.float64] = rates * (1 - rates) + _LEAST
     most, less = _AHEAD

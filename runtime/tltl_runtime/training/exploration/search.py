@@ -1,15 +1,18 @@
-"""The search for episodes that meet the spec, by chance and without any network, before the learning begins.
+"""Search for episodes that meet the spec (ways) with random actions, before learning begins.
 
-Robustness is blind to walls: an agent that only follows it stays where the distance is least, and by chance alone
-nobody crouches, climbs and jumps in the right order.  Here, whatever place was reached is returned to by playing the
-actions that led there again, and from there chance goes on: Ecoffet et al., First return, then explore, Nature 590,
-2021.  A place is a cell of the level in a state of the automaton, so nothing about the level needs to be known.
+Robustness ignores walls: an agent that only follows it gets stuck where the distance is least, and
+random actions alone never crouch, climb and jump in the right order.  So the search returns to the
+places that it has reached, by replaying the actions that led there, and takes random actions from
+there.  This is Go-Explore: Ecoffet et al., First return, then explore, Nature 590, 2021.  A place,
+Go-Explore's cell, is a cell of the level together with a state of the automaton.  The search needs
+no other knowledge about the level.
 
-What goes on from a place has the seed of the episode that found it, and whatever the level draws from that, such as the
-door that opens, stays as it is.  So the places of a seed are forgotten as soon as a way was found with it.
+An episode from a place keeps the seed of the episode that found the place.  Everything that the level
+draws from the seed stays the same, for example which door opens.  So the places of a seed are dropped
+as soon as a way with that seed is found.
 
-Where the learning comes to a standstill, ways are searched for what the agent fails in: from places to which its failed
-episodes led.  Where a training begins with a policy, this one plays first, since it may meet the spec already.
+If learning comes to a standstill, another search begins in the agent's failed episodes.  If a
+training begins with a policy, that policy plays first, because it may already meet the spec.
 """
 
 from __future__ import annotations
@@ -26,27 +29,28 @@ from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.core.record import record
 
 _KEPT = 0.9
-"""How likely a choice of an action is kept for another decision: who changes his mind all the time gets nowhere."""
+"""The probability that a branch keeps its choice in the next decision.  Independent choices would lead nowhere."""
 _BURST = 60
-"""Decisions from a place on."""
+"""The number of random decisions from a place."""
 _FRESH = 0.05
-"""How many episodes begin at their beginning."""
+"""The share of episodes that begin at the level's start."""
 _FAILED = 0.3
-"""How many begin where failed episodes led, if there are any."""
+"""The share of episodes that begin in a failed episode, if there are any; it replaces ``_FRESH``."""
 _TOLD_EVERY_S = 0.5
 
 
 Player = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
-"""What plays: the actions [branches] that it chooses where an environment gives this observation."""
+"""Returns the action [branches] for the observation of one environment."""
 
 
 @record
 class Exploration:
-    """The search before the training, and what is made of it.
+    """The settings of the search before the training, and of the use of its ways.
 
-    It ends when ``ways`` episodes, each of another seed, have met the spec (0: no search); or after ``steps``
-    decisions, those that are played again not counted.  The ways are divided into ``parts`` at which episodes of the
-    training may begin.  After each update ``imitation`` steps of the optimiser follow towards decisions on them.
+    The search ends when ``ways`` episodes with different seeds have met the spec (0: no search), or after
+    ``steps`` decisions, not counting replayed ones.  Each way is divided into ``parts``, at which
+    episodes of the training may begin.  Each update is followed by ``imitation`` optimiser steps of
+    self-imitation of the ways.
     """
 
     ways: int
@@ -57,7 +61,7 @@ class Exploration:
 
 @record
 class Way:
-    """An episode that met the spec: its seed, all of its actions, and its ``end`` as :func:`end_of` tells it."""
+    """An episode that met the spec: its seed, all of its actions, and its ``end`` from :func:`end_of`."""
 
     seed: int
     actions: Actions
@@ -65,20 +69,23 @@ class Way:
 
 
 def end_of(infos: Mapping[str, Any], row: int) -> int:
-    """How the episode ended that the ``final_info`` of a vector environment tells of in a row: bit i says whether the
-    spec's i-th atom was true.
+    """Return how the episode in a row of a vector environment's ``final_info`` ended, as a bit mask.
+
+    Bit i says whether the spec's i-th atom was true.
     """
     atoms = infos["atoms"]
-    # Gymnasium has a mask beside each; an int64 has no more bits.
+    # Gymnasium adds a mask `_name` for each name.  An int64 holds at most 63 bits.
     names = [name for name in atoms if f"_{name}" in atoms][:63]
     return sum(1 << index for index, name in enumerate(names) if atoms[name][row] > 0)
 
 
 @record
 class Searched:
-    """How far a search is: decisions (those played again apart), places that were reached, lengths of the ways.
+    """The progress of a search.
 
-    It is ``complete`` where it ended by its own rule.
+    ``steps`` are decisions without the ``replayed`` ones, ``places`` the number of places that were
+    reached, and ``lengths`` the lengths of the ways.  ``complete`` says whether the search ended by its
+    own criteria, not by a limit of the training.
     """
 
     steps: int
@@ -90,7 +97,7 @@ class Searched:
 
 
 def together(before: Searched, later: Searched) -> Searched:
-    """Two searches of one training, whose ways are all used; ``places`` are those of the later one."""
+    """Combine two searches of one training, whose ways are all used; ``places`` is that of the later one."""
     return Searched(
         steps=before.steps + later.steps,
         replayed=before.replayed + later.replayed,
@@ -103,7 +110,7 @@ def together(before: Searched, later: Searched) -> Searched:
 
 @record
 class Failure:
-    """An episode from the level's start that failed: its seed, all of its actions, and the state in which it did."""
+    """A failed episode from the level's start: its seed, all of its actions, and the state in which it failed."""
 
     seed: int
     actions: Actions
@@ -111,12 +118,13 @@ class Failure:
 
 
 class Search:
-    """A search in ``env``, whose environments are
-    :class:`~tltl_runtime.training.exploration.reset_distribution.Replayed`.
+    """A search in the environments of ``env``.
 
-    ``ways`` are what was found.  Equal seeds give equal searches, whatever the workers.  With ``failures`` it goes on
-    from these, in the states in which they failed; without, from the level's start.  A ``player`` plays the first
-    episode of each environment, and chance goes on from the places that it reached.
+    The environments are :class:`~tltl_runtime.training.exploration.reset_distribution.Replayed`.
+    ``ways`` are the ways found so far.  Equal seeds give equal searches, whatever the number of workers.
+    With ``failures``, the search starts in these episodes and explores only the states in which they
+    failed; without, it starts at the level's start.  A ``player`` plays the first episode of each
+    environment; random actions then continue from the places that it reached.
     """
 
     def __init__(
@@ -138,58 +146,61 @@ class Search:
         self.ways: list[Way] = []
 
     def run(self) -> Iterator[Searched]:
-        """Search, and say from time to time how far it is, at the end in any case."""
-        began = told = time.perf_counter()
+        """Search; yield the progress from time to time, and once at the end."""
+        began = reported = time.perf_counter()
         episodes = Episodes(self._env, self._draw)
         choices = np.array(self._env.single_action_space.nvec)  # type: ignore[attr-defined]
         shape = self._env.num_envs, len(choices)
         action = self._random.integers(0, choices, size=shape)
         left = np.full(self._env.num_envs, _BURST)
-        played = np.full(self._env.num_envs, self._player is not None)
+        by_player = np.full(self._env.num_envs, self._player is not None)
         observation, steps = episodes.observation, 0
         while steps < self._exploration.steps and len(self.ways) < self._exploration.ways:
             kept = self._random.random(shape) < _KEPT
             action = np.where(kept, action, self._random.integers(0, choices, size=shape))
             if self._player:
-                for row in np.flatnonzero(played).tolist():
-                    action[row] = self._player({name: each[row] for name, each in observation.items()})
+                for row in np.flatnonzero(by_player).tolist():
+                    action[row] = self._player({name: values[row] for name, values in observation.items()})
             observation, _, terminated, truncated, infos = episodes.step(action)
             steps += self._env.num_envs
             over = terminated | truncated
-            played &= ~over
+            by_player &= ~over
             left -= 1
             for row in range(self._env.num_envs):
                 if not over[row]:
                     if self._note(episodes, row, infos):
                         left[row] = max(left[row], _BURST // 2)
                 elif infos["final_info"]["success"][row]:
-                    self._found(Way(episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)))
-            spent = ~over & ~played & (left <= 0)
+                    self._add(Way(episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)))
+            spent = ~over & ~by_player & (left <= 0)
             episodes.turn(over)
             if spent.any():
                 episodes.cut(spent)
             left[over | spent] = _BURST
-            if time.perf_counter() - told > _TOLD_EVERY_S:
-                told = time.perf_counter()
-                yield self._searched(steps, episodes.replayed, told - began, complete=False)
+            if time.perf_counter() - reported > _TOLD_EVERY_S:
+                reported = time.perf_counter()
+                yield self._searched(steps, episodes.replayed, reported - began, complete=False)
         yield self._searched(steps, episodes.replayed, time.perf_counter() - began, complete=True)
 
     def _note(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
-        """Take note of the place that an environment is at; whether it is not among the known."""
+        """Record the current place of an environment; return whether it is new."""
         state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
         if cell < 0 or any(way.seed == seed for way in self.ways) or (self._states and state not in self._states):
             return False
         self._places.add((state, cell))
         return self._known.note(state, cell, seed, episodes.actions[row])
 
-    def _found(self, way: Way) -> None:
-        if all(each.seed != way.seed for each in self.ways):
+    def _add(self, way: Way) -> None:
+        if all(known.seed != way.seed for known in self.ways):
             self.ways.append(way)
             self._known.forget(way.seed)
-            self._failures = [each for each in self._failures if each.seed != way.seed]
+            self._failures = [failure for failure in self._failures if failure.seed != way.seed]
 
     def _draw(self) -> Start:
-        """A place to begin at; now and then the beginning of a new episode, or the second half of one that failed."""
+        """Draw the start of an episode: mostly a known place.
+
+        Otherwise a point in the second half of a failed episode, or a new seed if there are no failures.
+        """
         if self._known and self._random.random() >= (_FAILED if self._failures else _FRESH):
             return self._known.draw()
         if not self._failures:
@@ -204,7 +215,7 @@ class Search:
 
 
 class _Known:
-    """The places that were reached: by state and cell the shortest way to each, and how often it was begun at."""
+    """The archive of places: by state and cell, the shortest actions to it and how often it was a start."""
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random
@@ -215,7 +226,7 @@ class _Known:
         return bool(self._starts)
 
     def note(self, state: int, cell: int, seed: int, actions: Actions) -> bool:
-        """Keep the way to a place where it is the shortest; whether it is the first one."""
+        """Keep the actions that led to a place if they are the fewest; return whether the place is new."""
         starts = self._starts.setdefault(state, {})
         known = starts.get(cell)
         if known is None or len(actions) < len(known.actions):
@@ -224,8 +235,9 @@ class _Known:
         return known is None
 
     def draw(self) -> Start:
-        """A place of any state alike, so that the later ones, which have few places, count as much as the first; there
-        the likelier, the less often it was begun at.
+        """Draw a place: first a state uniformly, then a cell with weight 1 / sqrt(1 + times drawn).
+
+        States are uniform so that later ones, which have few places, count as much as the first.
         """
         state = list(self._starts)[self._random.integers(len(self._starts))]
         begun = self._begun[state]
@@ -235,7 +247,7 @@ class _Known:
         return self._starts[state][cell]
 
     def forget(self, seed: int) -> None:
-        """Leave out what is reached with a seed."""
+        """Remove the places that were reached with a seed."""
         for state in list(self._starts):
             kept = {cell: start for cell, start in self._starts[state].items() if start.seed != seed}
             if kept:

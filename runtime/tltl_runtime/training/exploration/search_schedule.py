@@ -1,4 +1,4 @@
-"""When a training searches ways to meet the spec: before it begins, and where it comes to a standstill."""
+"""When a training searches for ways to meet the spec: before it begins, and at a standstill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltl_runtime.training.run.run import Run
 from tltl_runtime.vector import WorkerVectorEnv
 
 Searching = Callable[[Searched], None]
-"""What is told from time to time how far a search is."""
+"""Called from time to time with the progress of a search."""
 
 
 def searched_first(
@@ -26,9 +26,10 @@ def searched_first(
     searching: Searching,
     player: Player | None,
 ) -> Searched | None:
-    """Search ways before the training; a ``player`` plays first.
+    """Search for ways before the training; a ``player`` plays first.
 
-    None where that was done before, unless a limit broke it off before it found any, and now there is time for it.
+    Returns None if the search was done before.  A search that was broken off by a limit before it found
+    a way is repeated if there is time for it.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
@@ -36,25 +37,25 @@ def searched_first(
         if before is None or before.complete or before.lengths or run.settings.stop.is_late(seconds):
             return None
     search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration), player=player)
-    return _made(run, search, restarts, seconds, searching)
+    return _run_search(run, search, restarts, seconds, searching)
 
 
 def searched_again(run: Run, own: Peers, env: TrainingEnv, state: Checkpoint, searching: Searching) -> Searched | None:
-    """Search ways for what the agent fails in, in a training that is in this state; its episodes begin anew.
+    """Search for ways from the agent's failures, in a training in this ``state``; all episodes then begin anew.
 
-    None where nothing is known of failures.
+    Returns None if no failures are known.
     """
     if env.restarts is None or not env.restarts.failures:
         return None
     seed = stream(run, own, Purpose.SEARCH, state.iteration)
     search = Search(env.env, run.settings.exploration, seed, env.restarts.failures)
-    searched = _made(run, search, env.restarts, state.seconds, searching)
+    searched = _run_search(run, search, env.restarts, state.seconds, searching)
     env.begin_anew()
     return searched
 
 
-def _made(run: Run, search: Search, restarts: Restarts, before_s: float, searching: Searching) -> Searched:
-    """Make a search, until the training's limit of minutes at the latest; the restarts know its ways then."""
+def _run_search(run: Run, search: Search, restarts: Restarts, before_s: float, searching: Searching) -> Searched:
+    """Run a search, at most until the training's limit of minutes, and add its ways to the restarts."""
     for searched in search.run():
         searching(searched)
         if run.settings.stop.is_late(before_s + searched.seconds):

@@ -1,8 +1,9 @@
-"""Self-imitation: of known ways, where the agent does not succeed yet.  The imitation baseline is ``gail.py``.
+"""Self-imitation of known ways, where the agent does not succeed yet.
 
-Whether a way succeeds may hang on a few of its decisions, such as a jump at the right place, which a policy that has
-come to prefer others does not try any more.  Imitated are the ways that the search found and the agent's own
-successes, and only where the agent has yet to learn: Oh et al., Self-imitation learning, ICML 2018.
+The success of a way may depend on a few decisions, for example a jump at the right place.  A policy
+that has come to prefer other actions no longer tries them.  So the agent imitates the ways that the
+search found, and its own successes, but only where it still fails: Oh et al., Self-imitation
+learning, ICML 2018.  The imitation baseline is another method: see ``gail.py``.
 """
 
 from __future__ import annotations
@@ -22,22 +23,26 @@ from tltl_runtime.training.exploration.reverse_curriculum import Restarts
 from tltl_runtime.training.exploration.search import Way
 
 BATCH: Final = 256
-"""Decisions that are drawn for a step of the optimiser."""
+"""The number of decisions that are drawn for an optimiser step."""
 
 
 class Lessons:
-    """Decisions on the ways of ``restarts``, with what the agent senses there: they are played again in an environment
-    that ``make`` makes.
+    """Draws self-imitation batches from the ways of ``restarts``.
+
+    Observations come from replaying the ways in an environment of ``make``.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], restarts: Restarts) -> None:
         self._make, self._restarts = make, restarts
         self._env: gymnasium.Env[Any, Any] | None = None
         self._sensed: dict[int, tuple[Way, Mapping[str, NDArray[Any]]]] = {}
-        """Ways by their identity, with what is sensed along each."""
+        """Ways by ``id``, each with its observations; the way is kept so that its ``id`` stays valid."""
 
     def draw(self) -> tuple[TensorDict, Tensor] | None:
-        """Observations and actions [n, branches] of up to ``BATCH`` decisions; None where there is nothing to learn."""
+        """Draw up to ``BATCH`` decisions: observations and actions [n, branches].
+
+        Returns None if there is nothing to imitate.
+        """
         decisions = self._restarts.lessons(BATCH)
         if not decisions:
             return None
@@ -45,10 +50,10 @@ class Lessons:
         self._sensed = {key: sensed for key, sensed in self._sensed.items() if key in known}
         for way, _ in decisions:
             if id(way) not in self._sensed:
-                self._sensed[id(way)] = way, self._along(way)
+                self._sensed[id(way)] = way, self._observations(way)
         rows = [(self._sensed[id(way)][1], index) for way, index in decisions]
         sensed = {
-            name: torch.from_numpy(np.stack([along[name][index] for along, index in rows])).to(torch.float32)
+            name: torch.from_numpy(np.stack([values[name][index] for values, index in rows])).to(torch.float32)
             for name in rows[0][0]
         }
         actions = torch.tensor([way.actions[index] for way, index in decisions], dtype=torch.float32)
@@ -59,18 +64,18 @@ class Lessons:
         if self._env is not None:
             self._env.close()
 
-    def _along(self, way: Way) -> Mapping[str, NDArray[Any]]:
-        """What is sensed before each decision of a way."""
+    def _observations(self, way: Way) -> Mapping[str, NDArray[Any]]:
+        """Return the observations before each decision of a way."""
         self._env = self._env or self._make()
         first, _ = self._env.reset(seed=way.seed)
-        along = [first, *(self._env.step(action)[0] for action in way.actions[:-1])]
-        return {name: np.stack([each[name] for each in along]) for name in first}
+        observations = [first, *(self._env.step(action)[0] for action in way.actions[:-1])]
+        return {name: np.stack([observation[name] for observation in observations]) for name in first}
 
 
 def imitate(ppo: PPO, observations: TensorDict, actions: Tensor) -> float:
-    """Take a step of the optimiser towards these actions; the loss, their negative log-likelihood.
+    """Take an optimiser step towards these actions; return the loss, their negative log-likelihood.
 
-    It is divided by ``BATCH`` however few they are: the less there is to learn, the less it counts.
+    The sum is divided by ``BATCH`` even for smaller batches, so that a small batch counts less.
     """
     ppo.actor(observations, stochastic_output=True)
     loss = -ppo.actor.get_output_log_prob(actions).sum() / BATCH

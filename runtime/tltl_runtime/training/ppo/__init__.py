@@ -1,1 +1,1 @@
-"""PPO: the runner, the policy, the environments and the weights of penalties."""
+"""PPO: environments, policies, penalty weights, random streams and the processes of a training."""

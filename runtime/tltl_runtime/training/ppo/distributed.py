@@ -1,4 +1,4 @@
-"""The processes of a training: one, or several that torchrun started, each with environments of its own."""
+"""The processes of a training: one, or several started by torchrun, each with its own environments."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ T = TypeVar("T")
 
 @record
 class Peers:
-    """Process ``rank`` of ``count``, the ``local_rank``-th of this machine's ``local_count``.
+    """Process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this machine.
 
-    All processes ask for the same in the same order, else they wait for each other.
+    All processes must call the methods in the same order; otherwise they wait for each other forever.
     """
 
     rank: int
@@ -29,7 +29,7 @@ class Peers:
     local_count: int
 
     def gather(self, value: T) -> list[T]:
-        """The values of all processes, by rank."""
+        """Return the values of all processes, by rank."""
         if self.count == 1:
             return [value]
         values: list[Any] = [None] * self.count
@@ -37,7 +37,7 @@ class Peers:
         return values
 
     def broadcast(self, value: T) -> T:
-        """The value of the first process."""
+        """Return the value of the first process."""
         if self.count == 1:
             return value
         values = [value]
@@ -46,30 +46,30 @@ class Peers:
 
 
 def peers() -> Peers:
-    """Where this process stands among those that torchrun started, by its environment variables; alone without it."""
+    """Return the position of this process, from torchrun's environment variables; a single process without them."""
     count, local_count = (started(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
     rank, local_rank = (started(name, 0) for name in ("RANK", "LOCAL_RANK"))
     return Peers(rank, count, local_rank, local_count)
 
 
 def cores() -> int:
-    """How many cores there are for each process of this machine, at least one."""
+    """Return the number of cores for each process on this machine, at least one."""
     return max(1, usable_cores() // peers().local_count)
 
 
 @contextmanager
 def joined(device: str) -> Iterator[tuple[Peers, str]]:
-    """Within, the processes can speak to each other; this one, and ``device``, its own."""
-    found = peers()
-    if found.count == 1:
-        yield found, device
+    """Join the process group inside the block; yield the position of this process, and ``device``."""
+    own = peers()
+    if own.count == 1:
+        yield own, device
         return
     on_gpu = device.startswith("cuda")
     if on_gpu:
         torch.cuda.set_device(device)
-    # Values travel by gloo on any device, and gradients by what is fastest for them.
+    # gloo exchanges Python values on any device; NCCL is the fastest backend for gradients on GPUs.
     distributed.init_process_group("cpu:gloo,cuda:nccl" if on_gpu else "gloo")
     try:
-        yield found, device
+        yield own, device
     finally:
         distributed.destroy_process_group()

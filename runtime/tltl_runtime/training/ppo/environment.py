@@ -1,4 +1,4 @@
-"""Vector environments of Gymnasium as rsl-rl takes them."""
+"""Adapt Gymnasium's vector environments to rsl-rl."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ from tltlc.core.record import record
 
 @record
 class Finished:
-    """An episode that ended in training: ``steps`` long, in ``state`` of the automaton; ``progress`` is in [0, 1].
+    """An episode that ended in training.
 
-    Of one that was ``violated`` it is the state before.
+    ``progress`` is in [0, 1].  ``steps`` is the length.  ``state`` is the automaton state at the end, or
+    before the violation if it was ``violated``.
     """
 
     success: bool
@@ -39,15 +40,17 @@ class Finished:
 class TrainingEnv(VecEnv):
     """A vector environment of :class:`~tltl_runtime.spec.wrapper.TltlEnv` with ``SAME_STEP`` autoreset, for rsl-rl.
 
-    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on ``device``; ``shapes`` are
-    those of one environment.  Episodes that end go to :meth:`finished`.  ``seed`` is for the vector environment's
-    reset: a number, or one for each environment.
+    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on ``device``.
+    ``shapes`` are the shapes of one environment's observation.  :meth:`finished` returns the episodes
+    that ended.  ``seed`` is the argument of the vector environment's reset: a number, or one for each
+    environment.
 
-    With ``restarts`` they say where episodes begin, whose seeds ``seed`` then does not tell; those that do not begin at
-    the level's start are not among the ``finished``.  ``replayed`` counts the decisions that led to their starts.
-    ``lessons`` are decisions that the runner is to imitate; ``demonstrated`` are those that the algorithm is to.
-    ``dearer`` says how much more an episode may cost that fails after so many steps; ``severity``, in [0, 1], 0 at
-    first, is the share of that by which it does.
+    If there are ``restarts``, episodes begin at the starts that they draw, and ``seed`` is not used;
+    episodes that do not begin at the level's start are not among the ``finished``.  ``replayed`` counts
+    the decisions that led to the starts.  ``lessons`` are decisions for the runner to imitate,
+    ``demonstrated`` are decisions for the algorithm to imitate.  ``dearer`` maps the length of a failed
+    episode to the largest extra penalty.  ``severity``, the penalty weight in [0, 1], initially 0, is
+    the share of it that is subtracted from the reward.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -69,9 +72,9 @@ class TrainingEnv(VecEnv):
             raise TypeError(f"an observation of several parts is needed, a Dict, not {env.single_observation_space}")
         self.env = env
         self.num_envs = env.num_envs
-        self.branches = tuple(int(each) for each in env.single_action_space.nvec)
+        self.branches = tuple(int(choices) for choices in env.single_action_space.nvec)
         self.num_actions = len(self.branches)
-        self.shapes = {key: tuple(each.shape or ()) for key, each in env.single_observation_space.items()}
+        self.shapes = {key: tuple(space.shape or ()) for key, space in env.single_observation_space.items()}
         self.device = device
         self.restarts = restarts
         self.lessons = lessons
@@ -79,7 +82,7 @@ class TrainingEnv(VecEnv):
         self._dearer = dearer
         self.severity = 0.0
         self.cfg: dict[str, Any] = {}
-        # Nothing is cut by rsl-rl: the spec's limit ends an episode.
+        # rsl-rl must not cut off episodes: the spec's limit ends them.
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self._replayed_before = 0
@@ -89,14 +92,14 @@ class TrainingEnv(VecEnv):
         self._finished: list[Finished] = []
 
     def get_observations(self) -> TensorDict:
-        """The observations of all environments now."""
+        """Return the current observations of all environments."""
         return self._observation
 
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
-        """Take a step in each environment with actions [num_envs, branches].
+        """Step all environments with actions [num_envs, branches].
 
-        The extras tell of each whether the limit ended the episode (``time_outs``), and whether it met the spec
-        (``successes``), bools [num_envs].
+        The extras are bools [num_envs]: ``time_outs`` says whether the limit ended the episode,
+        ``successes`` whether it met the spec.
         """
         taken = actions.to("cpu", torch.int64).numpy()
         step = self._episodes.step if self._episodes else self.env.step
@@ -104,15 +107,15 @@ class TrainingEnv(VecEnv):
         over = terminated | truncated
         ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
-        for row, each in ended.items():
-            successes[row] = each.success
-            if self._dearer and not each.success:
-                reward[row] -= self.severity * self._dearer(self._taken(row, each))
+        for row, episode in ended.items():
+            successes[row] = episode.success
+            if self._dearer and not episode.success:
+                reward[row] -= self.severity * self._dearer(self._taken(row, episode))
         if self._episodes and self.restarts:
-            ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
-            states = {row: each.state for row, each in ended.items()}
-            cut = _learned(self.restarts, self._episodes, over, ends, states)
-            ended = {row: each for row, each in ended.items() if self._episodes.starts[row].part is None}
+            ends = {row: end_of(infos["final_info"], row) for row, episode in ended.items() if episode.success}
+            states = {row: episode.state for row, episode in ended.items()}
+            cut = _update_restarts(self.restarts, self._episodes, over, ends, states)
+            ended = {row: episode for row, episode in ended.items() if self._episodes.starts[row].part is None}
             self._episodes.turn(over)
             if cut.any():
                 observation = self._episodes.cut(cut)
@@ -128,11 +131,11 @@ class TrainingEnv(VecEnv):
 
     @property
     def replayed(self) -> int:
-        """How many decisions were played again to begin where others had been."""
+        """The number of decisions that were replayed to reach the starts of episodes."""
         return self._replayed_before + (self._episodes.replayed if self._episodes else 0)
 
     def begin_anew(self) -> None:
-        """Break off all episodes, and begin others: something else has used the vector environment meanwhile."""
+        """Cut off all episodes and begin new ones, after something else has used the vector environment."""
         assert self._episodes is not None
         assert self.restarts is not None
         self._replayed_before += self._episodes.replayed
@@ -140,12 +143,12 @@ class TrainingEnv(VecEnv):
         self._observation = self._tensors(self._episodes.observation)
 
     def finished(self) -> tuple[Finished, ...]:
-        """The episodes that ended since this was last asked, in the order of their ends."""
+        """Return the episodes that ended since the last call, in the order of their ends."""
         ended, self._finished = tuple(self._finished), []
         return ended
 
     def _taken(self, row: int, episode: Finished) -> int:
-        """How many steps the monitor of the episode that ended in this row has seen, those played again too."""
+        """Return how many steps the monitor saw in the episode that ended in this row, replayed ones included."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
@@ -153,15 +156,17 @@ class TrainingEnv(VecEnv):
         return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
 
 
-def _learned(
+def _update_restarts(
     restarts: Restarts,
     episodes: Episodes,
     over: NDArray[np.bool_],
     ends: Mapping[int, int],
     states: Mapping[int, int],
 ) -> NDArray[np.bool_]:
-    """Let the restarts learn from episodes that are over, with the ends of those that met the spec and the states of
-    all, and from those that take too long: which these are.
+    """Update the restarts with the episodes that are over and those that used up their decisions.
+
+    ``ends`` has the ends of episodes that met the spec, by row; ``states`` the final states of all.
+    Returns the mask of the episodes that used up their decisions, which must be cut off.
     """
     spent = np.array([episodes.is_spent(row) for row in range(len(over))]) & ~over
     for row in [*np.flatnonzero(over).tolist(), *np.flatnonzero(spent).tolist()]:
@@ -170,7 +175,7 @@ def _learned(
 
 
 def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, Finished]:
-    """The episodes that ended, by their environments."""
+    """Return the episodes that ended, by row."""
     episode = infos["episode"]
     return {
         int(row): Finished(

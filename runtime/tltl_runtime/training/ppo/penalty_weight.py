@@ -1,4 +1,4 @@
-"""What weighs how much in a training, by how often the spec is met."""
+"""Weights that depend on how often the spec is met: entropy bonus, penalty weight, inverse temperature."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from tltlc.monitor.reward import terminal_penalty
 
 @record
 class Weighing:
-    """The weight of the ``entropy`` bonus, None: it stays as it is; the ``severity`` of failures, in [0, 1], as
-    :class:`~tltl_runtime.training.ppo.environment.TrainingEnv` takes it; and the ``sharpness``, by which the actor's
-    logits are multiplied in all, 1 at least.
+    """The weights of a training.
+
+    ``entropy`` is the weight of the entropy bonus; None: it stays as it is.  ``severity`` is the penalty
+    weight of failures, in [0, 1]: see :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`.
+    ``sharpness`` is the inverse temperature, at least 1: the total factor on the actor's logits.
     """
 
     entropy: float | None
@@ -23,11 +25,12 @@ class Weighing:
 
 
 def weighing(ppo: Ppo, met: float) -> Weighing:
-    """What weighs how much where the share ``met`` of the last episodes, in [0, 1], met the spec.
+    """Return the weights for the share ``met``, in [0, 1], of the last episodes that met the spec.
 
-    The more often it is met, the less there is to try, so the entropy bonus fades.  From a half on failures cost more:
-    the discounted penalty is less than what a longer way costs that is safe.  What is chosen by chance against what was
-    learned makes most of the failures then, so the likelier choices become likelier.
+    The entropy bonus fades as the spec is met more often, because less exploration is needed.  From one
+    half on, the penalty weight rises: the discounted penalty costs less than a longer, safe trajectory.
+    At that stage, most failures come from unlikely actions that were sampled by chance, so the inverse
+    temperature rises, too.
     """
     rise = max(0.0, 2 * met - 1)
     return Weighing(
@@ -38,7 +41,10 @@ def weighing(ppo: Ppo, met: float) -> Weighing:
 
 
 def dearer(run: Run) -> Callable[[int], float] | None:
-    """How much more the undiscounted terminal penalty is after so many steps; None where it is not to rise to that."""
+    """Return a function of the steps: the undiscounted terminal penalty minus the configured one.
+
+    Returns None if the penalty does not rise during the training.
+    """
     limit, options = run.fspa.limit_steps, run.settings.reward.options
     if limit is None or run.settings.imitates or not run.settings.reward.rises:
         return None

@@ -1,4 +1,4 @@
-"""The policy of a training."""
+"""Make policies and their cards from a training."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def card_of(run: Run, env: TrainingEnv) -> Card:
-    """What a policy says that is trained by ``run`` in ``env``, on the level as its file is now; without a record."""
+    """Return the card of a policy that ``run`` trains in ``env``, without a record of the training.
+
+    The level is read from its file as it is now.
+    """
     level = load_level(run.level, run.variant)
     return Card(
         level=level.name,
@@ -36,10 +39,10 @@ def card_of(run: Run, env: TrainingEnv) -> Card:
 
 
 def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
-    """The policy of an actor's ``weights``.
+    """Return the policy with an actor's ``weights``.
 
     Raises:
-        TltlError: TLT0866, a weight is no finite number in half precision.
+        TltlError: TLT0866, a weight is not finite in half precision.
     """
     try:
         return Policy(card, weights)

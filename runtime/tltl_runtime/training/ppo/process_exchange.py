@@ -1,4 +1,4 @@
-"""What the processes of a training tell each other after an iteration, and what each of them has for itself."""
+"""The data that processes exchange after an iteration, and the state that each process has for itself."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Own = Mapping[str, Tensor]
-"""What a process has for itself: see :class:`~tltl_runtime.training.run.checkpoint.Checkpoint`."""
+"""The own state of a process: see :class:`~tltl_runtime.training.run.checkpoint.Checkpoint`."""
 
 
 @record
 class Gathered:
-    """An iteration of all processes: its episodes and steps are theirs together, its losses and times this one's.
+    """An iteration of all processes.
 
-    ``processes`` are what each has for itself, by rank; ``replayed`` counts the decisions that they have played again.
+    Its episodes and steps are those of all processes, its losses and times those of this process.
+    ``processes`` are the own states, by rank.  ``replayed`` counts the replayed decisions of all.
     """
 
     iteration: Iteration
@@ -31,29 +32,29 @@ class Gathered:
 
 
 def gathered(own: Peers, iteration: Iteration, runner: Runner) -> Gathered:
-    """What all processes tell after an iteration; raises TltlError, TLT0866, where a loss of any is no number."""
-    told = own.gather((iteration, own_state(runner), runner.env.replayed))
-    iterations, processes, replayed = zip(*told, strict=True)
-    for each in iterations:
-        _check_losses(each)
-    # In which order the episodes of different processes ended nobody knows.
-    by_turns = chain.from_iterable(zip_longest(*(each.finished for each in iterations)))
-    finished = tuple(each for each in by_turns if each)
+    """Gather an iteration from all processes.  Raises TltlError, TLT0866, if any loss is not a number."""
+    values = own.gather((iteration, own_state(runner), runner.env.replayed))
+    iterations, processes, replayed = zip(*values, strict=True)
+    for process_iteration in iterations:
+        _check_losses(process_iteration)
+    # The order in which episodes of different processes ended is unknown, so they are interleaved.
+    interleaved = chain.from_iterable(zip_longest(*(process_iteration.finished for process_iteration in iterations)))
+    finished = tuple(episode for episode in interleaved if episode)
     return Gathered(replace(iteration, finished=finished, steps=iteration.steps * own.count), processes, sum(replayed))
 
 
 def own_state(runner: Runner) -> Own:
-    """What this process has for itself."""
+    """Return the own state of this process."""
     own = {"cpu": torch.get_rng_state()}
     if runner.device.startswith("cuda"):
         own["cuda"] = torch.cuda.get_rng_state(runner.device)
     if runner.env.restarts:
-        own |= {name: torch.from_numpy(each) for name, each in runner.env.restarts.state().items()}
+        own |= {name: torch.from_numpy(array) for name, array in runner.env.restarts.state().items()}
     return own
 
 
 def set_generators(own: Own, runner: Runner) -> None:
-    """Set torch's generators of random numbers to where :func:`own_state` found them."""
+    """Restore torch's random generators from :func:`own_state`."""
     torch.set_rng_state(own["cpu"])
     if runner.device.startswith("cuda") and "cuda" in own:
         torch.cuda.set_rng_state(own["cuda"], runner.device)

@@ -1,4 +1,4 @@
-"""The streams of random numbers of a training, none of which hangs on how much another one has given."""
+"""The random streams of a training, which are independent of each other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tltl_runtime.training.run.run import Run
 
 
 class Purpose(IntEnum):
-    """What a process draws numbers for; the values are part of what makes equal trainings equal."""
+    """The purpose of a random stream.  Do not change the values: equal seeds must give equal trainings."""
 
     TORCH = 0
     ENVIRONMENTS = 1
@@ -22,5 +22,5 @@ class Purpose(IntEnum):
 
 
 def stream(run: Run, own: Peers, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
-    """The seed of what process ``own`` draws for a purpose from an iteration on."""
+    """Return the seed of a stream of process ``own``, for a purpose, from an iteration on."""
     return np.random.SeedSequence(run.seed, spawn_key=(own.rank, int(purpose), iteration))

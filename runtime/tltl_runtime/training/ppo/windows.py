@@ -1,4 +1,4 @@
-"""The last episodes of a training: whether they meet the spec, and how well the policy is that played them."""
+"""The last episodes of a training: whether they meet the spec, and how good their policy is."""
 
 from __future__ import annotations
 
@@ -10,21 +10,25 @@ from tltl_runtime.training.ppo.environment import Finished
 from tltl_runtime.training.run.report import Window
 
 Score = tuple[float, float, float]
-"""How good a policy is, the greater the better: pass rate, mean progress, mean reward."""
+"""The score of a policy: pass rate, mean progress, mean reward.  Greater is better."""
 
 _STANDSTILL_STEPS = 100_000
 _ENOUGH = 50
-"""Episodes whose share of successes is one that can be told to rise."""
+"""A window needs this many episodes before its pass rate can count as risen."""
 _RISE = 0.05
 _BETWEEN = 0.1, 0.8
-"""Below these pass rates the ways have not led to the level's start yet, and above them little is left to be found."""
+"""A standstill is detected only between these pass rates.
+
+Below them, the reverse curriculum has not reached the level's start yet.  Above them, little is left to
+find.
+"""
 
 
 class Windows:
-    """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's, None where it has none.
+    """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's limit, or None.
 
-    ``unbroken`` is how many of them, up to the last one, met the spec without a failure in between, of the policy in a
-    confirmation neither.
+    ``unbroken`` is the number of episodes in a row, up to the last one, that met the spec.  A failed
+    confirmation of the policy resets it.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
@@ -35,74 +39,81 @@ class Windows:
         self.unbroken = 0
 
     def add(self, finished: Iterable[Finished]) -> None:
-        """Take episodes in the order of their ends."""
-        for each in finished:
-            self._last.append(each)
-            self.unbroken = min(self.unbroken + 1, self._count) if each.success else 0
+        """Add episodes in the order of their ends."""
+        for episode in finished:
+            self._last.append(episode)
+            self.unbroken = min(self.unbroken + 1, self._count) if episode.success else 0
 
     def refuse(self) -> None:
-        """Begin to count anew: the policy has failed in its confirmation."""
+        """Count from 0 again, because the policy failed its confirmation."""
         self.unbroken = 0
 
     @property
     def met(self) -> bool:
-        """Whether the spec was met throughout all of the windows."""
+        """Whether all episodes of all windows met the spec."""
         return self.unbroken == self._count
 
     @property
     def window(self) -> Window:
-        """All of the last episodes together."""
+        """The statistics of all of the last episodes."""
         return self._window(tuple(self._last))
 
     @property
     def score(self) -> Score | None:
-        """That of the last window; None before there was a whole one."""
+        """The score in the last window; None before there is a whole one."""
         if len(self._last) < self._episodes:
             return None
         window = self._window(tuple(self._last)[-self._episodes :])
         return window.pass_rate, window.progress, window.reward
 
     def state(self) -> list[tuple[Any, ...]]:
-        """The episodes as plain values, for :meth:`load`."""
-        return [(each.success, each.progress, each.steps, each.state, each.violated) for each in self._last]
+        """Return the episodes as plain values, for :meth:`load`."""
+        return [
+            (episode.success, episode.progress, episode.steps, episode.state, episode.violated)
+            for episode in self._last
+        ]
 
     def load(self, state: Iterable[Sequence[Any]], unbroken: int) -> None:
-        """Take up what :meth:`state` gave."""
-        self._last.extend(Finished(*each) for each in state)
+        """Restore what :meth:`state` returned."""
+        self._last.extend(Finished(*fields) for fields in state)
         self.unbroken = unbroken
 
     def _window(self, episodes: tuple[Finished, ...]) -> Window:
         count = len(episodes)
-        ends = Counter(each.state for each in episodes)
-        violated = Counter(each.state for each in episodes if each.violated)
+        ends = Counter(episode.state for episode in episodes)
+        violated = Counter(episode.state for episode in episodes if episode.violated)
         return Window(
             count=count,
-            successes=sum(each.success for each in episodes),
-            progress=sum(each.progress for each in episodes) / max(count, 1),
-            reward=sum(self._reward(each) for each in episodes) / max(count, 1),
-            steps=sum(each.steps for each in episodes) / max(count, 1),
+            successes=sum(episode.success for episode in episodes),
+            progress=sum(episode.progress for episode in episodes) / max(count, 1),
+            reward=sum(self._reward(episode) for episode in episodes) / max(count, 1),
+            steps=sum(episode.steps for episode in episodes) / max(count, 1),
             states={state: ended / count for state, ended in sorted(ends.items())},
             violated={state: ended / count for state, ended in sorted(violated.items())},
         )
 
     def _reward(self, episode: Finished) -> float:
-        """The sum of rewards of mode ``progress`` with the undiscounted terminal penalty (semantics, section 4)."""
+        """Return the return in mode ``progress`` with the undiscounted terminal penalty (semantics, section 4)."""
         if self._limit_steps is None:
             return episode.progress
         return episode.progress - (episode.steps / self._limit_steps if episode.success else 1.0)
 
 
 class Standstill:
-    """Whether a training has come to a standstill: it succeeds now and then, and its pass rate rises no more.
+    """Detects a standstill: the agent succeeds sometimes, but its pass rate no longer rises.
 
-    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the steps after which it was one.
+    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the number of steps when it was
+    reached.
     """
 
     def __init__(self, best: float = 0.0, since: int = 0) -> None:
         self._best, self._since = best, since
 
     def add(self, window: Window, steps: int) -> bool:
-        """Take the window after so many ``steps`` of all environments; True where it is one, and then counts anew."""
+        """Add the window after ``steps`` decisions of all environments; return whether this is a standstill.
+
+        After a standstill, the count of steps begins again.
+        """
         if window.count >= _ENOUGH and window.pass_rate >= self._best + _RISE:
             self._best, self._since = window.pass_rate, steps
         low, high = _BETWEEN
@@ -112,5 +123,5 @@ class Standstill:
         return True
 
     def state(self) -> tuple[float, int]:
-        """What :class:`Standstill` is made of to go on from here."""
+        """Return the arguments of :class:`Standstill` to continue from here."""
         return self._best, self._since
