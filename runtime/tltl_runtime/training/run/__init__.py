@@ -1,1 +1,1 @@
-"""A training as a whole: settings, checkpoints, records."""
+"""A whole training: settings, checkpoints, records."""

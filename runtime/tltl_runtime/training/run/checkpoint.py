@@ -1,4 +1,4 @@
-"""Checkpoints: all that a training needs to go on, in a file that is there as a whole or not at all."""
+"""Checkpoints: everything that a training needs to resume, in one file that is written atomically."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from tltlc.io.writing import write_file
 FORMAT: Final = "tltl-checkpoint"
 VERSION: Final = 5
 _MOST: Final = 2**53
-"""The largest number of steps or seconds that a checkpoint may hold: larger ones are not exact as floats."""
+"""The largest number of steps or seconds in a checkpoint: larger integers are not exact as floats."""
 
 
 @record
 class Best:
-    """The policy that is kept: its score, the actor's weights by name, and the steps after which it had them."""
+    """The best policy: its score, the actor's weights by name, and the steps after which it had them."""
 
     score: Score
     actor: Mapping[str, Tensor]
@@ -42,17 +42,20 @@ class Best:
 
 @record
 class Checkpoint:
-    """A training after iteration number ``iteration``: ``steps`` and ``seconds`` are those of all iterations.
+    """The state of a training after iteration number ``iteration``.
 
-    ``run`` is :func:`~tltl_runtime.training.run.run.identity` of what is trained, ``searched`` what the search before
-    it
-    found, ``replayed`` the decisions that were played again.  ``algorithm`` is what rsl-rl's algorithm saves;
-    ``processes`` holds what each process has for itself: the states of torch's generators of random numbers by device,
-    and that of its :class:`~tltl_runtime.training.exploration.reverse_curriculum.Restarts`; ``window`` and
-    ``unbroken`` are those of
-    :class:`~tltl_runtime.training.ppo.windows.Windows`, ``standstill`` what its ``Standstill`` is made of, and ``met``
-    says
-    whether the best policy has met the spec in them and in fresh episodes.
+    - ``run`` is the :func:`~tltl_runtime.training.run.run.identity` of the training.
+    - ``losses`` are the losses of the iteration.
+    - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed decisions.
+    - ``searched`` is the result of the searches so far.
+    - ``algorithm`` is what rsl-rl's algorithm saves.
+    - ``processes`` has the own state of each process: the states of torch's random generators by
+      device, and the arrays of its
+      :class:`~tltl_runtime.training.exploration.reverse_curriculum.Restarts`.
+    - ``window`` and ``unbroken`` are from :class:`~tltl_runtime.training.ppo.windows.Windows`,
+      ``standstill`` from :class:`~tltl_runtime.training.ppo.windows.Standstill`.
+    - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows and
+      in its confirmation.
     """
 
     run: Mapping[str, str]
@@ -71,27 +74,30 @@ class Checkpoint:
     standstill: tuple[float, int]
 
     def reason(self, stop: Stop) -> StopReason | None:
-        """Why a training with these limits is over, if it is."""
+        """Return why a training with these limits is over, or None if it is not."""
         return "met" if self.met else stop.reached(self.steps, self.seconds)
 
     @property
     def weights(self) -> Mapping[str, Tensor]:
-        """Those of the best actor, by name, or of the last one where none is the best yet."""
+        """The weights of the best actor, by name, or of the current actor if there is no best one yet."""
         last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
         return self.best.actor if self.best else last
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}
-"""The fields that are records themselves, which torch would not read again."""
+"""The fields that are records themselves: they are saved as dicts, because torch could not load them."""
 _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write a checkpoint; a failure, of the power too, leaves the older one.  Raises TltlError, TLT0005."""
+    """Write a checkpoint.  A failure, even of the power, leaves the older file.
+
+    Raises TltlError, TLT0005.
+    """
     content: dict[str, Any] = {name: getattr(checkpoint, name) for name in _FIELDS}
     for name, kind in _RECORDS.items():
-        if made := content[name]:
-            content[name] = {field: getattr(made, field) for field in kind.__match_args__}
+        if value := content[name]:
+            content[name] = {field: getattr(value, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
     write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True, over_inputs=True)
@@ -99,13 +105,14 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
 
 @bounded()
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
-    """The checkpoint in a file, None where there is no such file; nothing in it is executed.
+    """Read a checkpoint; return None if there is no such file.  Nothing in the file is executed.
 
-    ``run`` is the identity of the training that it must be of, None: of any.
+    ``run`` is the identity of the expected training; None accepts any.
 
     Raises:
-        TltlError: TLT0001 it cannot be read; TLT0864 it is none, is damaged, is of another version, or of another
-            training than ``run``; TLT0868, of ``run`` on another level; TLT0922, of ``run`` with other demonstrations.
+        TltlError: TLT0001, the file cannot be read; TLT0864, it is not a checkpoint, is damaged, has
+            another version, or is of another training than ``run``; TLT0868, it is of ``run`` on
+            another level; TLT0922, it is of ``run`` with other demonstrations.
     """
     if not path.exists():
         return None
@@ -116,7 +123,7 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
     if type(content.get("version")) is not int or content["version"] != VERSION:
         raise _other_version(path, content.get("version"))
     try:
-        checkpoint = _made(content)
+        checkpoint = _checkpoint(content)
         _check_figures(checkpoint)
     except KeyError as error:
         raise damaged(path, f"it lacks a part: {error}") from None
@@ -128,16 +135,16 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
 
 
 def copied(value: Any) -> Any:
-    """The same numbers in memory of their own, so that what goes on learning changes them no more."""
+    """Return a deep copy of tensors, mappings and lists, which further learning does not change."""
     if isinstance(value, Tensor):
         return value.detach().clone()
     if isinstance(value, Mapping):
-        return {name: copied(each) for name, each in value.items()}
-    return [copied(each) for each in value] if isinstance(value, list) else value
+        return {name: copied(item) for name, item in value.items()}
+    return [copied(item) for item in value] if isinstance(value, list) else value
 
 
 def _content(data: bytes, path: Path) -> Mapping[str, Any]:
-    """The content of a checkpoint's file; error TLT0864 where it is not one."""
+    """Return the content of a checkpoint file; raises TLT0864 if it is not one."""
     try:
         content = read_torch(data)
     except TorchArchiveError as error:
@@ -147,8 +154,8 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
     return content
 
 
-def _made(content: Mapping[str, Any]) -> Checkpoint:
-    """The checkpoint of what torch has read; raises KeyError and RecordJsonError for what is not as it must be."""
+def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
+    """Make a checkpoint of the loaded content.  Raises KeyError or RecordJsonError if something is invalid."""
     processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
     if not isinstance(processes, (tuple, list)) or not processes:
         raise RecordJsonError("`processes` is no list, or is empty")
@@ -156,14 +163,14 @@ def _made(content: Mapping[str, Any]) -> Checkpoint:
     tensors = {
         "algorithm": algorithm,
         "best": None if content["best"] is None else _best(_object(content["best"], "best")),
-        "processes": tuple(_tensors(each, "processes") for each in processes),
+        "processes": tuple(_tensors(process, "processes") for process in processes),
     }
     plain = {name: _lists(content[name]) for name in _FIELDS if name not in tensors}
     return from_json(Checkpoint, plain, "it", **tensors)
 
 
 def _check_figures(checkpoint: Checkpoint) -> None:
-    """Raise RecordJsonError for counts and times that no training has: below 0, or beyond all bounds."""
+    """Raise RecordJsonError for counts and times below 0 or above their limits."""
     best, searched, (rate, since) = checkpoint.best, checkpoint.searched, checkpoint.standstill
     names = ("iteration", "steps", "seconds", "replayed", "unbroken")
     _check_counts({f"it.{name}": getattr(checkpoint, name) for name in names})
@@ -175,9 +182,9 @@ def _check_figures(checkpoint: Checkpoint) -> None:
     if best:
         _check_counts({"best.steps": best.steps}, checkpoint.steps)
     if searched:
-        found = ("steps", "replayed", "seconds", "places")
-        _check_counts({f"it.searched.{name}": getattr(searched, name) for name in found})
-        _check_counts({f"it.searched.lengths[{index}]": each for index, each in enumerate(searched.lengths)})
+        counts = ("steps", "replayed", "seconds", "places")
+        _check_counts({f"it.searched.{name}": getattr(searched, name) for name in counts})
+        _check_counts({f"it.searched.lengths[{index}]": length for index, length in enumerate(searched.lengths)})
 
 
 def _check_counts(counts: Mapping[str, float], most: float = _MOST) -> None:
@@ -198,40 +205,42 @@ def _object(value: object, where: str) -> Mapping[str, Any]:
 
 
 def _tensors(value: object, where: str) -> Mapping[str, Tensor]:
-    """Tensors by name; raises RecordJsonError for anything else."""
+    """Return ``value`` if it maps names to tensors.  Raises RecordJsonError otherwise."""
     if isinstance(value, Mapping) and all(type(k) is str and isinstance(v, Tensor) for k, v in value.items()):
         return value
     raise RecordJsonError(f"`{where}` holds no tensors")
 
 
 def _lists(value: object) -> object:
-    """Plain values with lists for tuples, as JSON has them."""
+    """Return plain values with tuples replaced by lists, as in JSON."""
     if isinstance(value, dict):
-        return {name: _lists(each) for name, each in value.items()}
-    return [_lists(each) for each in value] if isinstance(value, (tuple, list)) else value
+        return {name: _lists(item) for name, item in value.items()}
+    return [_lists(item) for item in value] if isinstance(value, (tuple, list)) else value
 
 
-def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) -> None:
-    """TLT0864 where a checkpoint is of another training, and what differs; TLT0868 where the level alone does, TLT0922
-    where the demonstrations do.
+def _check_run(path: Path, actual: Mapping[str, str], wanted: Mapping[str, str]) -> None:
+    """Check that a checkpoint is of the training ``wanted``.
+
+    Raises TLT0868 if only the level differs, TLT0922 if only the demonstrations differ, and TLT0864 with
+    all differences otherwise.
     """
-    other = [name for name in wanted if found.get(name) != wanted[name]]
-    if other == ["level"]:
+    different = [name for name in wanted if actual.get(name) != wanted[name]]
+    if different == ["level"]:
         raise level_changed(path.parent)
-    if other == ["demonstrations"]:
+    if different == ["demonstrations"]:
         raise _demonstrations_changed(path.parent)
-    if other:
-        raise damaged(path, f"it is of another training: another {' and another '.join(map(_called, other))}")
+    if different:
+        raise damaged(path, f"it is of another training: another {' and another '.join(map(_called, different))}")
 
 
 def damaged(path: Path, why: str) -> TltlError:
-    """TLT0864: a checkpoint is damaged, or does not fit what is trained; ``why`` says how."""
+    """Return error TLT0864: a checkpoint is damaged or does not fit the training; ``why`` says how."""
     help_ = "put back a copy of it, or move it away: the training then begins anew"
     return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])
 
 
 def level_changed(folder: Path) -> TltlError:
-    """TLT0868: the level is another now than the one that the training in ``folder`` began on."""
+    """Return error TLT0868: the level has changed since the training in ``folder`` began."""
     help_ = (
         f"put it back and go on by `{resume_command(folder)}`, or train on the level as it is now: anew, or by "
         f"`tltlc train --from {quote(str(folder))}` from what was learned"

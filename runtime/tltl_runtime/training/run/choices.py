@@ -1,17 +1,17 @@
-"""The texts that settings choose from, apart from those of the network and of the rewards."""
+"""The values of the settings that are one of a few texts, except for the network and the rewards."""
 
 from __future__ import annotations
 
 from typing import Literal
 
 Method = Literal["automaton", "imitation"]
-"""What an agent learns from: the rewards of the spec's automaton, or demonstrations."""
+"""Whether an agent learns from the rewards of the spec's automaton or from demonstrations."""
 
 EntropySchedule = Literal["fading", "fixed"]
-"""Whether the entropy bonus weighs the less, the more often the spec is met."""
+"""Whether the weight of the entropy bonus falls as the spec is met more often."""
 
 PenaltySchedule = Literal["rising", "fixed"]
-"""Whether what a violation costs rises as the spec is met."""
+"""Whether the violation penalty rises as the spec is met more often."""
 
 Pool = Literal["processes", "ray"]
-"""Where the processes run that play: on this machine, or in a Ray cluster."""
+"""Whether the environments run in processes on this machine or on a Ray cluster."""

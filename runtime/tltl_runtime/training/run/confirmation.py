@@ -1,7 +1,8 @@
-"""The last word on a policy: whether it meets the spec in fresh episodes, too.
+"""The confirmation of a policy in fresh episodes, before a training ends.
 
-The windows that seem to end a training were played by the policies of several iterations, and chance, too, makes
-windows without a failure.  A policy whose pass rate is 0.99 meets it in 300 in a row once in twenty times.
+Success in all windows is not enough: policies of several iterations played them, and windows without a
+failure also occur by chance.  A policy with a pass rate of 0.99 meets the spec in 300 episodes in a row
+with probability 1/20.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ from tltl_runtime.training.run.run import Run
 
 
 def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
-    """Have a policy play fresh episodes, as many as the settings say, up to the first one that fails.
+    """Let a policy play the number of fresh episodes in the settings, or up to the first failure.
 
     Raises:
-        TltlError: TLT0868, the level is another now than the one that was trained on.
+        TltlError: TLT0868, the level has changed since the training.
     """
     _check_level(run, policy)
     seed, count, met = int(stream.generate_state(1)[0]), run.settings.stop.confirmation, 0

@@ -1,4 +1,4 @@
-"""The picture of a training: how often the spec was met, and how far towards it agents came, by steps."""
+"""Plot the learning curve of a training: pass rate and progress over steps."""
 
 from __future__ import annotations
 
@@ -14,19 +14,23 @@ _DPI: Final = 100
 
 
 def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
-    """A PNG of the points of a training's ``curve``: ``steps`` and, from the first episode on, the other two."""
+    """Return a PNG of a learning ``curve``.
+
+    Each point has ``steps``, and ``pass_rate`` and ``progress``, which are None before the first episode
+    has ended.
+    """
     picture = BytesIO()
     curve_figure(title, curve).savefig(picture, format="png", metadata={"Software": None})
     return picture.getvalue()
 
 
 def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
-    """What :func:`draw_curve` draws; where no episode has ended it says so."""
+    """Return the figure of :func:`draw_curve`; it says so if no episode has ended."""
     shown = [point for point in curve if point["pass_rate"] is not None]
     steps = [point["steps"] for point in shown]
     figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
     axes = figure.add_subplot()
-    # A single point would make no line.
+    # A single point makes no line, so it needs a marker.
     style: dict[str, Any] = {"marker": "o" if len(shown) == 1 else None}
     axes.plot(steps, [point["progress"] for point in shown], color=_PROGRESS, linewidth=1.2, label="progress", **style)
     axes.plot(
@@ -43,6 +47,6 @@ def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
     if shown:
         figure.legend(loc="outside lower center", ncols=2, frameon=False)
     else:
-        said = "no episode has ended"
-        axes.text(0.5, 0.5, said, color=_INK, ha="center", va="center", transform=axes.transAxes)
+        note = "no episode has ended"
+        axes.text(0.5, 0.5, note, color=_INK, ha="center", va="center", transform=axes.transAxes)
     return figure

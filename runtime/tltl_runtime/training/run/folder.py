@@ -1,4 +1,4 @@
-"""The folder of a training, which belongs to one process at a time."""
+"""Lock the folder of a training for one process."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 
 
 def held(folder: Path) -> AbstractContextManager[None]:
-    """Within, no other process trains in the folder, which is made where it is missing.
+    """Lock the folder inside the block, so that no other process trains in it; create it if it is missing.
 
     Raises:
-        TltlError: TLT0005, nothing can be written there; TLT0865, another process trains there.
+        TltlError: TLT0005, the folder cannot be written to; TLT0865, another process trains in it.
     """
     title = f"another process trains in `{folder}`"
     busy = Diagnostic("TLT0865", title, help="wait for its end; a new training may go elsewhere, with --out")

@@ -1,4 +1,4 @@
-"""The policy that a training begins with, in place of weights that are drawn."""
+"""The policy that a training begins with, in place of random weights."""
 
 from __future__ import annotations
 
@@ -12,24 +12,25 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def initial_of(path: Path, policy: Policy) -> Initial:
-    """What a training that begins with ``policy``, from the file ``path``, records of it."""
+    """Return what a training records of ``policy``, from the file ``path``, that it begins with."""
     card = policy.card
     return Initial(str(path), weights_hash(policy), card.level, card.variant, card.level_hash)
 
 
 def weights_hash(policy: Policy) -> str:
-    """SHA-256, in hexadecimal, of the weights as a file holds them, and of their names."""
-    found = hashlib.sha256()
-    for name, each in sorted(policy.weights().items()):
-        found.update(name.encode() + b"\0" + each.numpy().tobytes())
-    return found.hexdigest()
+    """Return the SHA-256, in hexadecimal, of the weights as in a policy file, and of their names."""
+    digest = hashlib.sha256()
+    for name, tensor in sorted(policy.weights().items()):
+        digest.update(name.encode() + b"\0" + tensor.numpy().tobytes())
+    return digest.hexdigest()
 
 
 def read_initial(initial: Initial, folder: Path) -> Policy:
-    """The policy that the training in ``folder`` begins with.
+    """Read the policy that the training in ``folder`` begins with.
 
     Raises:
-        TltlError: TLT0940, it is not there any more, or has other weights; what is wrong with its file.
+        TltlError: TLT0940, the file no longer exists, or has other weights; the errors of
+            ``read_policy``.
     """
     if not Path(initial.path).is_file():
         raise _gone(f"`{initial.path}` is not there, with which the training in `{folder}` begins", folder)

@@ -1,4 +1,4 @@
-"""What a training measured, a line an iteration: ``metrics.jsonl``, and the same for TensorBoard."""
+"""The metrics of a training, one line per iteration: ``metrics.jsonl``, and the same for TensorBoard."""
 
 from __future__ import annotations
 
@@ -27,32 +27,33 @@ _ADVICE: Final = "see that there is room, and that you may write there"
 OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
 """The means over the last episodes."""
 _WHOLE: Final = ("iteration", "steps", "episodes", "window")
-"""The whole numbers of a line that are read again."""
+"""The integers among the fields of a line that are read back."""
 _READ: Final = {*_WHOLE, "seconds", "losses", *OF_THE_WINDOW}
 _OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
 
 
 class Metrics:
-    """The files of measurements in the folder of a training, to which it adds a line and a step for each report.
+    """Writes the metrics files in the folder of a training.
 
-    After a training that is resumed, what was measured later than the iteration ``after`` and its ``steps`` is gone:
-    it is measured again.
+    When a training is resumed, metrics after iteration ``after``, which ended at ``steps``, are removed,
+    because those iterations run again.
 
     Raises:
-        TltlError: TLT0005, nothing can be written there, of ``add`` too; TLT0001, a file there cannot be read.
+        TltlError: TLT0005, the folder cannot be written to, here or in ``add``; TLT0001, a file in it
+            cannot be read.
     """
 
     def __init__(self, folder: Path, fspa: Fspa, *, after: int = 0, steps: int = 0) -> None:
         self._path, self._fspa = folder / METRICS, fspa
         truncate(self._path, after)
         try:
-            # TensorBoard hides what other files of this folder say of this step and of later ones.
+            # TensorBoard then hides the events at this step and later in other files of this folder.
             self._events = SummaryWriter(str(folder), purge_step=steps + 1)
         except OSError as error:
             raise _unwritable(folder, error) from None
 
     def add(self, report: Report) -> None:
-        """Write what an iteration measured."""
+        """Write the metrics of an iteration."""
         measured = measurements(report, self._fspa)
         try:
             _append(self._path, _line(measured).encode())
@@ -68,7 +69,7 @@ class Metrics:
 
 
 def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
-    """A line of ``metrics.jsonl``, as ``docs/training.md`` describes it."""
+    """Return a line of ``metrics.jsonl``; ``docs/training.md`` describes it."""
     iteration, window = report.iteration, report.window
     return {
         "iteration": iteration.number,
@@ -93,18 +94,18 @@ def _ended(window: Window, state: State) -> dict[str, Any]:
 
 
 def means(window: Window) -> dict[str, float]:
-    """How the episodes of a window went."""
+    """Return the means over a window, by name."""
     values = (window.pass_rate, window.progress, window.reward, window.steps)
     return {name: round(value, 6) for name, value in zip(OF_THE_WINDOW, values, strict=True)}
 
 
 def read_metrics(path: Path) -> list[dict[str, Any]]:
-    """The lines of ``metrics.jsonl`` in order, none where there is no file.
+    """Read the lines of ``metrics.jsonl`` in order; none if there is no file.
 
-    One is left out that was cut short, or lacks what is read again.
+    Lines that were cut short, or lack a field that is read, are left out.
 
     Raises:
-        TltlError: TLT0001, the system does not give us the file; TLT0004, it is larger than
+        TltlError: TLT0001, the system refuses to read the file; TLT0004, it is larger than
             :data:`tltlc.io.limits.MEASUREMENTS` allows.
     """
     try:
@@ -122,7 +123,7 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
 
 
 def truncate(path: Path, iteration: int) -> None:
-    """Leave of ``metrics.jsonl`` the lines up to an iteration; raises TltlError, TLT0001 and TLT0005."""
+    """Keep the lines of ``metrics.jsonl`` up to an iteration.  Raises TltlError, TLT0001, TLT0004 or TLT0005."""
     kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
     write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
 
@@ -132,7 +133,7 @@ def _line(measured: Mapping[str, Any]) -> str:
 
 
 def _measured(line: str) -> dict[str, Any] | None:
-    """What a line says; None where it lacks what is read again."""
+    """Parse a line; return None if it is invalid or lacks a field that is read."""
     try:
         measured = loads(line, TRACE_LINE)
     except (ValueError, RecursionError):
@@ -140,7 +141,7 @@ def _measured(line: str) -> dict[str, Any] | None:
     if not isinstance(measured, dict) or not measured.keys() >= _READ:
         return None
     whole = all(type(measured[name]) is int for name in _WHOLE)
-    # Before the first episode has ended, there are no means.
+    # There are no means before the first episode has ended.
     means = [measured[name] for name in OF_THE_WINDOW if measured["window"] or measured[name] is not None]
     fits = whole and all(map(_is_number, [measured["seconds"], *means])) and isinstance(measured["losses"], dict)
     return measured if fits else None
@@ -151,23 +152,23 @@ def _is_number(value: object) -> bool:
 
 
 def _append(path: Path, line: bytes) -> None:
-    """Add a line with a single write: a process that is killed leaves all of it or nothing."""
+    """Append a line with a single write, so that a killed process leaves the whole line or nothing."""
     descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
     try:
         if os.write(descriptor, line) < len(line):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        # No checkpoint may outlast what was measured before it.
+        # A checkpoint must not survive a crash that loses the metrics written before it.
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
 
 
 def _scalars(measured: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """The measurements as TensorBoard takes them, by tag."""
+    """Yield the metrics as tags and values for TensorBoard."""
     yield from ((f"train/{name}", measured[name]) for name in OF_THE_WINDOW if measured["window"])
     yield from ((f"time/{name}", measured[name]) for name in _OF_THE_ITERATION)
-    yield from ((f"state/{each['state']}", each["share"]) for each in measured["states"])
-    yield from ((f"violated/{each['state']}", each["violated"]) for each in measured["states"])
+    yield from ((f"state/{state['state']}", state["share"]) for state in measured["states"])
+    yield from ((f"violated/{state['state']}", state["violated"]) for state in measured["states"])
     yield from ((f"loss/{name}", value) for name, value in measured["losses"].items())
 
 

@@ -1,4 +1,4 @@
-"""The record of a training that ended: what it depended on and how it went, beside the policy and inside of it."""
+"""The record of a training that ended: its inputs and results, in ``record.json`` and in the policy file."""
 
 from __future__ import annotations
 
@@ -31,29 +31,33 @@ _POINT: Final = ("iteration", "steps", "seconds", "pass_rate", "progress", "rewa
 
 
 def write_record(run: Run, last: Report) -> dict[str, Any]:
-    """Write ``record.json`` and ``curve.png`` for a training whose ``last`` report this is, and the record into its
-    policy; the record.
+    """Write ``record.json`` and ``curve.png``, and the record into the policy file; return the record.
 
-    What was measured after the last report, by a process that was killed then, is gone from the measurements.
+    ``last`` is the last report of the training.  The metrics have no lines after it, because the
+    training has removed those that a killed process left.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; and what is wrong with the policy's.
+        TltlError: TLT0005, a file cannot be written; the errors of ``read_policy``.
     """
     policy = read_policy(run.folder / POLICY)
-    made = training_record(run, policy.card, last, read_metrics(run.folder / METRICS))
-    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.weights()), WRITABLE)
-    text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
-    title = f"{run.fspa.name} on {made['level']} {run.variant}, seed {run.seed}"
+    document = training_record(run, policy.card, last, read_metrics(run.folder / METRICS))
+    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=document), policy.weights()), WRITABLE)
+    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    title = f"{run.fspa.name} on {document['level']} {run.variant}, seed {run.seed}"
     write_files(
-        run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, WRITABLE, durable=True, over_inputs=True
+        run.folder,
+        {CURVE: draw_curve(title, document["curve"]), RECORD: text},
+        WRITABLE,
+        durable=True,
+        over_inputs=True,
     )
-    return made
+    return document
 
 
 def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The record, JSON data as ``docs/training.md`` describes it, of a training that made a policy with this ``card``.
+    """Return the record of a training as JSON data; ``docs/training.md`` describes it.
 
-    ``measured`` are the lines of ``metrics.jsonl``.
+    ``card`` is the card of its policy.  ``measured`` are the lines of ``metrics.jsonl``.
     """
     return {
         "format": "tltl-training",
@@ -87,66 +91,67 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
 
 
 def _initial(run: Run) -> dict[str, Any] | None:
-    """What is told of the policy that the training began with: where it lay is of this machine alone."""
+    """Return the policy that the training began with, without its path, which is only valid on this machine."""
     return None if run.initial is None else {k: v for k, v in to_json(run.initial).items() if k != "path"}
 
 
 def record_so_far(folder: Path) -> dict[str, Any]:
-    """What there is yet of the record of a training that goes on, or was broken off, in a folder.
+    """Return the part of the record that exists for an unfinished training in a folder.
 
     Raises:
         TltlError: its files cannot be read.
     """
     run = read_run(folder)
-    made: dict[str, Any] = {"seed": run.seed, "initial": _initial(run), "end": None}
+    document: dict[str, Any] = {"seed": run.seed, "initial": _initial(run), "end": None}
     if measured := read_metrics(folder / METRICS):
         last = measured[-1]
-        made |= {name: last[name] for name in ("steps", "seconds")}
+        document |= {name: last[name] for name in ("steps", "seconds")}
         if last["window"]:
-            made["window"] = {"episodes": last["window"], **{name: last[name] for name in OF_THE_WINDOW}}
+            document["window"] = {"episodes": last["window"], **{name: last[name] for name in OF_THE_WINDOW}}
     if checkpoint := read_checkpoint(folder / CHECKPOINT):
         best, searched = checkpoint.best, checkpoint.searched
-        made["best"] = _best(best.score[0], best.steps, confirmed=checkpoint.met) if best else None
-        made["search"] = None if searched is None else to_json(searched)
-    return made
+        document["best"] = _best(best.score[0], best.steps, confirmed=checkpoint.met) if best else None
+        document["search"] = None if searched is None else to_json(searched)
+    return document
 
 
 def _best(pass_rate: float | None, steps: int | None, *, confirmed: bool) -> dict[str, Any] | None:
-    """What is told of the policy that is kept; None where there is none."""
+    """Return the entry for the best policy; None if there is none."""
     return None if pass_rate is None else {"pass_rate": round(pass_rate, 6), "steps": steps, "confirmed": confirmed}
 
 
 def ended_as(run: Run) -> dict[str, Any] | None:
-    """The record of a training that has ended and would end at once if it went on, None of any other.
+    """Return the record of a training that has ended and would end at once if resumed; otherwise None.
 
-    Its ``end`` is the limit of ``run`` that it has reached, whichever it ended by.
+    Unless the spec was met, ``end`` is the limit of ``run`` that the training has reached, whichever
+    limit it ended by.
     """
-    made = _recorded(run.folder)
-    if made is None or made["end"] == "met":
-        return made
-    limit = run.settings.stop.reached(made["steps"], made["seconds"])
-    return {**made, "end": limit} if limit else None
+    document = _recorded(run.folder)
+    if document is None or document["end"] == "met":
+        return document
+    limit = run.settings.stop.reached(document["steps"], document["seconds"])
+    return {**document, "end": limit} if limit else None
 
 
 def recorded_end(folder: Path) -> StopReason | None:
-    """What ended the training in a folder, by its record; None where this does not say so."""
-    made = _recorded(folder)
-    return None if made is None else made["end"]
+    """Return why the training in a folder ended; None if it has no valid record."""
+    document = _recorded(folder)
+    return None if document is None else document["end"]
 
 
 def _recorded(folder: Path) -> dict[str, Any] | None:
-    """The record in a folder; None where there is none, or it is damaged: it is then written anew."""
+    """Return the record in a folder; None if it is missing or damaged, so that it is written again."""
     try:
-        made = load(folder / RECORD, REPORT)
-        from_json(_Ended, {name: made[name] for name in ("end", "steps", "seconds")}, RECORD)
+        document = load(folder / RECORD, REPORT)
+        from_json(_Ended, {name: document[name] for name in ("end", "steps", "seconds")}, RECORD)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    return {**made}
+    return {**document}
 
 
 @record
 class _Ended:
-    """What is read again of the record of a training that has ended."""
+    """The fields that are read back from the record of a training that has ended."""
 
     end: StopReason
     steps: int
@@ -154,11 +159,11 @@ class _Ended:
 
 
 def _cloned(measured: Sequence[Mapping[str, Any]]) -> int:
-    """In how many of the first steps an agent that imitates was cloned."""
+    """Return the number of steps, from the first one, in which the actor was cloned."""
     return max((line["steps"] for line in measured if "cloning" in line["losses"]), default=0)
 
 
 def _thinned(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """At most ``_MOST_POINTS`` of the lines at equal distances, the last among them."""
+    """Return at most ``_MOST_POINTS`` lines at equal distances, including the last one."""
     stride = -(-len(lines) // _MOST_POINTS) or 1
     return list(lines[::-1][::stride])[::-1]

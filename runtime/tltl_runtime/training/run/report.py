@@ -1,4 +1,4 @@
-"""What a training says of itself after each iteration."""
+"""The report of a training after each iteration."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ StopReason = Literal["met", "steps", "minutes"]
 
 @record
 class Window:
-    """The last episodes, ``count`` of them, ``successes`` among these.
+    """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
-    Means: ``progress`` in [0, 1], ``reward`` with the undiscounted terminal penalty whatever the training counts, and
-    length in ``steps``; all are 0 where there is no episode.  ``states`` has the share of episodes, in [0, 1], by the
-    number of the automaton's state in which they ended, or were before they violated the spec; ``violated`` has that of
-    the latter alone.  States where none ended are left out.
+    The means are 0 if there is no episode: ``progress`` in [0, 1]; ``reward``, always with the
+    undiscounted terminal penalty; and the length in ``steps``.  ``states`` maps the automaton state at
+    the end of an episode, or before its violation, to the share of episodes in [0, 1].  ``violated``
+    has the shares of violations alone.  States in which no episode ended are left out.
     """
 
     count: int
@@ -33,14 +33,15 @@ class Window:
 
     @property
     def pass_rate(self) -> float:
-        """The share of successes, in [0, 1]; 0 where there is no episode."""
+        """The share of successes, in [0, 1]; 0 if there is no episode."""
         return self.successes / self.count if self.count else 0.0
 
 
 @record
 class Confirmation:
-    """What a policy that had met the spec throughout the windows did then: it met it in ``met`` fresh episodes, and
-    failed in the next one unless these are all ``of`` them.
+    """The result of a confirmation: ``met`` of at most ``of`` fresh episodes met the spec.
+
+    If ``met`` is less than ``of``, the policy failed in the next episode.
     """
 
     met: int
@@ -48,22 +49,28 @@ class Confirmation:
 
     @property
     def passed(self) -> bool:
-        """Whether there was no failure."""
+        """Whether all episodes met the spec."""
         return self.met == self.of
 
 
 @record
 class Report:
-    """An iteration, and where the training stands after it.
+    """An iteration, and the state of the training after it.
 
-    ``steps`` are all decisions so far, of all environments and processes; ``seconds`` the training time so far, over
-    resumptions.  ``unbroken`` is how many of the last episodes met the spec in a row, counted anew after a
-    ``confirmation`` that failed; None where none was due.  ``best_pass_rate`` is that of the policy that is kept, None
-    as long as there is none, and ``best_steps`` the steps after which it had its weights.  ``stop`` says why the
-    training ends here, None where it goes on; ``checkpointed`` whether a checkpoint of this iteration was written.
-    ``searched`` is what the search before it found, None where there was none, its decisions not among the ``steps``;
-    nor are those that were ``replayed`` to begin where others had been.  ``imitated`` tells of the demonstrations, None
-    where nothing is imitated.
+    - ``steps`` counts all decisions so far, of all environments and processes.
+    - ``seconds`` is the training time so far, across resumptions.
+    - ``unbroken`` is the number of last episodes in a row that met the spec; a failed confirmation
+      resets it.
+    - ``confirmation`` is the result of the confirmation in this iteration, None if none was due.
+    - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the steps after which
+      it had its weights; None if there is no best policy yet.
+    - ``stop`` says why the training ends here; None if it goes on.
+    - ``checkpointed`` says whether a checkpoint is written for this iteration.
+    - ``searched`` is the result of the searches, None if there was none.
+    - ``replayed`` counts the decisions that were replayed to reach the starts of episodes.
+    - ``imitated`` describes the demonstrations, None without imitation.
+
+    ``steps`` does not include the decisions of searches or the ``replayed`` ones.
     """
 
     iteration: Iteration

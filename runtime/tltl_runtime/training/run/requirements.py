@@ -1,4 +1,4 @@
-"""What settings name that must be there: classes, and a device."""
+"""Resolve the classes and the device that the settings name."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def class_of(setting: str, name: str, base: type) -> Any:
-    """The class of a name, a subclass of ``base``; TLT0862 where it is none."""
+    """Return the class with a name.  Raises TltlError, TLT0862, unless it is a subclass of ``base``."""
     try:
-        found = resolve_callable(name)
-        why = "" if isinstance(found, type) and issubclass(found, base) else f"it is no subclass of {base.__name__}"
+        cls = resolve_callable(name)
+        reason = "" if isinstance(cls, type) and issubclass(cls, base) else f"it is no subclass of {base.__name__}"
     except (ImportError, AttributeError, ValueError) as error:
-        why = str(error)
-    if why:
-        title = f"wrong class for `classes.{setting}`, `{name}`: {why}"
+        reason = str(error)
+    if reason:
+        title = f"wrong class for `classes.{setting}`, `{name}`: {reason}"
         help_ = f'expected "package.module:Class", a subclass of {base.__module__}:{base.__qualname__}'
         raise TltlError([Diagnostic("TLT0862", title, help=help_)])
-    return found
+    return cls
 
 
 def device_of(device: str) -> str:
-    """The device of this process: where torchrun started several, "cuda" is a GPU of its own for each.
+    """Return the device of this process.  With several processes, "cuda" gives each its own GPU.
 
-    Raises TltlError, TLT0862, where there is none.
+    Raises TltlError, TLT0862, if the device does not exist.
     """
     if not device.startswith("cuda"):
         return device

@@ -1,6 +1,6 @@
-"""A training as it was asked for, and the file in its folder that keeps this: ``run.json``.
+"""The specification of a training, and the file in its folder that stores it: ``run.json``.
 
-The names of the folder's other files stand here, too.
+The names of the other files in the folder are also defined here.
 """
 
 from __future__ import annotations
@@ -43,21 +43,22 @@ DEMONSTRATIONS: Final = "demonstrations"
 MAY_CHANGE: Final = frozenset(
     {"device", "threads", "checkpoint_s", "rollout.workers", "rollout.pool", "stop.steps", "stop.minutes"}
 )
-"""Settings, as :func:`leaves` names them, that a training may be resumed with other values of."""
+"""The settings, as named by :func:`leaves`, that may change when a training is resumed."""
 WRITABLE: Final = "see that there is room, and that you may write there; a new training may go elsewhere, with --out"
-"""The advice where the folder of a training, be it new or resumed, cannot be written to."""
+"""The help if the folder of a new or resumed training cannot be written to."""
 
 _FORMAT: Final = "tltl-run"
 _VERSION: Final = 1
 _MOST_NAMED: Final = 8
-"""Of the trainings in a folder, as many are named."""
+"""A message names at most this many trainings in a folder."""
 
 
 @record
 class Initial:
-    """A policy whose weights a training begins with: the ``path`` of its file, and what that was when it was read.
+    """A policy whose weights a training begins with: the ``path`` of its file, and its content when it was read.
 
-    ``weights`` is their SHA-256, in hexadecimal; ``level``, ``variant`` and ``level_hash`` are those of its card.
+    ``weights`` is the SHA-256, in hexadecimal, of its weights.  ``level``, ``variant`` and ``level_hash``
+    are from its card.
     """
 
     path: str
@@ -69,12 +70,12 @@ class Initial:
 
 @record
 class Run:
-    """What is trained, and the folder that keeps it.
+    """What to train, and the folder that stores it.
 
-    ``params`` are values of the params of ``fspa`` in SI units; ``level`` is what
-    :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``demonstrations`` is the folder of those that are
-    imitated, None for the training's own, where the expert's are recorded.  ``initial`` is the policy whose weights the
-    actor begins with, None where they are drawn.
+    ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is an argument of
+    :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``demonstrations`` is the folder of the
+    demonstrations to imitate; None is a folder of the training itself, into which the expert's are
+    recorded.  ``initial`` is the policy whose weights the actor begins with, None for random weights.
     """
 
     folder: Path
@@ -99,13 +100,13 @@ _PLAIN: Final[Mapping[str, Any]] = {
     "demonstrations": str | None,
     "initial": Initial | None,
 }
-"""The fields that stand in the file as they are, and their types."""
+"""The fields that are stored in the file as they are, and their types."""
 
 
 def write_run(run: Run) -> None:
-    """Write ``run.json`` into the folder, which is made where it is missing; raises TltlError, TLT0005."""
+    """Write ``run.json`` into the folder; create the folder if it is missing.  Raises TltlError, TLT0005."""
     (artefact,) = emit("json", run.fspa).values()
-    # Whoever resumes it may stand in another folder.
+    # Paths are absolute, because the training may be resumed from another folder.
     level = str(level_path(run.level).absolute()) if run.level.endswith(".toml") else run.level
     document = {
         "format": _FORMAT,
@@ -123,10 +124,11 @@ def write_run(run: Run) -> None:
 
 
 def read_run(folder: Path) -> Run:
-    """The training in a folder.
+    """Read the training in a folder.
 
     Raises:
-        TltlError: TLT0001, its file cannot be read; TLT0863, there is none, or its file is no such.
+        TltlError: TLT0001, its file cannot be read; TLT0863, there is no training, or its file is
+            invalid.
     """
     if not (folder / RUN).exists():
         raise _no_training(folder)
@@ -140,15 +142,21 @@ def read_run(folder: Path) -> Run:
 
 
 def read_place(folder: Path) -> tuple[str, str]:
-    """Level and variant of the training in a folder, whatever else has changed since; errors as of :func:`read_run`."""
+    """Return level and variant of the training in a folder, even if other parts cannot be read any more.
+
+    Raises the errors of :func:`read_run`.
+    """
     values = _values(*_document(folder), ("level", "variant"))
     return values["level"], values["variant"]
 
 
 def read_level_hash(folder: Path) -> str | None:
-    """The hash of the level that the training in a folder was begun on; errors as of :func:`read_run`."""
-    found = _document(folder)[1].get("level_hash")
-    return found if isinstance(found, str) else None
+    """Return the hash of the level that the training in a folder began on, or None.
+
+    Raises the errors of :func:`read_run`.
+    """
+    digest = _document(folder)[1].get("level_hash")
+    return digest if isinstance(digest, str) else None
 
 
 def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
@@ -165,12 +173,12 @@ def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
 
 
 def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
-    """TLT0863 where there are other settings now than in the version that wrote the document."""
-    there, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
+    """Raise TLT0863 if the document was written by a version with other settings."""
+    stored, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
     help_ = f"begin the training anew; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
-    if there and (later := sorted(known - there)):
+    if stored and (later := sorted(known - stored)):
         raise _unfit(source, f"it is of an older version of tltlc, which had no setting `{later[0]}`", help_)
-    if gone := sorted(there - known):
+    if gone := sorted(stored - known):
         raise _unfit(source, f"it is of another version of tltlc, which had a setting `{gone[0]}`", help_)
 
 
@@ -184,11 +192,14 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 
 
 def identity(run: Run) -> dict[str, str]:
-    """What a checkpoint depends on, in parts that messages tell apart: the hashes of ``level`` and ``spec``, the
-    ``seed``, and a SHA-256, in hexadecimal, of the senses and of all ``settings`` but for :data:`MAY_CHANGE`; by
-    imitation one of the recordings of ``demonstrations``, too, and that of the weights of a ``policy`` to begin with.
+    """Return everything that a checkpoint depends on, in parts that messages distinguish.
+
+    ``level`` and ``spec`` are hashes, ``seed`` is the seed.  ``settings`` is a SHA-256, in hexadecimal, of
+    the observation version, the params, the sensors and all settings except :data:`MAY_CHANGE`.  With
+    imitation, ``demonstrations`` is a hash of the recordings.  With an initial policy, ``policy`` is the
+    hash of its weights.
     """
-    counts = {
+    relevant = {
         "observation": OBSERVATION,
         "params": dict(run.params),
         "sensors": to_json(run.sensors),
@@ -198,42 +209,42 @@ def identity(run: Run) -> dict[str, str]:
         "level": level_hash(load_level(run.level, run.variant)),
         "spec": spec_hash(run.fspa),
         "seed": str(run.seed),
-        "settings": hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest(),
+        "settings": hashlib.sha256(json.dumps(relevant, sort_keys=True).encode()).hexdigest(),
         **({"demonstrations": _content_hash(demonstrations_of(run))} if run.settings.imitates else {}),
-        # As it was recorded: once there is a checkpoint, its file need not be there any more.
+        # The recorded hash: once there is a checkpoint, the policy's file is no longer needed.
         **({"policy": run.initial.weights} if run.initial else {}),
     }
 
 
 def demonstrations_of(run: Run) -> Path:
-    """The folder of the demonstrations that a training imitates."""
+    """Return the folder of the demonstrations that a training imitates."""
     return run.folder / DEMONSTRATIONS if run.demonstrations is None else Path(run.demonstrations)
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Settings in JSON one by one: the name, with a dot between table and key, and the value."""
+    """Yield the name and value of each setting in JSON data; a dot separates table and key in the name."""
     if not isinstance(settings, dict):
         yield path, settings
         return
-    for name, each in settings.items():
-        yield from leaves(each, f"{path}.{name}".lstrip("."))
+    for name, value in settings.items():
+        yield from leaves(value, f"{path}.{name}".lstrip("."))
 
 
 def resume_command(folder: Path) -> str:
-    """What goes on with the training in a folder, to be pasted."""
+    """Return the shell command that resumes the training in a folder."""
     return f"tltlc train --resume {quote(str(folder))}"
 
 
 def named_trainings(folder: Path) -> str:
-    """The trainings that a folder holds, as advice; empty where there is none."""
-    found = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
-    return f"name one of them: {listed([f'`{each}`' for each in found], _MOST_NAMED)}" if found else ""
+    """Return a help text that names the trainings in a folder; empty if there are none."""
+    trainings = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
+    return f"name one of them: {listed([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
 
 
 def _content_hash(folder: Path) -> str:
-    """SHA-256, in hexadecimal, of the recordings in a folder and of their names."""
-    found = {path.name: read_bytes(path, str(path), MAX_BYTES) for path in recordings(folder)}
-    hashes = {name: hashlib.sha256(data).hexdigest() for name, data in found.items()}
+    """Return the SHA-256, in hexadecimal, of the recordings in a folder and of their names."""
+    contents = {path.name: read_bytes(path, str(path), MAX_BYTES) for path in recordings(folder)}
+    hashes = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
     return hashlib.sha256(json.dumps(hashes, sort_keys=True).encode()).hexdigest()
 
 

@@ -1,4 +1,4 @@
-"""How a training is run: the settings of ``settings.toml`` beside this module, unless a file says otherwise."""
+"""The settings of a training.  The defaults are in ``settings.toml`` beside this module."""
 
 from __future__ import annotations
 
@@ -29,11 +29,12 @@ _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*
 
 @record
 class Ppo:
-    """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are by default the paper's (section VI).
+    """The settings of rsl-rl's PPO.
 
-    As the pass rate rises from a half to 1, the actor's logits are multiplied by up to ``sharpening``.
-    A training that begins with a policy has a critic that knows nothing: in its first ``warm_up`` updates the critic
-    learns alone, lest the policy follow what it says then.
+    The default learning rate, entropy, clip, lambda and gamma are the paper's (section VI).  As the pass
+    rate rises from one half to 1, the inverse temperature rises from 1 to ``sharpening``.  A training that
+    begins with a policy has an untrained critic, so only the critic learns in the first ``warm_up``
+    updates.  Otherwise the policy would follow the critic's initial errors.
     """
 
     learning_rate: float
@@ -52,8 +53,10 @@ class Ppo:
 
 @record
 class Rollout:
-    """``envs`` environments take ``steps`` decisions between updates, stepped by ``workers`` processes (0: as many as
-    there are cores), of this machine or of a Ray cluster.
+    """The settings of rollouts.
+
+    Each of ``envs`` environments takes ``steps`` decisions between updates.  ``workers`` processes step
+    them (0: one per core), on this machine or on a Ray cluster.
     """
 
     envs: int
@@ -64,12 +67,14 @@ class Rollout:
 
 @record
 class Imitation:
-    """The imitation baseline (paper, section VI): behavioural cloning for a share ``cloning``, then GAIL.
+    """The settings of the imitation baseline (paper, section VI): behavioural cloning, then GAIL.
 
-    The share is of the limit that comes first, of steps or of minutes.  ``demonstrations`` of the expert are recorded
-    where none are named.  The discriminator has two layers of width ``encoding`` and the learning rate
-    ``discriminator_rate``; its reward counts ``strength`` times, and an episode ends with plus or minus ``terminal``.
-    See :mod:`tltl_runtime.training.imitation.gail`.
+    ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or of
+    minutes.  ``demonstrations`` episodes of the expert are recorded if no demonstrations are given.  The
+    discriminator has two layers of width ``encoding``, the learning rate ``discriminator_rate`` and the
+    weight ``gradient_penalty`` of its gradient penalty.  Its reward is multiplied by ``strength``.  The
+    terminal reward of an episode is plus or minus ``terminal``.  See
+    :mod:`tltl_runtime.training.imitation.gail`.
     """
 
     demonstrations: int
@@ -83,10 +88,10 @@ class Imitation:
 
 @record
 class Reward:
-    """How steps are rewarded: the fields of :class:`~tltlc.monitor.reward.RewardOptions`, and what changes meanwhile.
+    """The settings of rewards: those of :class:`~tltlc.monitor.reward.RewardOptions`, and a schedule.
 
-    With the ``penalty_schedule`` ``rising`` a ``discounted`` terminal penalty of mode ``progress`` becomes the
-    undiscounted one as the pass rate rises from a half to 1.
+    With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
+    changes to the undiscounted one as the pass rate rises from one half to 1.
     """
 
     mode: Mode
@@ -97,20 +102,22 @@ class Reward:
 
     @property
     def options(self) -> RewardOptions:
-        """How the environments reward."""
+        """The reward options of the environments."""
         return RewardOptions(self.mode, self.termination, self.terminal_penalty, self.gamma)
 
     @property
     def rises(self) -> bool:
-        """Whether what a violation costs changes in the training."""
+        """Whether the violation penalty changes during the training."""
         return self.penalty_schedule == "rising" and (self.mode, self.terminal_penalty) == ("progress", "discounted")
 
 
 @record
 class Stop:
-    """Training ends when the spec was met throughout ``windows`` successive windows of ``episodes`` each, and then by
-    the policy in as many fresh episodes as ``confirmation`` says; or after ``steps`` decisions of all environments, or
-    after ``minutes`` of training (0: no such limit).
+    """The settings of when a training ends.
+
+    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the spec, and
+    then the policy meets it in ``confirmation`` fresh episodes.  It also ends after ``steps`` decisions of
+    all environments, or after ``minutes`` of training (0: no such limit).
     """
 
     windows: int
@@ -120,11 +127,11 @@ class Stop:
     minutes: float
 
     def is_late(self, seconds: float) -> bool:
-        """Whether a training of so many seconds has reached the limit of minutes."""
+        """Whether a training has reached the limit of minutes after these seconds."""
         return 0 < self.minutes * 60 <= seconds
 
     def reached(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
-        """The limit that a training of so many steps and seconds has reached, None: neither."""
+        """Return the limit that a training has reached after these steps and seconds, or None."""
         if steps >= self.steps:
             return "steps"
         return "minutes" if self.is_late(seconds) else None
@@ -132,7 +139,7 @@ class Stop:
 
 @record
 class Classes:
-    """Names of classes, as :func:`rsl_rl.utils.resolve_callable` takes them."""
+    """Names of classes, in the form of :func:`rsl_rl.utils.resolve_callable`."""
 
     runner: str
     algorithm: str
@@ -140,11 +147,12 @@ class Classes:
 
 @record
 class Settings:
-    """All settings of a training but for its seed.
+    """All settings of a training except its seed.
 
-    By the ``method`` ``imitation`` what ``imitation`` says holds, and neither ``exploration`` nor ``reward`` does.
-    A checkpoint follows the first iteration that ends ``checkpoint_s`` seconds or more after the last one; ``threads``
-    are those of torch while it learns, and ``device`` is where the network is.
+    With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and ``reward``
+    do not.  A checkpoint is written after the first iteration that ends ``checkpoint_s`` seconds or more
+    after the last checkpoint.  ``threads`` is the number of torch's threads in updates, ``device`` the
+    device of the network.
     """
 
     ppo: Ppo
@@ -167,21 +175,21 @@ class Settings:
 
     @property
     def rewards(self) -> RewardOptions:
-        """How the environments reward; by imitation as they do where nothing is said."""
+        """The reward options of the environments; with imitation, the default ones."""
         return RewardOptions() if self.imitates else self.reward.options
 
     @property
     def searches(self) -> bool:
-        """Whether ways are searched before the training, and episodes begin on them."""
+        """Whether the training searches for ways first, and episodes begin on them."""
         return self.exploration.ways > 0 and not self.imitates
 
 
 def read_settings(path: Path | None = None) -> Settings:
-    """The defaults, with what a TOML file says in place of them.
+    """Return the default settings, overridden by a TOML file.
 
     Raises:
-        TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has a key that there is not
-            (TLT0861) or a value that cannot be (TLT0862).
+        TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an unknown
+            key (TLT0861) or an invalid value (TLT0862).
     """
     values = read_values(read_source(DEFAULTS))
     if path is not None:
@@ -205,41 +213,41 @@ def read_settings(path: Path | None = None) -> Settings:
 
 
 def default_text() -> str:
-    """The TOML text of the defaults, with comments: a file to begin one's own with."""
+    """Return the TOML text of the defaults, with comments: a template for settings files."""
     return DEFAULTS.read_text(encoding="utf-8")
 
 
 def settings_text(settings: Settings) -> str:
-    """These settings as TOML text: that of the defaults, with other values where they differ."""
+    """Return settings as TOML text: the text of the defaults, with the values that differ replaced."""
     table, lines = "", []
     defaults = read_settings()
     for line in default_text().splitlines():
         if heading := _HEADING.match(line):
             table = heading[1]
-        if found := _SETTING.match(line):
-            value, default = (getattr(getattr(each, table, each), found["key"]) for each in (settings, defaults))
+        if match := _SETTING.match(line):
+            value, default = (getattr(getattr(source, table, source), match["key"]) for source in (settings, defaults))
             if value != default:
-                line = f"{found['key']} = {_toml(value)}"
-                if comment := found["comment"]:
-                    line = f"{line:<{found.start('comment') - 1}} {comment}"
+                line = f"{match['key']} = {_toml(value)}"
+                if comment := match["comment"]:
+                    line = f"{line:<{match.start('comment') - 1}} {comment}"
         lines.append(line)
     return "\n".join(lines) + "\n"
 
 
 def _toml(value: object) -> str:
-    """A value of a setting as TOML; texts have no signs that TOML would read otherwise than JSON."""
-    # Beyond 16 bits JSON's escapes are pairs, which TOML has not.
+    """Return the value of a setting as TOML.  The texts have no characters that TOML and JSON read differently."""
+    # `ensure_ascii` off: JSON escapes characters beyond 16 bits as surrogate pairs, which TOML does not allow.
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
 def algorithm_name(settings: Settings) -> str:
-    """The name of the class that learns; by imitation the settings' ``PPO`` stands for what makes GAIL of it."""
+    """Return the name of the algorithm's class.  With imitation, ``PPO`` in the settings means GAIL on top of it."""
     name = settings.classes.algorithm
     return _GAIL if settings.imitates and name == _PPO else name
 
 
 def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
-    """The configuration of rsl-rl's runner for observations of these shapes and actions of these branches."""
+    """Return the configuration of rsl-rl's runner, for these shapes of observations and branches of actions."""
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)
     gail = {
@@ -270,7 +278,7 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
             "entropy_coef": ppo.entropy,
             "learning_rate": ppo.learning_rate,
             "max_grad_norm": ppo.max_gradient,
-            # The paper's learning rate stays as it is: `adaptive` would choose another.
+            # A constant learning rate, as in the paper.  rsl-rl's `adaptive` would change it.
             "schedule": "fixed",
             **({"gail": gail} if settings.imitates else {}),
         },

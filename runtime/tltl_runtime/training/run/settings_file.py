@@ -1,4 +1,4 @@
-"""The TOML of settings: which keys there are, and which values each can have."""
+"""Read the TOML of settings: the known keys, and the valid values of each."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from tltlc.monitor.reward import Mode, TerminalPenalty, Termination
 
 @record
 class Number:
-    """A finite number in [low, high]; ``open``: above ``low``."""
+    """A finite number in [low, high], or in (low, high] if ``open``."""
 
     low: float
     high: float
     open: bool = False
 
     def read(self, value: object) -> float | None:
-        """The number, or None where it is none of these."""
+        """Return the number, or None if it is invalid."""
         if not isinstance(value, (int, float)) or isinstance(value, bool) or not isfinite(value):
             return None
         return float(value) if self.low <= value <= self.high and not (self.open and value == self.low) else None
@@ -44,7 +44,7 @@ class Whole:
     high: int
 
     def read(self, value: object) -> int | None:
-        """The number, or None where it is none of these."""
+        """Return the number, or None if it is invalid."""
         return value if type(value) is int and self.low <= value <= self.high else None
 
     def __str__(self) -> str:
@@ -53,13 +53,13 @@ class Whole:
 
 @record
 class Wholes:
-    """A list of one to ``most`` whole numbers, each as ``each``."""
+    """A list of one to ``most`` whole numbers, each in the range of ``each``."""
 
     each: Whole
     most: int
 
     def read(self, value: object) -> tuple[int, ...] | None:
-        """The numbers, or None where they are none of these."""
+        """Return the numbers, or None if they are invalid."""
         good = isinstance(value, list) and 1 <= len(value) <= self.most
         return tuple(value) if good and all(self.each.read(item) is not None for item in value) else None  # type: ignore[attr-defined, arg-type]
 
@@ -74,7 +74,7 @@ class OneOf:
     words: tuple[str, ...]
 
     def read(self, value: object) -> str | None:
-        """The text, or None where it is none of these."""
+        """Return the text, or None if it is invalid."""
         return value if isinstance(value, str) and value in self.words else None
 
     def __str__(self) -> str:
@@ -83,13 +83,13 @@ class OneOf:
 
 @record
 class Text:
-    """A text of a ``pattern``, which messages call ``what``."""
+    """A text that matches the regular expression ``pattern``; messages describe it as ``what``."""
 
     pattern: str
     what: str
 
     def read(self, value: object) -> str | None:
-        """The text, or None where it is none of these."""
+        """Return the text, or None if it is invalid."""
         return value if isinstance(value, str) and re.fullmatch(self.pattern, value) else None
 
     def __str__(self) -> str:
@@ -164,59 +164,62 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     },
     "classes": {"runner": _CLASS, "algorithm": _CLASS},
 }
-"""By table, that of the file's first lines being ``""``, and by key."""
+"""The kinds of values, by table and key.  The table ``""`` has the keys before the first table."""
 
 _TOP: Final = "at the top, above the first `[...]`"
 _HELP: Final = 'values are written as in `envs = 32` and `device = "cpu"`'
 
 
 def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:
-    """What a text sets, by table and key; raises TltlError with all that is wrong: TLT0860, TLT0861, TLT0862."""
+    """Return the values of a settings text, by table and key.
+
+    Raises TltlError with all errors: TLT0860, TLT0861, TLT0862.
+    """
     log: list[Diagnostic] = []
-    found: dict[str, dict[str, Any]] = {"": {}}
+    values: dict[str, dict[str, Any]] = {"": {}}
     for name, entry in read_tree(source, "TLT0860", _HELP).items():
         if name in KINDS[""]:
-            _read("", name, entry, found[""], log)
+            _read("", name, entry, values[""], log)
         elif name not in KINDS:
             title = f"there is no setting `{name}`"
-            known = [*KINDS[""], *(each for each in KINDS if each)]
+            known = [*KINDS[""], *(table for table in KINDS if table)]
             log.append(Diagnostic("TLT0861", title, (entry.label,), _home(name) or _like(name, known, log)))
         elif not isinstance(entry.value, dict):
             log.append(_wrong(entry, name, f"a table: a line `[{name}]` with its keys below"))
         else:
-            found[name] = _table(name, entry.value, log)
+            values[name] = _table(name, entry.value, log)
     if log:
         raise TltlError(log)
-    return found
+    return values
 
 
 def _table(table: str, tree: Tree, log: list[Diagnostic]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, entry in tree.items():
         if key in KINDS[table]:
-            _read(table, key, entry, found, log)
+            _read(table, key, entry, values, log)
         else:
             title = f"there is no setting `{key}` in `[{table}]`"
             log.append(Diagnostic("TLT0861", title, (entry.label,), _home(key) or _like(key, KINDS[table], log)))
-    return found
+    return values
 
 
-def _read(table: str, key: str, entry: Entry, found: dict[str, Any], log: list[Diagnostic]) -> None:
+def _read(table: str, key: str, entry: Entry, values: dict[str, Any], log: list[Diagnostic]) -> None:
     kind = KINDS[table][key]
     value = kind.read(entry.value)
     if value is None:
         log.append(_wrong(entry, key, str(kind)))
     else:
-        found[key] = value
+        values[key] = value
 
 
 def _like(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
-    """The setting that may be meant; nothing where so much is wrong that the search for each would take long."""
+    """Suggest a similar setting, or None.  With too many errors there are no suggestions, because each takes time."""
     return suggestion(key, known) if len(log) < MOST_SUGGESTIONS else None
 
 
 def _home(key: str) -> str | None:
-    """Where a key belongs that stands in the wrong table."""
+    """Return where a key in the wrong table belongs, or None for an unknown key."""
     places = [f"under `[{table}]`" if table else _TOP for table, kinds in KINDS.items() if key in kinds]
     return f"it belongs {' or '.join(places)}" if places else None
 

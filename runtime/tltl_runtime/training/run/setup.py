@@ -1,4 +1,4 @@
-"""What a training begins with: its folder, its environments, and what it knows of how the spec is met."""
+"""Prepare a training: its folder, environments, demonstrations, initial policy and ways."""
 
 from __future__ import annotations
 
@@ -42,18 +42,19 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def begun(run: Run, resume: bool) -> Checkpoint | None:
-    """The checkpoint to go on from, None where the training begins; what is trained is written into its folder.
+    """Return the checkpoint to resume from, None if the training begins; write ``run.json`` if needed.
 
     Raises:
-        TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level is another one now; TLT0867, the
-            folder holds a training and ``resume`` is false; TLT0005, the folder cannot be written to.
+        TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level has changed;
+            TLT0867, the folder holds a training and ``resume`` is false; TLT0005, the folder cannot be
+            written to.
     """
     if resume:
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
         if checkpoint is None and read_level_hash(run.folder) != identity(run)["level"]:
             raise level_changed(run.folder)
         if read_run(run.folder) != run:
-            # Its limits, or the place of its level's file, are others now, and hold when it is resumed the next time.
+            # The limits or the path of the level's file have changed: keep them for the next time it is resumed.
             write_run(run)
         return checkpoint
     if (run.folder / RUN).exists():
@@ -65,7 +66,7 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
 
 
 def environments(run: Run) -> WorkerVectorEnv:
-    """The environments of this process."""
+    """Make the environments of this process."""
     settings, rollout = run.settings, run.settings.rollout
     return make_vec(
         run.level,
@@ -82,27 +83,30 @@ def environments(run: Run) -> WorkerVectorEnv:
 
 
 def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> Demonstrated | None:
-    """What is imitated, None where nothing is; the expert's are recorded first, as far as they are not there.
+    """Return the demonstrations to imitate, None without imitation.
+
+    Missing demonstrations of the expert are recorded first.
 
     Raises:
-        TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; what is wrong with a recording.
+        TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a recording
+            cannot be written.
     """
     if not run.settings.imitates:
         return None
-    found = None
+    decisions = None
     if own.rank == 0:
         folder, make = demonstrations_of(run), _env_of(run)
         if run.demonstrations is None:
             record_expert(folder, run.settings.imitation.demonstrations, make, recording)
-        found = read_demonstrations(folder, make)
-    return own.broadcast(found)
+        decisions = read_demonstrations(folder, make)
+    return own.broadcast(decisions)
 
 
 def initial_policy(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Policy | None:
-    """The policy that the training begins with; None where weights are drawn, or a checkpoint has them.
+    """Return the policy that the training begins with; None with random weights or with a checkpoint.
 
     Raises:
-        TltlError: TLT0940, their policy is another one now; what is wrong with its file.
+        TltlError: TLT0940, the policy's file is missing or has changed; the errors of ``read_policy``.
     """
     if run.initial is None or checkpoint is not None:
         return None
@@ -119,10 +123,11 @@ def prepared(
     to_imitate: Demonstrated | None,
     initial: Policy | None,
 ) -> tuple[TrainingEnv, Searched | None]:
-    """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found.
+    """Return the environment for rsl-rl, at the start of new episodes, and the result of a search.
 
-    This is None where there was no need of one: ways are searched once, unless a limit broke the search off.  The
-    policy that the training begins with, ``initial``, plays first there.
+    Process and iteration determine the seeds, so no episode is played twice.  There is no search, and
+    the result is None, if there was one before, unless a limit broke it off before it found a way.
+    ``initial``, the policy that the training begins with, plays first in the search.
     """
     searched, restarts, lessons = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
@@ -132,12 +137,15 @@ def prepared(
         if run.settings.exploration.imitation:
             lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
-    first = [int(each) for each in seeds]
-    return TrainingEnv(played, first, device, restarts, lessons, to_imitate, dearer(run)), searched
+    reset_seeds = [int(seed) for seed in seeds]
+    return TrainingEnv(played, reset_seeds, device, restarts, lessons, to_imitate, dearer(run)), searched
 
 
 def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
-    """A policy that plays with sampled actions; TLT0854 where it chooses by what is no number."""
+    """Return a player that samples the actions of a policy.
+
+    The player raises TltlError, TLT0854, if the observation or the policy's output is not finite.
+    """
     if policy is None:
         return None
     generator = np.random.default_rng(stream(run, own, Purpose.INITIAL))
@@ -154,22 +162,22 @@ def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
 
 
 def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
-    """Where the episodes of this process begin, with the ways that the checkpoint knows."""
+    """Return the restarts of this process, with the ways of the checkpoint."""
     iteration = checkpoint.iteration if checkpoint else 0
     generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
     restarts = Restarts(run.settings.exploration.parts, generator)
     if checkpoint:
-        # If there are more processes than before, the new ones start with the trajectories of older ones.
-        place = own.rank % len(checkpoint.processes)
+        # If there are more processes than before, the new ones begin with the ways of older ones.
+        rank = own.rank % len(checkpoint.processes)
         try:
-            restarts.load({name: each.numpy() for name, each in checkpoint.processes[place].items()})
+            restarts.load({name: tensor.numpy() for name, tensor in checkpoint.processes[rank].items()})
         except (TypeError, ValueError) as error:
-            raise damaged(run.folder / CHECKPOINT, f"`processes` {place + 1}: {error}") from None
+            raise damaged(run.folder / CHECKPOINT, f"`processes` {rank + 1}: {error}") from None
     return restarts
 
 
 def _env_of(run: Run) -> Callable[[], TltlEnv]:
-    """What makes an environment of the training."""
+    """Return a function that makes an environment of the training."""
     return partial(
         make_env,
         run.level,

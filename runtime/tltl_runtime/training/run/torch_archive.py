@@ -1,7 +1,8 @@
-"""Read what ``torch.save`` wrote, from a file that may be damaged or malicious, without a blow-up in memory.
+"""Load files of ``torch.save`` that may be damaged or malicious, with bounded memory.
 
-``torch.load`` with ``weights_only`` executes nothing of the file, but it unpacks compressed members of any size, makes
-tensors that are larger than their storage, and shares one list in many places. This module refuses all three first.
+``torch.load`` with ``weights_only`` executes nothing in the file.  But it unpacks compressed members of
+any size, makes tensors that are larger than their storage, and shares one list in many places.  This
+module refuses all three.
 """
 
 from __future__ import annotations
@@ -23,14 +24,14 @@ _GLOBALS: Final = {
     *(f"torch {kind}Storage" for kind in ("Float", "Double", "Half", "BFloat16", "Long", "Int", "Short", "Char")),
     *(f"torch {kind}Storage" for kind in ("Byte", "Bool")),
 }
-"""The classes and functions that a file of plain data and tensors names."""
+"""The only classes and functions that a file of plain data and tensors may name."""
 _PICKLE: Final = "data.pkl"
 _MARK, _TUPLE, _ORDERED, _OTHER = "mark", "tuple", "class OrderedDict", "other"
-"""The kinds of values on the stack of a pickle; an empty tuple is another value."""
+"""The kinds of values on the stack of a pickle.  An empty tuple counts as ``_OTHER``."""
 _PROTOCOL: Final = 2
-"""That of the pickles which ``torch.save`` writes."""
+"""The pickle protocol of ``torch.save``."""
 _OPCODES: Final = 20
-"""More operations of a pickle than any value or tensor takes."""
+"""An upper bound of the pickle operations per value or tensor."""
 
 
 class TorchArchiveError(ValueError):
@@ -38,27 +39,27 @@ class TorchArchiveError(ValueError):
 
 
 def read_torch(data: bytes) -> Any:
-    """The plain data and tensors that ``torch.save`` wrote, on the CPU.
+    """Return the plain data and tensors that ``torch.save`` wrote, on the CPU.
 
-    Raises TorchArchiveError where the bytes are something else, are damaged, or pass
+    Raises TorchArchiveError if the bytes are something else, are damaged, or exceed
     :data:`tltlc.io.limits.CHECKPOINT`.
     """
     stored = _checked(data)
     try:
         content = torch.load(BytesIO(stored), map_location="cpu", weights_only=True)
     except Exception as error:
-        # torch raises exceptions of many classes for files that it does not understand.
+        # torch raises exceptions of many classes for invalid files.
         raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
     _check_values(content)
     return content
 
 
 def _checked(data: bytes) -> bytes:
-    """The same archive, its members checked: stored as they are, whole, and with no call but those of plain data.
+    """Return the archive with checked members: uncompressed, undamaged, and with calls for plain data only.
 
-    It is written anew, since a hostile archive can show other members to torch than to Python.
+    The archive is written again, because in a malicious archive torch may see other members than Python.
     """
-    # torch reads a file that begins otherwise as its older format, whatever archive follows.
+    # torch reads a file with another beginning in its older format, even if an archive follows.
     if not data.startswith(b"PK\x03\x04"):
         raise TorchArchiveError("it is damaged, or no checkpoint (BadZipFile)")
     try:
@@ -78,7 +79,7 @@ def _checked(data: bytes) -> bytes:
     except TorchArchiveError:
         raise
     except Exception as error:
-        # Strange archives and pickles end in exceptions of many classes, too.
+        # Invalid archives and pickles also raise exceptions of many classes.
         raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
 
 
@@ -93,7 +94,8 @@ def _archive(contents: Mapping[str, bytes]) -> bytes:
 def _check_calls(pickled: bytes) -> None:
     """Refuse a pickle that is too long, or does more than make plain data and tensors.
 
-    Keys of dicts must be no tuples: tuples that hold each other twice take a time that doubles with each level to hash.
+    Tuples must not be keys of dicts.  If each of several nested tuples contains the next one twice, the
+    time to hash them doubles with each level.
     """
     stack: list[str] = []
     marks: list[int] = []
@@ -120,9 +122,9 @@ def _check_calls(pickled: bytes) -> None:
 
 
 def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
-    """The kinds of the values that an operation takes from the stack, without the mark below them.
+    """Remove the values that an operation takes from the stack; return their kinds, without the mark.
 
-    ``marks`` are where marks were put on the stack; some may be gone.
+    ``marks`` are the positions at which marks were put on the stack.  Some marks may be gone.
     """
     if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
         return []
@@ -141,7 +143,7 @@ def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -
 
 
 def _given(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
-    """The kinds of the values that an operation puts onto the stack."""
+    """Return the kinds of the values that an operation puts onto the stack."""
     if opcode.name == "MARK":
         return [_MARK]
     if opcode.name in ("TUPLE", "TUPLE1", "TUPLE2", "TUPLE3"):
@@ -152,7 +154,7 @@ def _given(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
 
 
 def _check_values(content: object) -> None:
-    """Check the size of what was read as it is walked through: a value in two places counts twice."""
+    """Check the number of values and the depth of loaded data.  A value in two places counts twice."""
     level: list[object] = [content]
     count = 0
     for _ in range(CHECKPOINT.depth or 0):

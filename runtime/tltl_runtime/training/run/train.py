@@ -1,4 +1,4 @@
-"""A training from its beginning, or from its checkpoint, to its end."""
+"""Run a training from its start or a checkpoint to its end."""
 
 from __future__ import annotations
 
@@ -43,30 +43,32 @@ def train(
     searching: Searching = lambda searched: None,
     recording: Callable[[Tried], None] = lambda tried: None,
 ) -> Generator[Report]:
-    """Train in ``run.folder``, with a report after each iteration; the last one says why it ends.
+    """Train in ``run.folder``; yield a report after each iteration.  The last report says why it ends.
 
-    The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the measurements of
-    :class:`~tltl_runtime.training.run.metrics.Metrics`, each before the report that tells of it.  Whatever ends it,
-    Ctrl-C
-    and closing the iterator too, leaves a checkpoint of the last whole iteration; a process that is killed loses what
-    came after the last one.  With ``resume`` the training goes on from there; one that is over gives its last report.
+    The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the files of
+    :class:`~tltl_runtime.training.run.metrics.Metrics`, each before the report of its iteration.  Any end
+    of the training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
+    iteration.  Only a killed process loses the iterations after the last checkpoint.  With ``resume``, the
+    training continues from the checkpoint; a training that is over yields its last report again.
 
-    A search for ways to meet the spec comes first, which tells ``searching`` how far it is: the policy that the
-    training begins with plays, if there is one, and then chance.  By imitation, where no demonstrations are named, the
-    recording of the expert's comes first, which tells ``recording`` of each.
+    First, a search finds ways to meet the spec; ``searching`` is called with its progress.  In the search,
+    the policy that the training begins with plays first, if there is one.  With imitation, the expert's
+    demonstrations are recorded first if none are given; ``recording`` is called with each attempt.
 
-    Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
-    environments of its own, and all report the same but for losses, times and searches, which are each one's own, and
-    for checkpoints, since the first alone writes.
+    Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun, each
+    process trains with its own environments.  The reports of all processes are equal, except for losses,
+    times and searches, which are of the process itself, and for checkpoints, which only the first process
+    writes.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are no numbers; TLT0862,
-            there is no such device or class, or the network is too large for the file of a policy; TLT0864, the
-            checkpoint cannot be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss is no
-            number any more; TLT0867, the folder holds a training and ``resume`` is false; TLT0868, the level has
-            changed meanwhile; TLT0920 and TLT0921, there are no demonstrations to imitate;
-            TLT0922, they are others now; TLT0940, so is the policy to begin with.
-        WorkerError: a process that plays was lost.
+        TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are not
+            numbers; TLT0862, the device or a class does not exist, or the network is too large for a
+            policy file; TLT0864, the checkpoint cannot be resumed from; TLT0865, another process trains
+            in the folder; TLT0866, a loss is not a number; TLT0867, the folder holds a training and
+            ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921, there are no
+            demonstrations to imitate; TLT0922, the demonstrations have changed; TLT0940, the policy to
+            begin with has changed.
+        WorkerError: a worker process of the environments was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
@@ -87,15 +89,15 @@ def train(
             stack.callback(env.lessons.close)
         torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
-        made = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
+        new_runner = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
         if initial:
-            made.begin_with(initial.weights())
-        training = _Training(run, own, made, checkpoint, searched, searching)
+            new_runner.begin_with(initial.weights())
+        training = _Training(run, own, new_runner, checkpoint, searched, searching)
         yield from training.reports()
 
 
 class _Training:
-    """A training of this process as one of ``own``; ``state`` is that after the last whole iteration."""
+    """The training in this process, ``own``; ``_state`` is the state after the last complete iteration."""
 
     def __init__(
         self,
@@ -108,7 +110,7 @@ class _Training:
     ) -> None:
         self._run, self._own, self._runner, self._searching = run, own, runner, searching
         self._stop = run.settings.stop
-        # As the level is now: what its file holds later was not trained on.
+        # The card is made now: later changes of the level's file are not part of this training.
         self._card = card_of(run, runner.env)
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
@@ -155,9 +157,9 @@ class _Training:
                 self._keeping.close(self._state)
 
     def _after(self, iteration: Iteration) -> Report:
-        """Take up what an iteration gave, and write what is due."""
-        told = gathered(self._own, iteration, self._runner)
-        iteration = told.iteration
+        """Update the state with an iteration, and write the metrics and, if due, a checkpoint."""
+        exchange = gathered(self._own, iteration, self._runner)
+        iteration = exchange.iteration
         self._windows.add(iteration.finished)
         before, self._sharpness = self._sharpness, self._weigh()
         self._runner.sharpen(self._sharpness / before)
@@ -174,21 +176,21 @@ class _Training:
             losses=iteration.losses,
             steps=steps,
             seconds=self._seconds(),
-            replayed=self._replayed_before + told.replayed,
-            processes=told.processes,
+            replayed=self._replayed_before + exchange.replayed,
+            processes=exchange.processes,
             algorithm=copied(self._runner.alg.save()),
             window=tuple(self._windows.state()),
             unbroken=self._windows.unbroken,
             best=best,
             met=confirmation is not None and confirmation.passed,
-            # Where it stands still the search is yet to come, of whoever resumes it, too.
+            # At a standstill, keep the old value, so that a resumed training searches again, too.
             standstill=standstill if self._stands_still else self._standstill.state(),
         )
         due = self._keeping is not None and (state.reason(self._stop) is not None or self._keeping.is_due)
         report = self._report(state, iteration, confirmation, checkpointed=due)
         if self._keeping:
             self._keeping.measure(report)
-        # An iteration counts once it is measured: of one that is not, no checkpoint may tell.
+        # An iteration counts once its metrics are written: no checkpoint may be of an iteration without metrics.
         self._state = state
         self._tell_time()
         if self._keeping and due:
@@ -196,27 +198,27 @@ class _Training:
         return report
 
     def _search_again(self) -> None:
-        """Search ways for what the agent fails in; each process does so for its own failures."""
+        """Search for ways from the agent's failures; each process searches from its own."""
         state = self._state
         searched = searched_again(self._run, self._own, self._runner.env, state, self._searching)
         processes = tuple(self._own.gather(own_state(self._runner)))
         seconds = self._seconds()
         if state.searched and searched:
-            # Whether it was broken off is asked of the search before the training alone.
+            # `complete` is only about the search before the training.
             searched = replace(together(state.searched, searched), complete=state.searched.complete)
             standstill = self._standstill.state()
             self._state = replace(state, searched=searched, processes=processes, seconds=seconds, standstill=standstill)
             if self._keeping:
-                # Whoever is killed soon need not search again.
+                # Save now, so that a process that is killed soon need not repeat the search.
                 self._keeping.save(self._state)
 
     def _seconds(self) -> float:
-        """How long the training has gone on: what all decide upon must be the same for all, so one has the clock."""
+        """Return the training time so far, by the first process's clock, so that all processes decide alike."""
         return self._own.broadcast(self._seconds_before + time.perf_counter() - self._began)
 
     def _weigh(self) -> float:
-        """Weigh entropy and failures as the last episodes ask for; how sharp the actor's choices are to be."""
-        # A few successes say little: episodes that have not been played yet count as failures.
+        """Set entropy bonus and penalty weight by the last episodes; return the inverse temperature."""
+        # A few successes say little, so episodes that have not been played yet count as failures.
         met = self._windows.window.successes / (self._stop.windows * self._stop.episodes)
         weights = weighing(self._run.settings.ppo, met)
         if weights.entropy is not None:
@@ -225,32 +227,35 @@ class _Training:
         return weights.sharpness
 
     def _tell_time(self) -> None:
-        """Tell who imitates how long it has trained: it clones for a share of the minutes, where these are limited."""
+        """Give GAIL the training time, because it clones for a share of the limit of minutes."""
         if isinstance(self._runner.alg, Gail):
             self._runner.alg.seconds = self._state.seconds
 
     def _best(self) -> Best | None:
-        """The best policy so far: that which played the end of the last window, where none before did better."""
+        """Return the best policy so far: the one that played the end of the last window, unless an older one is better.
+
+        If all windows met the spec, the last one is taken even if an older one has a better score.
+        """
         best, score = self._state.best, self._windows.score
         if score is None or (best is not None and score < best.score and not self._windows.met):
             return best
-        # The rollout was played with the weights from before the update that followed it.
+        # The state still has the weights that played the rollout, from before the update.
         return Best(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: Best, iteration: int) -> Confirmation:
-        """What the first process finds when it confirms the policy that met the spec throughout the windows."""
-        found = None
+        """Confirm the policy that met the spec in all windows; the first process plays the episodes."""
+        confirmation = None
         if self._own.rank == 0:
             policy = policy_of(self._card, best.actor)
-            found = confirm(self._run, policy, stream(self._run, self._own, Purpose.CONFIRMATION, iteration))
-        found = self._own.broadcast(found)
-        assert found is not None
-        return found
+            confirmation = confirm(self._run, policy, stream(self._run, self._own, Purpose.CONFIRMATION, iteration))
+        confirmation = self._own.broadcast(confirmation)
+        assert confirmation is not None
+        return confirmation
 
     def _report(
         self, state: Checkpoint, iteration: Iteration, confirmation: Confirmation | None, *, checkpointed: bool
     ) -> Report:
-        """The report of an iteration that brought the training into this state."""
+        """Return the report of the iteration that led to ``state``."""
         demonstrated = self._runner.env.demonstrated
         return Report(
             iteration=iteration,
@@ -270,7 +275,7 @@ class _Training:
 
 
 def _unbegun(run: Run, runner: Runner) -> Checkpoint:
-    """The state of a training before its first iteration, but for what its processes have for themselves."""
+    """Return the state of a training before its first iteration, without the own states of its processes."""
     return Checkpoint(
         run=identity(run),
         iteration=0,

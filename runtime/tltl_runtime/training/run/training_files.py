@@ -1,4 +1,4 @@
-"""What a training keeps in its folder while it goes on: checkpoint, policy and measurements."""
+"""The files that a training writes while it runs: checkpoint, policy and metrics."""
 
 from __future__ import annotations
 
@@ -15,24 +15,27 @@ from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRI
 
 
 class Keeping:
-    """The folder of a training as its first process keeps it, which alone writes.
+    """Writes the folder of a training; only the first process does so.
 
-    ``card`` is that of its policies, ``saved`` the checkpoint that is there, None where there is none.
+    ``card`` is the card of its policies.  ``saved`` is the checkpoint in the folder, or None.
 
-    Raises:
-        TltlError: TLT0005, a file cannot be written; TLT0001, the measurements cannot be read; TLT0866, a weight is too
-            large for a policy.
+    All methods may raise:
+        TltlError: TLT0005, a file cannot be written; TLT0001, the metrics cannot be read; TLT0866, a
+            weight is too large for a policy.
     """
 
     def __init__(self, run: Run, card: Card, saved: Checkpoint | None) -> None:
         self._run, self._card = run, card
         self._saved, self._saved_at = saved, time.perf_counter()
         self._written: Best | None = None
-        """The best policy of which there is a file."""
+        """The best policy in the policy file."""
         self._metrics: Metrics | None = None
 
     def take_up(self, state: Checkpoint) -> None:
-        """Bring the folder to where the training is: whoever is killed soon need not search again."""
+        """Bring the folder to the state of the training.
+
+        The state is saved at once, so that a process that is killed soon need not repeat the search.
+        """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)
         if state.iteration and (state.best or self._is_over(state)):
@@ -41,33 +44,33 @@ class Keeping:
         self._metrics = Metrics(self._run.folder, self._run.fspa, after=state.iteration, steps=state.steps)
 
     def measure(self, report: Report) -> None:
-        """Write what an iteration measured."""
+        """Write the metrics of an iteration."""
         assert self._metrics is not None
         self._metrics.add(report)
 
     @property
     def is_due(self) -> bool:
-        """Whether the last checkpoint is so old that there should be another."""
+        """Whether the last checkpoint is old enough that another is due."""
         return time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
 
     def save(self, state: Checkpoint) -> None:
-        """Write checkpoint and policy, where there is anything new."""
+        """Write checkpoint and policy, if there is anything new."""
         if state is self._saved:
             return
         try:
-            # A policy that cannot be written must not be in a checkpoint.
+            # Make the policy first: a checkpoint must not contain weights that are invalid for a policy.
             policy = self._policy(state) if state.best is not self._written or self._is_over(state) else None
             write_checkpoint(self._run.folder / CHECKPOINT, state)
             if policy:
                 self._write(policy, state)
         except Exception:
-            # It is not tried again at the end; what is broken off by Ctrl-C is.
+            # Do not try again at the end.  After Ctrl-C, which is no Exception, it is tried again.
             self._saved = state
             raise
         self._saved, self._saved_at = state, time.perf_counter()
 
     def close(self, state: Checkpoint) -> None:
-        """Save the training as it ends here, and close the measurements."""
+        """Save the final state and close the metrics."""
         try:
             self.save(state)
         finally:

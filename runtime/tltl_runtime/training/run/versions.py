@@ -1,4 +1,4 @@
-"""What a training depends on beside its settings: the versions of Python and of packages."""
+"""The versions of Python and of the packages that a training depends on."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ _PACKAGES: Final = ("tltlc", "torch", "rsl-rl-lib", "gymnasium", "pybullet", "nu
 
 
 def versions() -> dict[str, str]:
-    """The versions here and now, by name."""
+    """Return the installed versions, by name."""
     return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
