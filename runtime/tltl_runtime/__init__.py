@@ -1,4 +1,4 @@
-"""The runtime of ``.tltl`` specs: a stealth game, environments with rewards from a spec, and batched automata.
+"""The runtime of ``.tltl`` specs: a stealth game, environments rewarded by specs, batched automata.
 
 Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0``
 and ``tltl/Branching-v0``.  It loads neither torch nor pybullet.  The package needs the extra

@@ -24,7 +24,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Pool = int | Literal["ray"]
-"""Where episodes are played: this process (1), this many workers (0: one per core), or a Ray cluster."""
+"""Where to play: in this process (1), in this many workers (0: one per core), or on Ray."""
 
 
 def evaluate(
@@ -38,7 +38,7 @@ def evaluate(
     sampled: bool = True,
     spec: str | Path | Fspa | None = None,
 ) -> Iterator[Played]:
-    """Play ``episodes`` episodes with a policy; yield each result in order, as soon as it is available.
+    """Play ``episodes`` episodes with a policy; yield the results in order, as soon as possible.
 
     ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another
     level, the variant defaults to ``v0``.  The episodes do not depend on ``workers``.  Worker
@@ -65,9 +65,9 @@ def set_up(
     """Return the setup of an evaluation, checked.
 
     Raises:
-        TltlError: the level, variant or spec does not exist; the level lacks something that the spec
-            needs; the errors of :func:`~tltl_runtime.policies.fit.check_policy`; TLT0851, the spec
-            has no limit.
+        TltlError: the level, variant or spec does not exist; the level lacks something that the
+            spec needs; the errors of :func:`~tltl_runtime.policies.fit.check_policy`; TLT0851, the
+            spec has no limit.
     """
     card = policy.card
     name = level or card.level
@@ -104,7 +104,8 @@ def results(
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
-            there is no cluster, or no worker starts there in time; errors while an environment is made.
+            there is no cluster, or no worker starts there in time; errors while an environment is
+            made.
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":

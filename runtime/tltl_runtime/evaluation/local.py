@@ -19,8 +19,9 @@ from tltl_runtime.support.child_processes import interrupts_withheld
 
 
 class Process:
-    """A worker process, with an executor of its own: if it breaks, it is known which episode was lost.
+    """A worker process.
 
+    It has an executor of its own, so that if it breaks, it is known which episode was lost.
     ``make`` makes the player in that process.  It must be picklable.
     """
 
@@ -39,17 +40,20 @@ class Process:
         return future
 
     def close(self) -> None:
-        """Wait until the process has played its current episode, then end it.  Other workers go on meanwhile."""
+        """Wait until the process has played its current episode, then end it.
+
+        Other workers go on meanwhile.
+        """
         # Wait: an executor that is still shutting down when Python exits may fail or hang.
         self._executor.shutdown(wait=True, cancel_futures=True)
 
 
 def _context() -> BaseContext:
-    """Return the context that starts workers: on Linux a fork server that loads torch once for all of them.
+    """Return the context that starts workers.
 
-    A forked process inherits the locks of all threads, but not the threads.  This is safe here: the
-    fork server computes nothing, so torch starts no threads in it, and OpenBLAS ends its threads
-    before a fork.
+    On Linux it is a fork server that loads torch once for all of them.  A forked process inherits
+    the locks of all threads, but not the threads.  This is safe here: the fork server computes
+    nothing, so torch starts no threads in it, and OpenBLAS ends its threads before a fork.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")

@@ -41,11 +41,12 @@ class Played:
 
 
 def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> Played:
-    """Play episode ``index`` of an evaluation with ``seed`` to its end, with sampled or likeliest actions.
+    """Play episode ``index`` of the evaluation with ``seed`` to its end.
 
-    ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a limit.
-    The episode depends only on the policy, the environment, ``seed``, ``index`` and ``sampled``.  The
-    seed of the environment does not depend on ``sampled``.
+    ``sampled`` says whether actions are sampled or the likeliest ones.
+    ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a
+    limit.  The episode depends only on the policy, the environment, ``seed``, ``index`` and
+    ``sampled``.  The seed of the environment does not depend on ``sampled``.
 
     Raises:
         TltlError: TLT0854, the environment or the policy gives values that are not finite.
@@ -82,7 +83,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
 
 
 def episode_seed(seed: int, index: int) -> int:
-    """Return the seed of the environment, in [0, 2**31), for episode ``index`` of an evaluation with ``seed``."""
+    """Return the environment's seed, in [0, 2**31), for episode ``index`` of an evaluation."""
     return int(_stream(seed, index, _OF_LEVEL).generate_state(1)[0]) >> 1
 
 

@@ -28,9 +28,9 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 class Setup:
     """What an evaluation plays: ``policy`` on a level with a spec, with the default reward options.
 
-    ``level`` is an argument of :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``params`` are
-    in SI units.  ``recorded`` says which episodes to record; unless it is None, the trajectories of
-    all episodes are kept.  ``player`` is the name of the policy in recordings.
+    ``level`` is an argument of :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``params``
+    are in SI units.  ``recorded`` says which episodes to record; unless it is None, the
+    trajectories of all episodes are kept.  ``player`` is the name of the policy in recordings.
     """
 
     policy: Policy
@@ -45,7 +45,7 @@ class Setup:
 
 @record
 class Task:
-    """An episode to play: its ``index``, and whether actions are ``sampled`` or the likeliest ones."""
+    """Episode ``index`` to play, with ``sampled`` actions or the likeliest ones."""
 
     index: int
     sampled: bool = True
@@ -53,7 +53,7 @@ class Task:
 
 @record
 class Result:
-    """An episode that was played, with its trajectory and the bytes of its recording if requested."""
+    """A played episode, with its trajectory and the bytes of its recording if requested."""
 
     task: Task
     played: Played

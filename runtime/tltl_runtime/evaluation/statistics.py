@@ -29,7 +29,9 @@ def spread_of(values: Sequence[float]) -> Spread:
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
-    """Return the 95 % score interval of a share: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
+    """Return the 95 % score interval of a share.
+
+    E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 
     Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
     """

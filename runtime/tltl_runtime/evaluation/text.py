@@ -20,7 +20,7 @@ _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of tim
 
 
 def report_text(evaluations: Mapping[str, Evaluation]) -> str:
-    """Return a table with a column for each way to choose actions, then how failed episodes ended."""
+    """Return a table with a column per way to choose actions, and how failed episodes ended."""
     columns = [evaluation.figures for evaluation in evaluations.values()]
     lines = [
         _row("", list(evaluations)),

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 
 class MultiCategorical(Distribution):
-    """Independent categorical distributions, one per branch: Gymnasium's ``MultiDiscrete(branches)``.
+    """Independent categorical distributions, one per branch of a ``MultiDiscrete(branches)`` space.
 
     The network outputs ``sum(branches)`` logits, the first branch first.  An action is a row of
     ``len(branches)`` numbers, one choice per branch, stored as floats like all actions in rsl-rl.
@@ -105,7 +105,7 @@ class _Likeliest(nn.Module):
 
 
 def _greatest(branches: list[Tensor]) -> Tensor:
-    """Return the index of the maximum of each branch [..., branches], as their dtype; the first one on ties."""
+    """Return the argmax of each branch [..., branches], in their dtype; the first one on ties."""
     # A list, not a sequence: rsl-rl may export an actor to TorchScript, which has no sequences.
     return torch.stack([values.argmax(-1) for values in branches], -1).to(branches[0].dtype)
 

@@ -44,7 +44,10 @@ _RECORD_BYTES: Final = 1 << 20
 
 _PREFIX: Final = "actor."
 _KEY: Final = "card"
-"""The only metadata key.  With several, their order could differ between the files of equal policies."""
+"""The only metadata key.
+
+With several, their order could differ between the files of equal policies.
+"""
 
 _REFUSALS: Final = Refusals("a policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
@@ -69,8 +72,8 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
 
     Raises:
         TltlError: TLT0001, the file cannot be read; TLT0840, it is not a policy, or is damaged;
-            TLT0841, it has another version; TLT0842, something in it is invalid; TLT0601 to TLT0604,
-            its artefact is invalid.
+            TLT0841, it has another version; TLT0842, something in it is invalid; TLT0601 to
+            TLT0604, its artefact is invalid.
     """
     name = os.fspath(path)
     return from_bytes(read_bytes(path, name, MAX_BYTES), name)
@@ -87,7 +90,7 @@ def to_bytes(policy: Policy) -> bytes:
 
 
 def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
-    """Raise TltlError, TLT0862, if a policy of the game with this network is too large for a file."""
+    """Raise TltlError, TLT0862, if a policy with this network is too large for a file."""
     (artefact,) = emit("json", fspa).values()
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
@@ -98,7 +101,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
 
 
 def card_json(card: Card) -> dict[str, Any]:
-    """Return the card as JSON data: its fields, with the artefact of the spec in place of ``fspa``."""
+    """Return the card as JSON data, with the artefact of the spec in place of ``fspa``."""
     (artefact,) = emit("json", card.fspa).values()
     document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name != "fspa"}
@@ -128,7 +131,10 @@ def _too_large(size: int) -> TltlError:
 
 
 def _header(data: bytes, name: str) -> dict[str, Any]:
-    """Return the JSON header of a file.  The first eight bytes of the file are the length of the header."""
+    """Return the JSON header of a file.
+
+    The first eight bytes of the file are the length of the header.
+    """
     length = int.from_bytes(data[:8], "little")
     try:
         header = loads(data[8 : 8 + length], ARTEFACT) if length <= len(data) - 8 else None
@@ -187,7 +193,7 @@ def _observed(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
-    """Check that the header lists exactly the weights of the card's network, before memory is allocated for them."""
+    """Check that the header lists exactly the weights of the network, before they are loaded."""
     try:
         wanted = {f"{_PREFIX}{key}": list(tensor.shape) for key, tensor in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:

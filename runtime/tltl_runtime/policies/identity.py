@@ -12,7 +12,7 @@ from tltlc.expression.json import to_json as expression_json
 
 
 def spec_hash(fspa: Fspa) -> str:
-    """Return the SHA-256, in hexadecimal, of everything in a spec that affects how episodes are judged.
+    """Return the SHA-256, in hexadecimal, of everything by which a spec judges an episode.
 
     The names of the spec and its atoms, labels and documentation do not count.
     """

@@ -58,7 +58,7 @@ class Policy:
     def choose(
         self, observation: Mapping[str, NDArray[Any]], generator: np.random.Generator | None = None
     ) -> NDArray[np.int64]:
-        """Return an action [branches]: sampled with ``generator``, or the likeliest choices without one.
+        """Return an action [branches]: sampled with ``generator``, or the likeliest without one.
 
         On ties, the first choice is taken.
 

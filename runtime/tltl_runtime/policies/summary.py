@@ -1,4 +1,4 @@
-"""Summaries of policies: what they were trained for, their inputs and outputs, and how training went."""
+"""Summaries of policies: their tasks, inputs and outputs, and how their training went."""
 
 from __future__ import annotations
 

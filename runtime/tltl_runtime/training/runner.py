@@ -25,9 +25,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 class Iteration:
     """The result of a rollout and the update after it.
 
-    ``number`` counts from 1.  ``steps`` counts the decisions of all environments.  ``losses`` are the
-    losses of rsl-rl's PPO by name, and ``imitation`` if there was self-imitation.  ``collect_s`` and
-    ``learn_s`` are wall-clock seconds.
+    ``number`` counts from 1.  ``steps`` counts the decisions of all environments.  ``losses`` are
+    the losses of rsl-rl's PPO by name, and ``imitation`` if there was self-imitation.
+    ``collect_s`` and ``learn_s`` are wall-clock seconds.
     """
 
     number: int
@@ -42,8 +42,8 @@ class Runner(OnPolicyRunner):
     """An rsl-rl runner whose learning loop is a generator: it yields after each iteration.
 
     It prints nothing.  Updates run in ``cfg["threads"]`` threads, because no environment steps
-    meanwhile.  In the first ``cfg["warm_up"]`` iterations only the critic learns.  Several processes
-    must use it within :func:`~tltl_runtime.training.ppo.distributed.joined`.
+    meanwhile.  In the first ``cfg["warm_up"]`` iterations only the critic learns.  Several
+    processes must use it within :func:`~tltl_runtime.training.ppo.distributed.joined`.
     """
 
     env: TrainingEnv
@@ -64,7 +64,7 @@ class Runner(OnPolicyRunner):
                 group["fused"] = True
 
     def take_up(self, saved: Mapping[str, Any]) -> None:
-        """Restore what ``alg.save`` returned, also from a runner whose weights have another memory layout."""
+        """Restore what ``alg.save`` returned, even if the weights had another memory layout."""
         self.alg.load(saved, None, strict=True)
         for parameter, state in self.alg.optimizer.state.items():
             # The fused optimiser assumes that its averages have the memory layout of the weights.
@@ -75,7 +75,7 @@ class Runner(OnPolicyRunner):
         self.alg.actor.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
 
     def sharpen(self, factor: float) -> None:
-        """Multiply the actor's inverse temperature: a ``factor`` above 1 makes likely choices likelier.
+        """Multiply the actor's inverse temperature: a factor above 1 makes likely choices likelier.
 
         In the first ``cfg["warm_up"]`` iterations this does nothing.
         """
@@ -131,7 +131,7 @@ class Runner(OnPolicyRunner):
         return observation
 
     def _imitate(self) -> dict[str, float]:
-        """Take the steps of self-imitation; return the mean loss, or nothing if there was nothing to imitate.
+        """Take the steps of self-imitation; return the mean loss as ``imitation``, if there is one.
 
         If any process has a batch, all take the step together, so that their weights stay equal.
         """

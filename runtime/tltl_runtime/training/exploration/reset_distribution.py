@@ -1,5 +1,6 @@
-"""The reset distribution: episodes begin at the level's start, or in the middle of an earlier episode.
+"""The reset distribution: where episodes begin.
 
+They begin at the level's start, or in the middle of an earlier episode.
 Equal seeds and actions give equal episodes, so replaying the actions of an episode reaches the same
 state again.  The agent then continues from there.
 """
@@ -23,10 +24,11 @@ Actions = list[list[int]]
 
 @record
 class Start:
-    """The start of an episode: its seed, and the ``actions`` [n, branches] to replay before the agent acts.
+    """The start of an episode: its seed, and ``actions`` [n, branches] to replay first.
 
-    ``part`` locates the start on a way: the end of the way and the index of the part.  It is None if the
-    start is on no way.  The episode is cut off after ``most`` decisions of the agent; None: never.
+    ``part`` locates the start on a way: the end of the way and the index of the part.  It is None
+    if the start is on no way.  The episode is cut off after ``most`` decisions of the agent; None:
+    never.
     """
 
     seed: int
@@ -38,10 +40,10 @@ class Start:
 class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
     """An environment whose episodes begin with ``begin``: a seed, and actions that are replayed.
 
-    ``begin`` stays as it is until it is set to another value; setting it to None does nothing.  Until
-    it is first set, episodes begin as in the wrapped environment.  There are two environments of
-    ``make``: while the agent plays in one, :meth:`prepare` brings the other one to the start of the
-    next episode.
+    ``begin`` stays as it is until it is set to another value; setting it to None does nothing.
+    Until it is first set, episodes begin as in the wrapped environment.  There are two environments
+    of ``make``: while the agent plays in one, :meth:`prepare` brings the other one to the start of
+    the next episode.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
@@ -64,7 +66,7 @@ class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
             self._bringing = self._bring(*begin)
 
     def prepare(self) -> bool:
-        """Take a step of the replay towards the next start; return False once there is nothing left to do."""
+        """Take a step of the replay towards the next start; return False once nothing is left."""
         return self._bringing is not None and next(self._bringing, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -115,7 +117,7 @@ class Episodes:
         self.turn(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        """Record the actions [num_envs, branches] and step all environments; return their results."""
+        """Record actions [num_envs, branches] and step all environments; return their results."""
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
         with self._telling():
@@ -129,7 +131,7 @@ class Episodes:
             self._tell(rows)
 
     def cut(self, over: NDArray[np.bool_]) -> Any:
-        """Cut off the episodes of the mask ``over`` and begin the next ones; return all observations."""
+        """Cut off the episodes of the mask ``over``, begin the next; return all observations."""
         rows = np.flatnonzero(over).tolist()
         self._go_on(rows)
         with self._telling():
@@ -138,7 +140,7 @@ class Episodes:
         return observation
 
     def is_spent(self, row: int) -> bool:
-        """Whether the agent has made all decisions that the start of this environment's episode allows."""
+        """Whether the agent has made all decisions that the start of the episode allows."""
         start = self.starts[row]
         return start.most is not None and len(self.actions[row]) - len(start.actions) >= start.most
 

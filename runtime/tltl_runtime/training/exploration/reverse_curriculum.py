@@ -1,4 +1,4 @@
-"""The reverse curriculum: at which points of known ways episodes begin, so that the next task is within reach.
+"""The reverse curriculum: episodes begin at those points of known ways where the agent can learn.
 
 A way is an episode that met the spec.  It is divided into parts.  The agent learns most from parts
 where it succeeds sometimes.  As it learns, these move from the end of the way to its beginning:
@@ -24,13 +24,14 @@ _WAYS = 6
 _ENDS = 8
 """At most this many ends are kept: those that were found first."""
 _FRESH = 0.2, 0.97
-"""For episodes from the level's start: the least share of decisions, and the greatest share of episodes.
+"""Limits for the episodes from the level's start.
 
-The minimum counts decisions, not episodes, because episodes without success differ in length: some
+The first is their least share of all decisions, the second their greatest share of all episodes.
+The minimum counts decisions because episodes without success differ in length: some
 last until the spec's limit, some end soon in a violation.
 """
 _LEAST = 0.005
-"""Added to the weight of each part, because a part that teaches nothing now may do so again."""
+"""Added to the weights of parts, because a part that teaches nothing now may do so again."""
 _REACHED = 0.2
 """A part counts as learned, at least partly, if its success rate is this or more."""
 _AHEAD = 0.1, 0.6
@@ -40,22 +41,26 @@ Parts far from everything learned give long episodes without success, and PPO wo
 their noise.
 """
 _RATE = 0.1, 0.02
-"""The step sizes of running means: of the success rate of a part; of the success rate from the level's start, and
-of mean lengths."""
+"""The step sizes of running means.
+
+The first is for the success rate of a part, the second for the success rate from the level's start
+and for mean lengths.
+"""
 _FAILURES = 32
 """This many of the last failed episodes from the level's start are kept."""
 _SPARE = 1.5, 20
-"""The limit of an episode on a way: the length of the rest of the way times the first, plus the second number."""
+"""The limit of an episode on a way: the rest of the way times the first number, plus the second."""
 
 
 class Restarts:
     """Draws starts from the reverse curriculum; ``generator`` must not be shared.
 
-    ``ways`` has the shortest known ways for each end, including the agent's own successes.  They are
-    kept by end because a spec may be met in several ways, and the shortest of all would hide the
-    others.  ``rates`` has, for each end, the success rates from each part of its ways, in [0, 1].
-    ``passed`` is the success rate from the level's start.  ``lengths`` are the mean numbers of the
-    agent's decisions in episodes from the level's start and in episodes on ways.
+    ``ways`` has the shortest known ways for each end, including the agent's own successes.  They
+    are kept by end because a spec may be met in several ways, and the shortest of all would hide
+    the others.  ``rates`` has, for each end, the success rates from each part of its ways.  All
+    rates are in [0, 1].  ``passed`` is the success rate from the level's start.  ``lengths`` are
+    the mean numbers of the agent's decisions in episodes from the level's start and in episodes on
+    ways.
     """
 
     def __init__(self, parts: int, generator: np.random.Generator) -> None:
@@ -103,13 +108,15 @@ class Restarts:
         """Draw up to ``count`` decisions to imitate, each as a way and an index into its actions.
 
         Decisions are drawn like starts.  A decision is dropped with the probability that the agent
-        succeeds from its part.  A success from an earlier part, or from the level's start, counts for
-        all later parts.
+        succeeds from its part.  A success from an earlier part, or from the level's start, counts
+        for all later parts.
         """
         if not self.ways:
             return []
-        rates = np.concatenate([np.maximum.accumulate(np.maximum(own, self.passed)) for own in self.rates.values()])
-        weights = np.concatenate([_weights(own) for own in self.rates.values()])
+        rates = np.concatenate(
+            [np.maximum.accumulate(np.maximum(part_rates, self.passed)) for part_rates in self.rates.values()]
+        )
+        weights = np.concatenate([_weights(part_rates) for part_rates in self.rates.values()])
         drawn = self._random.choice(len(weights), size=count, p=weights / weights.sum())
         drawn = drawn[self._random.random(count) >= rates[drawn]]
         ends, decisions = list(self.rates), []
@@ -123,7 +130,8 @@ class Restarts:
         """Update the curriculum with the result of an episode that began at ``start``.
 
         ``actions`` are all of its actions, including the replayed ones.  ``end`` is the end of a
-        success, or None.  ``state`` is the state in which the episode failed, None if it was cut off.
+        success, or None.  ``state`` is the state in which the episode failed, None if it was cut
+        off.
         """
         of_part, from_start = _RATE
         success = end is not None
@@ -220,7 +228,7 @@ def _check_played(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Raise ValueError for success rates outside [0, 1] and lengths that are not positive and finite."""
+    """Raise ValueError for success rates outside [0, 1] and lengths that are not positive."""
     rates = np.append(arrays["rates"].ravel(), arrays["passed"])
     if not ((rates >= 0) & (rates <= 1)).all():
         raise ValueError("`rates` or `passed` holds a number outside 0 to 1")
@@ -229,7 +237,7 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the unnormalised probabilities of starts in each part, given the success rates from there."""
+    """Return the weights of the parts as starts, given the success rates from there."""
     first = int(np.argmax(rates >= _REACHED)) if rates.max() >= _REACHED else len(rates) - 1
     weights: NDArray[np.float64] = rates * (1 - rates) + _LEAST
     most, less = _AHEAD

@@ -4,12 +4,12 @@ Robustness ignores walls: an agent that only follows it gets stuck where the dis
 random actions alone never crouch, climb and jump in the right order.  So the search returns to the
 places that it has reached, by replaying the actions that led there, and takes random actions from
 there.  This is Go-Explore: Ecoffet et al., First return, then explore, Nature 590, 2021.  A place,
-Go-Explore's cell, is a cell of the level together with a state of the automaton.  The search needs
-no other knowledge about the level.
+Go-Explore's cell, is a cell of the level together with a state of the automaton.  So the search
+needs no knowledge about the level.
 
-An episode from a place keeps the seed of the episode that found the place.  Everything that the level
-draws from the seed stays the same, for example which door opens.  So the places of a seed are dropped
-as soon as a way with that seed is found.
+An episode from a place keeps the seed of the episode that found the place.  Everything that the
+level draws from the seed stays the same, for example which door opens.  So the places of a seed are
+dropped as soon as a way with that seed is found.
 
 If learning comes to a standstill, another search begins in the agent's failed episodes.  If a
 training begins with a policy, that policy plays first, because it may already meet the spec.
@@ -29,13 +29,19 @@ from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.core.record import record
 
 _KEPT = 0.9
-"""The probability that a branch keeps its choice in the next decision.  Independent choices would lead nowhere."""
+"""The probability that a branch keeps its choice in the next decision.
+
+Independent choices would lead nowhere.
+"""
 _BURST = 60
 """The number of random decisions from a place."""
 _FRESH = 0.05
 """The share of episodes that begin at the level's start."""
 _FAILED = 0.3
-"""The share of episodes that begin in a failed episode, if there are any; it replaces ``_FRESH``."""
+"""If there are failed episodes, this share of episodes begins in one.
+
+No episode then begins at the level's start.
+"""
 _TOLD_EVERY_S = 0.5
 
 
@@ -47,10 +53,10 @@ Player = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
 class Exploration:
     """The settings of the search before the training, and of the use of its ways.
 
-    The search ends when ``ways`` episodes with different seeds have met the spec (0: no search), or after
-    ``steps`` decisions, not counting replayed ones.  Each way is divided into ``parts``, at which
-    episodes of the training may begin.  Each update is followed by ``imitation`` optimiser steps of
-    self-imitation of the ways.
+    The search ends when ``ways`` episodes with different seeds have met the spec (0: no search), or
+    after ``steps`` decisions, not counting replayed ones.  Each way is divided into ``parts``, at
+    which episodes of the training may begin.  Each update is followed by ``imitation`` optimiser
+    steps of self-imitation of the ways.
     """
 
     ways: int
@@ -61,7 +67,7 @@ class Exploration:
 
 @record
 class Way:
-    """An episode that met the spec: its seed, all of its actions, and its ``end`` from :func:`end_of`."""
+    """An episode that met the spec: its seed, all actions, and its ``end`` from :func:`end_of`."""
 
     seed: int
     actions: Actions
@@ -69,9 +75,9 @@ class Way:
 
 
 def end_of(infos: Mapping[str, Any], row: int) -> int:
-    """Return how the episode in a row of a vector environment's ``final_info`` ended, as a bit mask.
+    """Return how the episode in a row of the ``final_info`` of a vector environment ended.
 
-    Bit i says whether the spec's i-th atom was true.
+    The result is a bit mask: bit i says whether the spec's i-th atom was true.
     """
     atoms = infos["atoms"]
     # Gymnasium adds a mask `_name` for each name.  An int64 holds at most 63 bits.
@@ -84,8 +90,8 @@ class Searched:
     """The progress of a search.
 
     ``steps`` are decisions without the ``replayed`` ones, ``places`` the number of places that were
-    reached, and ``lengths`` the lengths of the ways.  ``complete`` says whether the search ended by its
-    own criteria, not by a limit of the training.
+    reached, and ``lengths`` the lengths of the ways.  ``complete`` says whether the search ended by
+    its own criteria, not by a limit of the training.
     """
 
     steps: int
@@ -97,7 +103,10 @@ class Searched:
 
 
 def together(before: Searched, later: Searched) -> Searched:
-    """Combine two searches of one training, whose ways are all used; ``places`` is that of the later one."""
+    """Combine two searches of one training, whose ways are all used.
+
+    ``places`` is that of the later one.
+    """
     return Searched(
         steps=before.steps + later.steps,
         replayed=before.replayed + later.replayed,
@@ -110,7 +119,7 @@ def together(before: Searched, later: Searched) -> Searched:
 
 @record
 class Failure:
-    """A failed episode from the level's start: its seed, all of its actions, and the state in which it failed."""
+    """A failed episode from the level's start: its seed, all actions, and the state of failure."""
 
     seed: int
     actions: Actions
@@ -121,10 +130,10 @@ class Search:
     """A search in the environments of ``env``.
 
     The environments are :class:`~tltl_runtime.training.exploration.reset_distribution.Replayed`.
-    ``ways`` are the ways found so far.  Equal seeds give equal searches, whatever the number of workers.
-    With ``failures``, the search starts in these episodes and explores only the states in which they
-    failed; without, it starts at the level's start.  A ``player`` plays the first episode of each
-    environment; random actions then continue from the places that it reached.
+    ``ways`` are the ways found so far.  Equal seeds give equal searches, whatever the number of
+    workers.  With ``failures``, the search starts in these episodes and explores only the states in
+    which they failed; without, it starts at the level's start.  A ``player`` plays the first
+    episode of each environment; random actions then continue from the places that it reached.
     """
 
     def __init__(
@@ -199,7 +208,8 @@ class Search:
     def _draw(self) -> Start:
         """Draw the start of an episode: mostly a known place.
 
-        Otherwise a point in the second half of a failed episode, or a new seed if there are no failures.
+        Otherwise a point in the second half of a failed episode, or a new seed if there are no
+        failures.
         """
         if self._known and self._random.random() >= (_FAILED if self._failures else _FRESH):
             return self._known.draw()
@@ -215,7 +225,7 @@ class Search:
 
 
 class _Known:
-    """The archive of places: by state and cell, the shortest actions to it and how often it was a start."""
+    """The known places: by state and cell, the fewest actions there and the number of starts."""
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random
@@ -226,7 +236,7 @@ class _Known:
         return bool(self._starts)
 
     def note(self, state: int, cell: int, seed: int, actions: Actions) -> bool:
-        """Keep the actions that led to a place if they are the fewest; return whether the place is new."""
+        """Keep the actions to a place if they are the fewest; return whether the place is new."""
         starts = self._starts.setdefault(state, {})
         known = starts.get(cell)
         if known is None or len(actions) < len(known.actions):

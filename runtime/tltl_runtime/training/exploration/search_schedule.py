@@ -28,8 +28,8 @@ def searched_first(
 ) -> Searched | None:
     """Search for ways before the training; a ``player`` plays first.
 
-    Returns None if the search was done before.  A search that was broken off by a limit before it found
-    a way is repeated if there is time for it.
+    Returns None if the search was done before.  A search that was broken off by a limit before it
+    found a way is repeated if there is time for it.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
@@ -41,9 +41,9 @@ def searched_first(
 
 
 def searched_again(run: Run, own: Peers, env: TrainingEnv, state: Checkpoint, searching: Searching) -> Searched | None:
-    """Search for ways from the agent's failures, in a training in this ``state``; all episodes then begin anew.
+    """Search for ways from the agent's failures, in a training in this ``state``.
 
-    Returns None if no failures are known.
+    All episodes begin anew after the search.  Returns None if no failures are known.
     """
     if env.restarts is None or not env.restarts.failures:
         return None
@@ -55,7 +55,7 @@ def searched_again(run: Run, own: Peers, env: TrainingEnv, state: Checkpoint, se
 
 
 def _run_search(run: Run, search: Search, restarts: Restarts, before_s: float, searching: Searching) -> Searched:
-    """Run a search, at most until the training's limit of minutes, and add its ways to the restarts."""
+    """Run a search, at most to the training's limit of minutes; add its ways to the restarts."""
     for searched in search.run():
         searching(searched)
         if run.settings.stop.is_late(before_s + searched.seconds):

@@ -36,7 +36,7 @@ class Lessons:
         self._make, self._restarts = make, restarts
         self._env: gymnasium.Env[Any, Any] | None = None
         self._sensed: dict[int, tuple[Way, Mapping[str, NDArray[Any]]]] = {}
-        """Ways by ``id``, each with its observations; the way is kept so that its ``id`` stays valid."""
+        """Ways and their observations, by ``id`` of the way, which is valid as the way is kept."""
 
     def draw(self) -> tuple[TensorDict, Tensor] | None:
         """Draw up to ``BATCH`` decisions: observations and actions [n, branches].

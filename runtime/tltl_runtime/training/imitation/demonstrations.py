@@ -52,8 +52,8 @@ class Other:
 class Demonstrations:
     """The demonstrations of a level and a task in ``folder``, which need not exist yet.
 
-    A recording in the folder is a demonstration if its level, spec and params match and it meets the
-    spec.  ``others`` are the other recordings, including those that cannot be read.
+    A recording in the folder is a demonstration if its level, spec and params match and it meets
+    the spec.  ``others`` are the other recordings, including those that cannot be read.
     """
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
@@ -117,7 +117,7 @@ def unreadable(error: TltlError) -> str:
     return f"{first.code}, {first.title}"
 
 
-def by_expert(env: RecordEpisode, made: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
+def by_expert(env: RecordEpisode, store: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
     """Let the scripted expert play until there are ``number`` demonstrations; yield each episode.
 
     Seeds count up from ``seed``, after those of the expert's existing demonstrations, so that an
@@ -126,19 +126,19 @@ def by_expert(env: RecordEpisode, made: Demonstrations, number: int, seed: int =
     Raises:
         TltlError: TLT0920, the expert fails too often; TLT0005, a recording cannot be written.
     """
-    played = [played_seed for played_seed in made.seeds(PLAYER) if played_seed >= seed]
+    played = [played_seed for played_seed in store.seeds(PLAYER) if played_seed >= seed]
     failures = 0
-    for episode in expert_episodes(env, count(max(played, default=seed - 1) + 1)) if made.count < number else ():
-        yield (tried := made.add(episode))
+    for episode in expert_episodes(env, count(max(played, default=seed - 1) + 1)) if store.count < number else ():
+        yield (tried := store.add(episode))
         failures = 0 if tried.path else failures + 1
-        if made.count >= number:
+        if store.count >= number:
             return
         if failures == MOST_FAILURES:
             raise _given_up(env, episode)
 
 
 def expert_episodes(env: RecordEpisode, seeds: Iterable[int], *, careful: bool = True) -> Iterator[Episode]:
-    """Yield an episode of the scripted expert for each seed; ``careful`` is an argument of :class:`Expert`."""
+    """Yield an episode of the expert for each seed; ``careful`` is passed to :class:`Expert`."""
     expert = Expert(env, careful)
     for seed in seeds:
         play_episode(env, expert, seed)

@@ -18,7 +18,7 @@ Decisions = tuple[Mapping[str, Tensor], Tensor]
 
 @record
 class Judged:
-    """The ``loss`` of a discriminator, and the mean probabilities of being demonstrated that it predicts.
+    """The ``loss`` of a discriminator, and its mean predicted probabilities of being demonstrated.
 
     ``theirs`` is the mean over decisions of demonstrations, ``agents`` the mean over the agent's.
     """
@@ -32,8 +32,8 @@ class Discriminator(nn.Module):
     """Predicts the logit of a decision being from a demonstration.
 
     Ho and Ermon, Generative adversarial imitation learning, NIPS 2016.  ``config`` is rsl-rl's
-    configuration of a model.  The network's inputs are observations (``observations`` is an example)
-    and actions, one-hot by ``branches``.
+    configuration of a model.  The network's inputs are observations (``observations`` is an
+    example) and actions, one-hot by ``branches``.
     """
 
     def __init__(self, observations: Mapping[str, Tensor], branches: Sequence[int], config: Mapping[str, Any]) -> None:
@@ -51,7 +51,10 @@ class Discriminator(nn.Module):
         return logits
 
     def reward(self, decisions: Decisions) -> Tensor:
-        """Return the rewards of decisions [n]: ``-log(1 - D) >= 0``, with D the probability of being demonstrated."""
+        """Return the rewards [n]: ``-log(1 - D)``, which is at least 0.
+
+        D is the predicted probability of being demonstrated.
+        """
         return softplus(self(decisions))
 
     def judged(self, theirs: Decisions, agents: Decisions, penalty: float) -> Judged:
@@ -67,7 +70,7 @@ class Discriminator(nn.Module):
         return Judged(loss, *means)
 
     def _gradient_penalty(self, theirs: Decisions, agents: Decisions) -> Tensor:
-        """Return the mean squared deviation from 1 of the gradient's norm, between the two sets of decisions.
+        """Return the mean squared deviation from 1 of the gradient's norm, between the two sets.
 
         Gulrajani et al., Improved training of Wasserstein GANs, NIPS 2017; ML-Agents uses it, too.
         """

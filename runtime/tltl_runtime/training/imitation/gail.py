@@ -1,9 +1,10 @@
 """The imitation baseline: behavioural cloning, then PPO on the rewards of a discriminator (GAIL).
 
-Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section VI: "we bootstrap a neural network with an architecture
-identical to the one of the TL model using behavioral cloning (first 5% of training steps), and then run training using
-a GAIL-generated reward signal (learning rate = 0.0003, encoding size = 128, γ = 0.99) and adding a terminal reward at
-the end of each episode of +1 if the specification was successfully completed and -1 otherwise".
+Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section VI: "we bootstrap a neural network with an
+architecture identical to the one of the TL model using behavioral cloning (first 5% of training
+steps), and then run training using a GAIL-generated reward signal (learning rate = 0.0003, encoding
+size = 128, γ = 0.99) and adding a terminal reward at the end of each episode of +1 if the
+specification was successfully completed and -1 otherwise".
 
 The paper leaves some points open.  This implementation decides them as follows:
 
@@ -15,16 +16,16 @@ The paper leaves some points open.  This implementation decides them as follows:
 - During cloning, the actor plays episodes with sampled actions.  These steps count.  The critic and
   the discriminator learn from them, so that GAIL begins with a trained critic.  The actor learns
   from the demonstrations alone.
-- A cloning update makes as many passes over all demonstrations as PPO makes over a rollout, at PPO's
-  learning rate.
+- A cloning update makes as many passes over all demonstrations as PPO makes over a rollout, at
+  PPO's learning rate.
 - The discriminator sees observations with actions, as in Ho and Ermon's paper.  It has its own
   convolutions, with the policy's architecture, then two layers of the encoding's width.  It makes
   one pass over each rollout, against equally many decisions of demonstrations, with a gradient
   penalty as in ML-Agents, the toolkit of the paper.
 - The discriminator's reward is -log(1 - D), as in ML-Agents, which is never negative.  It is
   multiplied by ``strength``, one hundredth by default.  One critic estimates the return of this
-  reward and the terminal reward together.  With gamma 0.99, an endless episode is then worth
-  -log(1 - D).  That is 0.69 if decisions cannot be told from demonstrated ones (D = 1/2), and less
+  reward and the terminal reward together.  With gamma 0.99, the value of an endless episode is then
+  -log(1 - D).  This is 0.69 if decisions cannot be told from demonstrated ones (D = 1/2), and less
   than a success until D exceeds 1 - 1/e = 0.63.  Beyond that, the reward is not clipped.
 - An episode that reaches the limit is a failure, and its return is not bootstrapped.
 """
@@ -48,16 +49,16 @@ _Losses = dict[str, float]
 
 
 class Gail(PPO):
-    """rsl-rl's PPO with rewards from a discriminator instead of the environment, after behavioural cloning.
+    """rsl-rl's PPO with rewards from a discriminator, after behavioural cloning.
 
-    ``gail`` is the entry of that name in :func:`~tltl_runtime.training.run.settings.rsl_config`.  The
-    environment must have ``demonstrated`` decisions, and report in the extras of a step which episodes
-    ended in success.  The losses are those of PPO and:
+    ``gail`` is the entry of that name in :func:`~tltl_runtime.training.run.settings.rsl_config`.
+    The environment must have ``demonstrated`` decisions, and report in the extras of a step which
+    episodes ended in success.  The losses are those of PPO and:
 
     - ``cloning``: the mean negative log-likelihood of the demonstrations, in nats per decision;
     - ``discriminator``: the loss of the discriminator;
-    - ``discriminator_theirs`` and ``discriminator_agents``: the mean probability of being demonstrated
-      that the discriminator predicts for decisions of demonstrations and of the agent.
+    - ``discriminator_theirs`` and ``discriminator_agents``: the mean probability of being
+      demonstrated that the discriminator predicts for decisions of demonstrations and of the agent.
     """
 
     demonstrated: Demonstrated
@@ -71,8 +72,10 @@ class Gail(PPO):
         self.seconds = 0.0
         """The training time so far, in seconds; the caller sets it."""
         self.cloning_steps, self.cloning_s = int(gail["cloning_steps"]), float(gail["cloning_s"])
-        """The actor is cloned until this many steps or this many seconds.  These are shares of the limits at the
-        start of the training, and stay when the limits change later."""
+        """The actor is cloned until this many steps or this many seconds.
+
+        These are shares of the limits when the training begins; they stay when the limits change.
+        """
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
         if not self.is_multi_gpu:
@@ -101,13 +104,13 @@ class Gail(PPO):
         super().process_env_step(obs, terminal_rewards, dones, {})
 
     def compute_returns(self, obs: Any) -> None:
-        """Add the discriminator's rewards to the rollout, then compute its returns and advantages."""
+        """Add the discriminator's rewards to the rollout; compute its returns and advantages."""
         rewards = self.discriminator.reward(self._rollout())
         self.storage.rewards += self._strength * rewards.view(self.storage.rewards.shape)
         super().compute_returns(obs)
 
     def update(self) -> _Losses:
-        """Train the discriminator on the rollout, then clone the actor or update by PPO; return the mean losses."""
+        """Train the discriminator, then clone the actor or update by PPO; return mean losses."""
         storage = self.storage
         discriminator_losses = self._discriminate()
         losses = {**self._value(), **self._clone()} if self.clones else super().update()
@@ -193,7 +196,7 @@ class Gail(PPO):
         return {"value": _mean(losses)}
 
     def _clone(self) -> _Losses:
-        """Clone the actor from the demonstrations, with as many passes as PPO makes over a rollout."""
+        """Clone the actor in as many passes over the demonstrations as PPO makes over a rollout."""
         total = 0.0
         for _ in range(self.num_learning_epochs):
             for observations, actions in self.demonstrated.shuffled(BATCH):

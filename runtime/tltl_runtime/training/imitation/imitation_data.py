@@ -1,4 +1,4 @@
-"""The data to imitate: the decisions of demonstrations, each with the agent's observation before it."""
+"""The data to imitate: decisions of demonstrations, each with the agent's observation before it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _Sensed = Mapping[str, NDArray[Any]]
 
 @record
 class Imitated:
-    """Statistics of the demonstrations: the numbers of ``episodes`` and ``decisions``, and the ``players``.
+    """The numbers of ``episodes`` and ``decisions`` of demonstrations, and their ``players``.
 
     ``left_out`` are the names of the other recordings in the folder, each with the reason.
     """
@@ -77,9 +77,9 @@ class Demonstrated:
 
 
 def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report: Callable[[Tried], None]) -> None:
-    """Record demonstrations of the expert until ``folder`` has ``number``; raises the errors of :func:`by_expert`.
+    """Record demonstrations of the expert until ``folder`` has ``number``.
 
-    ``report`` is called with each attempt.
+    ``report`` is called with each attempt.  Raises the errors of :func:`by_expert`.
     """
     env = RecordEpisode(make(), PLAYER)
     try:
@@ -93,8 +93,8 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
 def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrated:
     """Read the demonstrations in a folder; replay each one in an environment from ``make``.
 
-    A recording is left out if it is of another level, does not meet the spec in the replay, or cannot
-    be read.
+    A recording is left out if it is of another level, does not meet the spec in the replay, or
+    cannot be read.
 
     Raises:
         TltlError: TLT0921, no demonstration remains.
@@ -145,7 +145,7 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
 
 
 def _sensed(env: TltlEnv, episode: Episode) -> list[_Sensed] | str:
-    """Replay an episode; return the observation before each decision, or why it is not a demonstration."""
+    """Replay an episode; return the observation before each decision, or why it does not count."""
     if level_hash(episode.level) != level_hash(env.get_wrapper_attr("level")):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"
     observation, info = env.reset(seed=episode.seed)

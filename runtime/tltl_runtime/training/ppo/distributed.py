@@ -1,4 +1,4 @@
-"""The processes of a training: one, or several started by torchrun, each with its own environments."""
+"""The processes of a training: one, or several of torchrun, each with its own environments."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ T = TypeVar("T")
 class Peers:
     """Process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this machine.
 
-    All processes must call the methods in the same order; otherwise they wait for each other forever.
+    All processes must call the methods in the same order; otherwise they wait for each other
+    forever.
     """
 
     rank: int
@@ -46,7 +47,10 @@ class Peers:
 
 
 def peers() -> Peers:
-    """Return the position of this process, from torchrun's environment variables; a single process without them."""
+    """Return the position of this process, from torchrun's environment variables.
+
+    Without these variables it is the only process.
+    """
     count, local_count = (started(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
     rank, local_rank = (started(name, 0) for name in ("RANK", "LOCAL_RANK"))
     return Peers(rank, count, local_rank, local_count)
@@ -59,7 +63,7 @@ def cores() -> int:
 
 @contextmanager
 def joined(device: str) -> Iterator[tuple[Peers, str]]:
-    """Join the process group inside the block; yield the position of this process, and ``device``."""
+    """Join the process group inside the block; yield the position in it, and ``device``."""
     own = peers()
     if own.count == 1:
         yield own, device

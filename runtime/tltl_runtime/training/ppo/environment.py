@@ -26,8 +26,8 @@ from tltlc.core.record import record
 class Finished:
     """An episode that ended in training.
 
-    ``progress`` is in [0, 1].  ``steps`` is the length.  ``state`` is the automaton state at the end, or
-    before the violation if it was ``violated``.
+    ``progress`` is in [0, 1].  ``steps`` is the length.  ``state`` is the automaton state at the
+    end, or before the violation if it was ``violated``.
     """
 
     success: bool
@@ -38,19 +38,22 @@ class Finished:
 
 
 class TrainingEnv(VecEnv):
-    """A vector environment of :class:`~tltl_runtime.spec.wrapper.TltlEnv` with ``SAME_STEP`` autoreset, for rsl-rl.
+    """A vector environment for rsl-rl.
 
-    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on ``device``.
-    ``shapes`` are the shapes of one environment's observation.  :meth:`finished` returns the episodes
-    that ended.  ``seed`` is the argument of the vector environment's reset: a number, or one for each
-    environment.
+    ``env`` has environments of :class:`~tltl_runtime.spec.wrapper.TltlEnv`, with ``SAME_STEP``
+    autoreset.
 
-    If there are ``restarts``, episodes begin at the starts that they draw, and ``seed`` is not used;
-    episodes that do not begin at the level's start are not among the ``finished``.  ``replayed`` counts
-    the decisions that led to the starts.  ``lessons`` are decisions for the runner to imitate,
-    ``demonstrated`` are decisions for the algorithm to imitate.  ``dearer`` maps the length of a failed
-    episode to the largest extra penalty.  ``severity``, the penalty weight in [0, 1], initially 0, is
-    the share of it that is subtracted from the reward.
+    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on
+    ``device``.  ``shapes`` are the shapes of one environment's observation.  :meth:`finished`
+    returns the episodes that ended.  ``seed`` is the argument of the vector environment's reset: a
+    number, or one for each environment.
+
+    If there are ``restarts``, episodes begin at the starts that they draw, and ``seed`` is not
+    used; episodes that do not begin at the level's start are not among the ``finished``.
+    ``replayed`` counts the decisions that led to the starts.  ``lessons`` are decisions for the
+    runner to imitate, ``demonstrated`` are decisions for the algorithm to imitate.  ``dearer`` maps
+    the length of a failed episode to the largest extra penalty.  ``severity``, the penalty weight
+    in [0, 1], initially 0, is the share of it that is subtracted from the reward.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -135,7 +138,7 @@ class TrainingEnv(VecEnv):
         return self._replayed_before + (self._episodes.replayed if self._episodes else 0)
 
     def begin_anew(self) -> None:
-        """Cut off all episodes and begin new ones, after something else has used the vector environment."""
+        """Begin new episodes in all environments, after something else has used these."""
         assert self._episodes is not None
         assert self.restarts is not None
         self._replayed_before += self._episodes.replayed
@@ -148,11 +151,11 @@ class TrainingEnv(VecEnv):
         return ended
 
     def _taken(self, row: int, episode: Finished) -> int:
-        """Return how many steps the monitor saw in the episode that ended in this row, replayed ones included."""
+        """Return the steps of the episode that ended in this row, including replayed ones."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
-        tensors = {key: torch.from_numpy(each).to(self.device, torch.float32) for key, each in observation.items()}
+        tensors = {key: torch.from_numpy(values).to(self.device, torch.float32) for key, values in observation.items()}
         return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
 
 

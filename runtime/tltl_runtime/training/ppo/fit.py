@@ -1,4 +1,4 @@
-"""Restore a checkpoint, after checking that it fits the networks, optimisers and random generators."""
+"""Restore a checkpoint that fits the networks, optimisers and random generators; refuse others."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _NETWORK: Final = "_state_dict"
 def take_up(checkpoint: Checkpoint, runner: Runner, states: int) -> None:
     """Load the weights and optimisers of a checkpoint into a new runner.
 
-    ``states`` is the number of states of the spec's automaton.  Raises RecordJsonError if the checkpoint
-    does not fit, or if the random generator of a process cannot be restored.
+    ``states`` is the number of states of the spec's automaton.  Raises RecordJsonError if the
+    checkpoint does not fit, or if the random generator of a process cannot be restored.
     """
     initial = runner.alg.save()
     for name, wanted in initial.items():
@@ -69,7 +69,7 @@ def _is_count(value: Any) -> bool:
 
 
 def _check_optimizer(saved: object, wanted: Mapping[str, Any], where: str) -> None:
-    """Raise RecordJsonError if an optimiser has other weights or options, or averages that are not tensors."""
+    """Raise RecordJsonError for other weights or options, or for averages that are not tensors."""
     if not isinstance(saved, Mapping) or saved.keys() != wanted.keys():
         raise RecordJsonError(f"`{where}` is no state of an optimizer")
     state, groups = saved["state"], saved["param_groups"]
@@ -88,14 +88,20 @@ def _check_optimizer(saved: object, wanted: Mapping[str, Any], where: str) -> No
 
 
 def _check_options(saved: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
-    """Raise RecordJsonError if an option is missing or does not fit.  A newer torch may have saved more options."""
+    """Raise RecordJsonError if an option is missing or does not fit.
+
+    A newer torch may have saved more options.
+    """
     for name, option in wanted.items():
         if name not in saved or not _is_like(saved[name], option):
             raise RecordJsonError(f"an optimizer in it has other options: `{name}`")
 
 
 def _is_like(saved: Any, wanted: object) -> bool:
-    """Whether an option fits.  Single numbers may differ, because a training may change the learning rate."""
+    """Whether an option fits.
+
+    Single numbers may differ, because a training may change the learning rate.
+    """
     if isinstance(wanted, (tuple, list)):
         return isinstance(saved, (tuple, list)) and list(map(_plain, saved)) == list(wanted)
     if wanted is None:
@@ -111,7 +117,7 @@ def _are_numbers(saved: Any, wanted: list[int]) -> bool:
 
 
 def _plain(value: object) -> object:
-    """Return a number as it is, and None for any other value, because tensors cannot be compared."""
+    """Return a number as it is, and None for other values: tensors cannot be compared."""
     return value if isinstance(value, (int, float)) else None
 
 
@@ -147,7 +153,10 @@ def _check_generators(own: Mapping[str, Tensor], device: str) -> None:
 
 
 def _kind(value: object) -> str:
-    """Return the kind of an option.  None counts as a switch: an optimiser may change it to a bool."""
+    """Return the kind of an option.
+
+    None counts as a switch: an optimiser may change it to a bool.
+    """
     if value is None or isinstance(value, bool):
         return "switch"
     return "number" if isinstance(value, (int, float)) else type(value).__name__
@@ -171,7 +180,7 @@ def _check_moments(optimizer: Optimizer) -> None:
 
 
 def _moments(optimizer: Optimizer) -> set[str]:
-    """Return the names of the values that an optimiser of this class and these options keeps for a weight."""
+    """Return the names of what an optimiser of this class and these options keeps for a weight."""
     weight = nn.Parameter(torch.zeros(1))
     weight.grad = torch.zeros(1)
     make: Any = type(optimizer)

@@ -1,4 +1,4 @@
-"""Weights that depend on how often the spec is met: entropy bonus, penalty weight, inverse temperature."""
+"""Entropy bonus, penalty weight and inverse temperature, by how often the spec is met."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from tltlc.monitor.reward import terminal_penalty
 class Weighing:
     """The weights of a training.
 
-    ``entropy`` is the weight of the entropy bonus; None: it stays as it is.  ``severity`` is the penalty
-    weight of failures, in [0, 1]: see :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`.
-    ``sharpness`` is the inverse temperature, at least 1: the total factor on the actor's logits.
+    ``entropy`` is the weight of the entropy bonus; None: it stays as it is.  ``severity`` is the
+    penalty weight of failures, in [0, 1]: see
+    :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`.  ``sharpness`` is the inverse
+    temperature, at least 1: the total factor on the actor's logits.
     """
 
     entropy: float | None
@@ -27,10 +28,10 @@ class Weighing:
 def weighing(ppo: Ppo, met: float) -> Weighing:
     """Return the weights for the share ``met``, in [0, 1], of the last episodes that met the spec.
 
-    The entropy bonus fades as the spec is met more often, because less exploration is needed.  From one
-    half on, the penalty weight rises: the discounted penalty costs less than a longer, safe trajectory.
-    At that stage, most failures come from unlikely actions that were sampled by chance, so the inverse
-    temperature rises, too.
+    The entropy bonus fades as the spec is met more often, because less exploration is needed.  From
+    one half on, the penalty weight rises: the discounted penalty costs less than a longer, safe
+    trajectory.  At that stage, most failures come from unlikely actions that were sampled by
+    chance, so the inverse temperature rises, too.
     """
     rise = max(0.0, 2 * met - 1)
     return Weighing(

@@ -1,4 +1,4 @@
-"""The data that processes exchange after an iteration, and the state that each process has for itself."""
+"""The exchange between processes after an iteration, and the own state of each process."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ class Gathered:
 
 
 def gathered(own: Peers, iteration: Iteration, runner: Runner) -> Gathered:
-    """Gather an iteration from all processes.  Raises TltlError, TLT0866, if any loss is not a number."""
+    """Gather an iteration from all processes.
+
+    Raises TltlError, TLT0866, if any loss is not a number.
+    """
     values = own.gather((iteration, own_state(runner), runner.env.replayed))
     iterations, processes, replayed = zip(*values, strict=True)
     for process_iteration in iterations:

@@ -11,7 +11,10 @@ from tltl_runtime.training.run.run import Run
 
 
 class Purpose(IntEnum):
-    """The purpose of a random stream.  Do not change the values: equal seeds must give equal trainings."""
+    """The purpose of a random stream.
+
+    Do not change the values: equal seeds must give equal trainings.
+    """
 
     TORCH = 0
     ENVIRONMENTS = 1

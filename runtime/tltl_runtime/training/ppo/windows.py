@@ -19,16 +19,16 @@ _RISE = 0.05
 _BETWEEN = 0.1, 0.8
 """A standstill is detected only between these pass rates.
 
-Below them, the reverse curriculum has not reached the level's start yet.  Above them, little is left to
-find.
+Below them, the reverse curriculum has not reached the level's start yet.  Above them, little is
+left to find.
 """
 
 
 class Windows:
     """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's limit, or None.
 
-    ``unbroken`` is the number of episodes in a row, up to the last one, that met the spec.  A failed
-    confirmation of the policy resets it.
+    ``unbroken`` is the number of episodes in a row, up to the last one, that met the spec.  A
+    failed confirmation of the policy resets it.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
@@ -93,7 +93,10 @@ class Windows:
         )
 
     def _reward(self, episode: Finished) -> float:
-        """Return the return in mode ``progress`` with the undiscounted terminal penalty (semantics, section 4)."""
+        """Compute the return in mode ``progress`` with the undiscounted terminal penalty.
+
+        See semantics, section 4.
+        """
         if self._limit_steps is None:
             return episode.progress
         return episode.progress - (episode.steps / self._limit_steps if episode.success else 1.0)
@@ -102,15 +105,15 @@ class Windows:
 class Standstill:
     """Detects a standstill: the agent succeeds sometimes, but its pass rate no longer rises.
 
-    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the number of steps when it was
-    reached.
+    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the number of steps when it
+    was reached.
     """
 
     def __init__(self, best: float = 0.0, since: int = 0) -> None:
         self._best, self._since = best, since
 
     def add(self, window: Window, steps: int) -> bool:
-        """Add the window after ``steps`` decisions of all environments; return whether this is a standstill.
+        """Add the window after ``steps`` of all environments; return whether this is a standstill.
 
         After a standstill, the count of steps begins again.
         """

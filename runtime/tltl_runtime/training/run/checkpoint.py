@@ -1,4 +1,4 @@
-"""Checkpoints: everything that a training needs to resume, in one file that is written atomically."""
+"""Checkpoints: everything to resume a training, in one file that is written atomically."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from tltlc.io.writing import write_file
 FORMAT: Final = "tltl-checkpoint"
 VERSION: Final = 5
 _MOST: Final = 2**53
-"""The largest number of steps or seconds in a checkpoint: larger integers are not exact as floats."""
+"""The largest number of steps or seconds: larger integers are not exact as floats."""
 
 
 @record
 class Best:
-    """The best policy: its score, the actor's weights by name, and the steps after which it had them."""
+    """The best policy: its score, its weights by name, and the steps after which it had them."""
 
     score: Score
     actor: Mapping[str, Tensor]
@@ -46,7 +46,8 @@ class Checkpoint:
 
     - ``run`` is the :func:`~tltl_runtime.training.run.run.identity` of the training.
     - ``losses`` are the losses of the iteration.
-    - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed decisions.
+    - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed
+      decisions.
     - ``searched`` is the result of the searches so far.
     - ``algorithm`` is what rsl-rl's algorithm saves.
     - ``processes`` has the own state of each process: the states of torch's random generators by
@@ -54,8 +55,8 @@ class Checkpoint:
       :class:`~tltl_runtime.training.exploration.reverse_curriculum.Restarts`.
     - ``window`` and ``unbroken`` are from :class:`~tltl_runtime.training.ppo.windows.Windows`,
       ``standstill`` from :class:`~tltl_runtime.training.ppo.windows.Standstill`.
-    - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows and
-      in its confirmation.
+    - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows
+      and in its confirmation.
     """
 
     run: Mapping[str, str]
@@ -79,13 +80,13 @@ class Checkpoint:
 
     @property
     def weights(self) -> Mapping[str, Tensor]:
-        """The weights of the best actor, by name, or of the current actor if there is no best one yet."""
+        """The weights, by name, of the best actor, or of the current one if there is no best."""
         last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
         return self.best.actor if self.best else last
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}
-"""The fields that are records themselves: they are saved as dicts, because torch could not load them."""
+"""The fields that are records.  They are saved as dicts, because torch would not load records."""
 _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
 
@@ -110,9 +111,9 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
     ``run`` is the identity of the expected training; None accepts any.
 
     Raises:
-        TltlError: TLT0001, the file cannot be read; TLT0864, it is not a checkpoint, is damaged, has
-            another version, or is of another training than ``run``; TLT0868, it is of ``run`` on
-            another level; TLT0922, it is of ``run`` with other demonstrations.
+        TltlError: TLT0001, the file cannot be read; TLT0864, it is not a checkpoint, is damaged,
+            has another version, or is of another training than ``run``; TLT0868, it is of ``run``
+            on another level; TLT0922, it is of ``run`` with other demonstrations.
     """
     if not path.exists():
         return None
@@ -155,7 +156,10 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
 
 
 def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
-    """Make a checkpoint of the loaded content.  Raises KeyError or RecordJsonError if something is invalid."""
+    """Make a checkpoint of the loaded content.
+
+    Raises KeyError or RecordJsonError if something is invalid.
+    """
     processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
     if not isinstance(processes, (tuple, list)) or not processes:
         raise RecordJsonError("`processes` is no list, or is empty")
@@ -221,8 +225,8 @@ def _lists(value: object) -> object:
 def _check_run(path: Path, actual: Mapping[str, str], wanted: Mapping[str, str]) -> None:
     """Check that a checkpoint is of the training ``wanted``.
 
-    Raises TLT0868 if only the level differs, TLT0922 if only the demonstrations differ, and TLT0864 with
-    all differences otherwise.
+    Raises TLT0868 if only the level differs, TLT0922 if only the demonstrations differ, and TLT0864
+    with all differences otherwise.
     """
     different = [name for name in wanted if actual.get(name) != wanted[name]]
     if different == ["level"]:
@@ -234,7 +238,7 @@ def _check_run(path: Path, actual: Mapping[str, str], wanted: Mapping[str, str])
 
 
 def damaged(path: Path, why: str) -> TltlError:
-    """Return error TLT0864: a checkpoint is damaged or does not fit the training; ``why`` says how."""
+    """Return error TLT0864: a checkpoint is damaged or does not fit; ``why`` says how."""
     help_ = "put back a copy of it, or move it away: the training then begins anew"
     return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])
 

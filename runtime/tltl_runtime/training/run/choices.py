@@ -1,4 +1,4 @@
-"""The values of the settings that are one of a few texts, except for the network and the rewards."""
+"""The texts that settings choose from, except for the network and the rewards."""
 
 from __future__ import annotations
 

@@ -16,8 +16,8 @@ _DPI: Final = 100
 def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
     """Return a PNG of a learning ``curve``.
 
-    Each point has ``steps``, and ``pass_rate`` and ``progress``, which are None before the first episode
-    has ended.
+    Each point has ``steps``, and ``pass_rate`` and ``progress``, which are None before the first
+    episode has ended.
     """
     picture = BytesIO()
     curve_figure(title, curve).savefig(picture, format="png", metadata={"Software": None})

@@ -11,7 +11,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 
 
 def held(folder: Path) -> AbstractContextManager[None]:
-    """Lock the folder inside the block, so that no other process trains in it; create it if it is missing.
+    """Lock the folder inside the block, so that no other process trains in it.
+
+    The folder is created if it is missing.
 
     Raises:
         TltlError: TLT0005, the folder cannot be written to; TLT0865, another process trains in it.

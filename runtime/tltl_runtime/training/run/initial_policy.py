@@ -18,7 +18,7 @@ def initial_of(path: Path, policy: Policy) -> Initial:
 
 
 def weights_hash(policy: Policy) -> str:
-    """Return the SHA-256, in hexadecimal, of the weights as in a policy file, and of their names."""
+    """Return the SHA-256, in hexadecimal, of the weights, as in a file, and of their names."""
     digest = hashlib.sha256()
     for name, tensor in sorted(policy.weights().items()):
         digest.update(name.encode() + b"\0" + tensor.numpy().tobytes())

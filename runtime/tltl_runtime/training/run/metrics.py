@@ -1,4 +1,4 @@
-"""The metrics of a training, one line per iteration: ``metrics.jsonl``, and the same for TensorBoard."""
+"""The metrics of a training, per iteration, in ``metrics.jsonl`` and for TensorBoard."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ _OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
 class Metrics:
     """Writes the metrics files in the folder of a training.
 
-    When a training is resumed, metrics after iteration ``after``, which ended at ``steps``, are removed,
-    because those iterations run again.
+    When a training is resumed, metrics after iteration ``after``, which ended at ``steps``, are
+    removed, because those iterations run again.
 
     Raises:
-        TltlError: TLT0005, the folder cannot be written to, here or in ``add``; TLT0001, a file in it
-            cannot be read.
+        TltlError: TLT0005, the folder cannot be written to, here or in ``add``; TLT0001, a file in
+            it cannot be read.
     """
 
     def __init__(self, folder: Path, fspa: Fspa, *, after: int = 0, steps: int = 0) -> None:
@@ -123,7 +123,10 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
 
 
 def truncate(path: Path, iteration: int) -> None:
-    """Keep the lines of ``metrics.jsonl`` up to an iteration.  Raises TltlError, TLT0001, TLT0004 or TLT0005."""
+    """Keep the lines of ``metrics.jsonl`` up to an iteration.
+
+    Raises TltlError, TLT0001, TLT0004 or TLT0005.
+    """
     kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
     write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
 
@@ -152,7 +155,7 @@ def _is_number(value: object) -> bool:
 
 
 def _append(path: Path, line: bytes) -> None:
-    """Append a line with a single write, so that a killed process leaves the whole line or nothing."""
+    """Append a line in a single write, so that a killed process leaves all of it or nothing."""
     descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
     try:
         if os.write(descriptor, line) < len(line):

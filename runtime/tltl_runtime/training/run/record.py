@@ -1,4 +1,7 @@
-"""The record of a training that ended: its inputs and results, in ``record.json`` and in the policy file."""
+"""The record of a training that ended: its inputs and results.
+
+It is in ``record.json`` and in the policy file.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,7 @@ _POINT: Final = ("iteration", "steps", "seconds", "pass_rate", "progress", "rewa
 
 
 def write_record(run: Run, last: Report) -> dict[str, Any]:
-    """Write ``record.json`` and ``curve.png``, and the record into the policy file; return the record.
+    """Write ``record.json``, ``curve.png`` and the record in the policy file; return the record.
 
     ``last`` is the last report of the training.  The metrics have no lines after it, because the
     training has removed those that a killed process left.
@@ -91,7 +94,10 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
 
 
 def _initial(run: Run) -> dict[str, Any] | None:
-    """Return the policy that the training began with, without its path, which is only valid on this machine."""
+    """Return the entry for the initial policy.
+
+    It lacks the path, which is only valid on this machine.
+    """
     return None if run.initial is None else {k: v for k, v in to_json(run.initial).items() if k != "path"}
 
 
@@ -121,10 +127,10 @@ def _best(pass_rate: float | None, steps: int | None, *, confirmed: bool) -> dic
 
 
 def ended_as(run: Run) -> dict[str, Any] | None:
-    """Return the record of a training that has ended and would end at once if resumed; otherwise None.
+    """Return the record of a training that has ended and would end at once if resumed, or None.
 
-    Unless the spec was met, ``end`` is the limit of ``run`` that the training has reached, whichever
-    limit it ended by.
+    Unless the spec was met, ``end`` is the limit of ``run`` that the training has reached,
+    whichever limit it ended by.
     """
     document = _recorded(run.folder)
     if document is None or document["end"] == "met":
@@ -140,7 +146,7 @@ def recorded_end(folder: Path) -> StopReason | None:
 
 
 def _recorded(folder: Path) -> dict[str, Any] | None:
-    """Return the record in a folder; None if it is missing or damaged, so that it is written again."""
+    """Return the record in a folder; None if it is missing or damaged and must be written again."""
     try:
         document = load(folder / RECORD, REPORT)
         from_json(_Ended, {name: document[name] for name in ("end", "steps", "seconds")}, RECORD)

@@ -18,9 +18,9 @@ class Window:
     """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
     The means are 0 if there is no episode: ``progress`` in [0, 1]; ``reward``, always with the
-    undiscounted terminal penalty; and the length in ``steps``.  ``states`` maps the automaton state at
-    the end of an episode, or before its violation, to the share of episodes in [0, 1].  ``violated``
-    has the shares of violations alone.  States in which no episode ended are left out.
+    undiscounted terminal penalty; and the length in ``steps``.  ``states`` maps the automaton state
+    at the end of an episode, or before its violation, to the share of episodes in [0, 1].
+    ``violated`` has the shares of violations alone.  States in which no episode ended are left out.
     """
 
     count: int
@@ -62,8 +62,8 @@ class Report:
     - ``unbroken`` is the number of last episodes in a row that met the spec; a failed confirmation
       resets it.
     - ``confirmation`` is the result of the confirmation in this iteration, None if none was due.
-    - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the steps after which
-      it had its weights; None if there is no best policy yet.
+    - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the steps after
+      which it had its weights; None if there is no best policy yet.
     - ``stop`` says why the training ends here; None if it goes on.
     - ``checkpointed`` says whether a checkpoint is written for this iteration.
     - ``searched`` is the result of the searches, None if there was none.

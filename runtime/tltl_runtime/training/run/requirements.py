@@ -12,7 +12,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def class_of(setting: str, name: str, base: type) -> Any:
-    """Return the class with a name.  Raises TltlError, TLT0862, unless it is a subclass of ``base``."""
+    """Return the class with a name.
+
+    Raises TltlError, TLT0862, unless it is a subclass of ``base``.
+    """
     try:
         cls = resolve_callable(name)
         reason = "" if isinstance(cls, type) and issubclass(cls, base) else f"it is no subclass of {base.__name__}"

@@ -55,10 +55,11 @@ _MOST_NAMED: Final = 8
 
 @record
 class Initial:
-    """A policy whose weights a training begins with: the ``path`` of its file, and its content when it was read.
+    """A policy whose weights a training begins with.
 
-    ``weights`` is the SHA-256, in hexadecimal, of its weights.  ``level``, ``variant`` and ``level_hash``
-    are from its card.
+    ``path`` is its file; the other fields describe its content when it was read.
+    ``weights`` is the SHA-256, in hexadecimal, of its weights.  ``level``, ``variant`` and
+    ``level_hash`` are from its card.
     """
 
     path: str
@@ -75,7 +76,8 @@ class Run:
     ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is an argument of
     :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``demonstrations`` is the folder of the
     demonstrations to imitate; None is a folder of the training itself, into which the expert's are
-    recorded.  ``initial`` is the policy whose weights the actor begins with, None for random weights.
+    recorded.  ``initial`` is the policy whose weights the actor begins with, None for random
+    weights.
     """
 
     folder: Path
@@ -104,7 +106,10 @@ _PLAIN: Final[Mapping[str, Any]] = {
 
 
 def write_run(run: Run) -> None:
-    """Write ``run.json`` into the folder; create the folder if it is missing.  Raises TltlError, TLT0005."""
+    """Write ``run.json`` into the folder; create the folder if it is missing.
+
+    Raises TltlError, TLT0005.
+    """
     (artefact,) = emit("json", run.fspa).values()
     # Paths are absolute, because the training may be resumed from another folder.
     level = str(level_path(run.level).absolute()) if run.level.endswith(".toml") else run.level
@@ -142,7 +147,7 @@ def read_run(folder: Path) -> Run:
 
 
 def read_place(folder: Path) -> tuple[str, str]:
-    """Return level and variant of the training in a folder, even if other parts cannot be read any more.
+    """Return level and variant of the training in a folder, even if its other parts are invalid.
 
     Raises the errors of :func:`read_run`.
     """
@@ -194,10 +199,10 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 def identity(run: Run) -> dict[str, str]:
     """Return everything that a checkpoint depends on, in parts that messages distinguish.
 
-    ``level`` and ``spec`` are hashes, ``seed`` is the seed.  ``settings`` is a SHA-256, in hexadecimal, of
-    the observation version, the params, the sensors and all settings except :data:`MAY_CHANGE`.  With
-    imitation, ``demonstrations`` is a hash of the recordings.  With an initial policy, ``policy`` is the
-    hash of its weights.
+    ``level`` and ``spec`` are hashes, ``seed`` is the seed.  ``settings`` is a SHA-256, in
+    hexadecimal, of the observation version, the params, the sensors and all settings except
+    :data:`MAY_CHANGE`.  With imitation, ``demonstrations`` is a hash of the recordings.  With an
+    initial policy, ``policy`` is the hash of its weights.
     """
     relevant = {
         "observation": OBSERVATION,
@@ -222,7 +227,7 @@ def demonstrations_of(run: Run) -> Path:
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the name and value of each setting in JSON data; a dot separates table and key in the name."""
+    """Yield the name and value of each setting in JSON data; names are ``table.key``."""
     if not isinstance(settings, dict):
         yield path, settings
         return

@@ -31,10 +31,10 @@ _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*
 class Ppo:
     """The settings of rsl-rl's PPO.
 
-    The default learning rate, entropy, clip, lambda and gamma are the paper's (section VI).  As the pass
-    rate rises from one half to 1, the inverse temperature rises from 1 to ``sharpening``.  A training that
-    begins with a policy has an untrained critic, so only the critic learns in the first ``warm_up``
-    updates.  Otherwise the policy would follow the critic's initial errors.
+    The default learning rate, entropy, clip, lambda and gamma are the paper's (section VI).  As the
+    pass rate rises from one half to 1, the inverse temperature rises from 1 to ``sharpening``.  A
+    training that begins with a policy has an untrained critic, so only the critic learns in the
+    first ``warm_up`` updates.  Otherwise the policy would follow the critic's initial errors.
     """
 
     learning_rate: float
@@ -55,8 +55,8 @@ class Ppo:
 class Rollout:
     """The settings of rollouts.
 
-    Each of ``envs`` environments takes ``steps`` decisions between updates.  ``workers`` processes step
-    them (0: one per core), on this machine or on a Ray cluster.
+    Each of ``envs`` environments takes ``steps`` decisions between updates.  ``workers`` processes
+    step them (0: one per core), on this machine or on a Ray cluster.
     """
 
     envs: int
@@ -69,12 +69,12 @@ class Rollout:
 class Imitation:
     """The settings of the imitation baseline (paper, section VI): behavioural cloning, then GAIL.
 
-    ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or of
-    minutes.  ``demonstrations`` episodes of the expert are recorded if no demonstrations are given.  The
-    discriminator has two layers of width ``encoding``, the learning rate ``discriminator_rate`` and the
-    weight ``gradient_penalty`` of its gradient penalty.  Its reward is multiplied by ``strength``.  The
-    terminal reward of an episode is plus or minus ``terminal``.  See
-    :mod:`tltl_runtime.training.imitation.gail`.
+    ``cloning`` is the share of behavioural cloning in the limit that is reached first, of steps or
+    of minutes.  ``demonstrations`` episodes of the expert are recorded if no demonstrations are
+    given.  The discriminator has two layers of width ``encoding``, the learning rate
+    ``discriminator_rate`` and the weight ``gradient_penalty`` of its gradient penalty.  Its reward
+    is multiplied by ``strength``.  The terminal reward of an episode is plus or minus ``terminal``.
+    See :mod:`tltl_runtime.training.imitation.gail`.
     """
 
     demonstrations: int
@@ -88,7 +88,7 @@ class Imitation:
 
 @record
 class Reward:
-    """The settings of rewards: those of :class:`~tltlc.monitor.reward.RewardOptions`, and a schedule.
+    """The settings of rewards: :class:`~tltlc.monitor.reward.RewardOptions` and a schedule.
 
     With the ``penalty_schedule`` ``rising``, a ``discounted`` terminal penalty of mode ``progress``
     changes to the undiscounted one as the pass rate rises from one half to 1.
@@ -115,9 +115,9 @@ class Reward:
 class Stop:
     """The settings of when a training ends.
 
-    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the spec, and
-    then the policy meets it in ``confirmation`` fresh episodes.  It also ends after ``steps`` decisions of
-    all environments, or after ``minutes`` of training (0: no such limit).
+    It ends when all episodes of ``windows`` successive windows of ``episodes`` each have met the
+    spec, and then the policy meets it in ``confirmation`` fresh episodes.  It also ends after
+    ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such limit).
     """
 
     windows: int
@@ -149,10 +149,10 @@ class Classes:
 class Settings:
     """All settings of a training except its seed.
 
-    With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and ``reward``
-    do not.  A checkpoint is written after the first iteration that ends ``checkpoint_s`` seconds or more
-    after the last checkpoint.  ``threads`` is the number of torch's threads in updates, ``device`` the
-    device of the network.
+    With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and
+    ``reward`` do not.  A checkpoint is written after the first iteration that ends ``checkpoint_s``
+    seconds or more after the last checkpoint.  ``threads`` is the number of torch's threads in
+    updates, ``device`` the device of the network.
     """
 
     ppo: Ppo
@@ -188,8 +188,8 @@ def read_settings(path: Path | None = None) -> Settings:
     """Return the default settings, overridden by a TOML file.
 
     Raises:
-        TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an unknown
-            key (TLT0861) or an invalid value (TLT0862).
+        TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an
+            unknown key (TLT0861) or an invalid value (TLT0862).
     """
     values = read_values(read_source(DEFAULTS))
     if path is not None:
@@ -218,7 +218,7 @@ def default_text() -> str:
 
 
 def settings_text(settings: Settings) -> str:
-    """Return settings as TOML text: the text of the defaults, with the values that differ replaced."""
+    """Return settings as TOML text: that of the defaults, with other values where they differ."""
     table, lines = "", []
     defaults = read_settings()
     for line in default_text().splitlines():
@@ -235,19 +235,25 @@ def settings_text(settings: Settings) -> str:
 
 
 def _toml(value: object) -> str:
-    """Return the value of a setting as TOML.  The texts have no characters that TOML and JSON read differently."""
+    """Return the value of a setting as TOML.
+
+    The texts have no characters that TOML and JSON read differently.
+    """
     # `ensure_ascii` off: JSON escapes characters beyond 16 bits as surrogate pairs, which TOML does not allow.
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
 def algorithm_name(settings: Settings) -> str:
-    """Return the name of the algorithm's class.  With imitation, ``PPO`` in the settings means GAIL on top of it."""
+    """Return the name of the algorithm's class.
+
+    With imitation, :class:`~tltl_runtime.training.imitation.gail.Gail` takes the place of ``PPO``.
+    """
     name = settings.classes.algorithm
     return _GAIL if settings.imitates and name == _PPO else name
 
 
 def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
-    """Return the configuration of rsl-rl's runner, for these shapes of observations and branches of actions."""
+    """Return rsl-rl's configuration for these shapes of observations and branches of actions."""
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)
     gail = {

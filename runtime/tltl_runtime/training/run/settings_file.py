@@ -214,7 +214,10 @@ def _read(table: str, key: str, entry: Entry, values: dict[str, Any], log: list[
 
 
 def _like(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
-    """Suggest a similar setting, or None.  With too many errors there are no suggestions, because each takes time."""
+    """Suggest a similar setting, or None.
+
+    With too many errors there are no suggestions, because each takes time.
+    """
     return suggestion(key, known) if len(log) < MOST_SUGGESTIONS else None
 
 

@@ -42,12 +42,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def begun(run: Run, resume: bool) -> Checkpoint | None:
-    """Return the checkpoint to resume from, None if the training begins; write ``run.json`` if needed.
+    """Write ``run.json`` if needed; return the checkpoint to resume from, None for a new training.
 
     Raises:
         TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level has changed;
-            TLT0867, the folder holds a training and ``resume`` is false; TLT0005, the folder cannot be
-            written to.
+            TLT0867, the folder holds a training and ``resume`` is false; TLT0005, the folder cannot
+            be written to.
     """
     if resume:
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
@@ -88,8 +88,8 @@ def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> De
     Missing demonstrations of the expert are recorded first.
 
     Raises:
-        TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a recording
-            cannot be written.
+        TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a
+            recording cannot be written.
     """
     if not run.settings.imitates:
         return None
@@ -103,10 +103,11 @@ def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> De
 
 
 def initial_policy(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Policy | None:
-    """Return the policy that the training begins with; None with random weights or with a checkpoint.
+    """Return the policy that the training begins with; None with random weights or a checkpoint.
 
     Raises:
-        TltlError: TLT0940, the policy's file is missing or has changed; the errors of ``read_policy``.
+        TltlError: TLT0940, the policy's file is missing or has changed; the errors of
+            ``read_policy``.
     """
     if run.initial is None or checkpoint is not None:
         return None
@@ -125,9 +126,10 @@ def prepared(
 ) -> tuple[TrainingEnv, Searched | None]:
     """Return the environment for rsl-rl, at the start of new episodes, and the result of a search.
 
-    Process and iteration determine the seeds, so no episode is played twice.  There is no search, and
-    the result is None, if there was one before, unless a limit broke it off before it found a way.
-    ``initial``, the policy that the training begins with, plays first in the search.
+    The seeds depend on process and iteration, so that episodes differ from those played before.
+    The result is None if there is no search.  A search is not repeated, unless a limit broke it off
+    before it found a way.  ``initial``, the policy that the training begins with, plays first in
+    the search.
     """
     searched, restarts, lessons = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0

@@ -1,8 +1,8 @@
 """Load files of ``torch.save`` that may be damaged or malicious, with bounded memory.
 
-``torch.load`` with ``weights_only`` executes nothing in the file.  But it unpacks compressed members of
-any size, makes tensors that are larger than their storage, and shares one list in many places.  This
-module refuses all three.
+``torch.load`` with ``weights_only`` executes nothing in the file.  But it unpacks compressed
+members of any size, makes tensors that are larger than their storage, and shares one list in many
+places.  This module refuses all three.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _OPCODES: Final = 20
 
 
 class TorchArchiveError(ValueError):
-    """The bytes are not what ``torch.save`` writes for plain data and tensors; the message says why."""
+    """The bytes are not plain data and tensors of ``torch.save``; the message says why."""
 
 
 def read_torch(data: bytes) -> Any:
@@ -55,9 +55,10 @@ def read_torch(data: bytes) -> Any:
 
 
 def _checked(data: bytes) -> bytes:
-    """Return the archive with checked members: uncompressed, undamaged, and with calls for plain data only.
+    """Check the members of an archive; return it written again.
 
-    The archive is written again, because in a malicious archive torch may see other members than Python.
+    Members must be uncompressed and undamaged, and call only what makes plain data.  The archive is
+    written again, because in a malicious archive torch may see other members than Python.
     """
     # torch reads a file with another beginning in its older format, even if an archive follows.
     if not data.startswith(b"PK\x03\x04"):
@@ -94,8 +95,8 @@ def _archive(contents: Mapping[str, bytes]) -> bytes:
 def _check_calls(pickled: bytes) -> None:
     """Refuse a pickle that is too long, or does more than make plain data and tensors.
 
-    Tuples must not be keys of dicts.  If each of several nested tuples contains the next one twice, the
-    time to hash them doubles with each level.
+    Tuples must not be keys of dicts.  If each of several nested tuples contains the next one twice,
+    the time to hash them doubles with each level.
     """
     stack: list[str] = []
     marks: list[int] = []
@@ -122,7 +123,7 @@ def _check_calls(pickled: bytes) -> None:
 
 
 def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
-    """Remove the values that an operation takes from the stack; return their kinds, without the mark.
+    """Take the values of an operation from the stack; return their kinds, without the mark.
 
     ``marks`` are the positions at which marks were put on the stack.  Some marks may be gone.
     """
@@ -154,7 +155,10 @@ def _given(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
 
 
 def _check_values(content: object) -> None:
-    """Check the number of values and the depth of loaded data.  A value in two places counts twice."""
+    """Check the number of values and the depth of loaded data.
+
+    A value in two places counts twice.
+    """
     level: list[object] = [content]
     count = 0
     for _ in range(CHECKPOINT.depth or 0):

@@ -43,31 +43,33 @@ def train(
     searching: Searching = lambda searched: None,
     recording: Callable[[Tried], None] = lambda tried: None,
 ) -> Generator[Report]:
-    """Train in ``run.folder``; yield a report after each iteration.  The last report says why it ends.
+    """Train in ``run.folder``; yield a report after each iteration.  The last one says why it ends.
 
     The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the files of
-    :class:`~tltl_runtime.training.run.metrics.Metrics`, each before the report of its iteration.  Any end
-    of the training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
-    iteration.  Only a killed process loses the iterations after the last checkpoint.  With ``resume``, the
-    training continues from the checkpoint; a training that is over yields its last report again.
+    :class:`~tltl_runtime.training.run.metrics.Metrics`, each before the report of its iteration.
+    Any end of the training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the
+    last complete iteration.  Only a killed process loses the iterations after the last checkpoint.
+    With ``resume``, the training continues from the checkpoint; a training that is over yields its
+    last report again.
 
-    First, a search finds ways to meet the spec; ``searching`` is called with its progress.  In the search,
-    the policy that the training begins with plays first, if there is one.  With imitation, the expert's
-    demonstrations are recorded first if none are given; ``recording`` is called with each attempt.
+    First, a search finds ways to meet the spec; ``searching`` is called with its progress.  In the
+    search, the policy that the training begins with plays first, if there is one.  With imitation,
+    the expert's demonstrations are recorded first if none are given; ``recording`` is called with
+    each attempt.
 
-    Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun, each
-    process trains with its own environments.  The reports of all processes are equal, except for losses,
-    times and searches, which are of the process itself, and for checkpoints, which only the first process
-    writes.
+    Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun,
+    each process trains with its own environments.  The reports of all processes are equal, except
+    for losses, times and searches, which are of the process itself, and for checkpoints, which only
+    the first process writes.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are not
-            numbers; TLT0862, the device or a class does not exist, or the network is too large for a
-            policy file; TLT0864, the checkpoint cannot be resumed from; TLT0865, another process trains
-            in the folder; TLT0866, a loss is not a number; TLT0867, the folder holds a training and
-            ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921, there are no
-            demonstrations to imitate; TLT0922, the demonstrations have changed; TLT0940, the policy to
-            begin with has changed.
+        TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are
+            not numbers; TLT0862, the device or a class does not exist, or the network is too large
+            for a policy file; TLT0864, the checkpoint cannot be resumed from; TLT0865, another
+            process trains in the folder; TLT0866, a loss is not a number; TLT0867, the folder holds
+            a training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921,
+            there are no demonstrations to imitate; TLT0922, the demonstrations have changed;
+            TLT0940, the policy to begin with has changed.
         WorkerError: a worker process of the environments was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
@@ -97,7 +99,7 @@ def train(
 
 
 class _Training:
-    """The training in this process, ``own``; ``_state`` is the state after the last complete iteration."""
+    """The training in process ``own``; ``_state`` is that after the last complete iteration."""
 
     def __init__(
         self,
@@ -213,11 +215,14 @@ class _Training:
                 self._keeping.save(self._state)
 
     def _seconds(self) -> float:
-        """Return the training time so far, by the first process's clock, so that all processes decide alike."""
+        """Return the training time so far.
+
+        It is from the clock of the first process, so that all processes decide alike.
+        """
         return self._own.broadcast(self._seconds_before + time.perf_counter() - self._began)
 
     def _weigh(self) -> float:
-        """Set entropy bonus and penalty weight by the last episodes; return the inverse temperature."""
+        """Set entropy bonus and penalty weight by the last episodes; return the sharpness."""
         # A few successes say little, so episodes that have not been played yet count as failures.
         met = self._windows.window.successes / (self._stop.windows * self._stop.episodes)
         weights = weighing(self._run.settings.ppo, met)
@@ -232,9 +237,11 @@ class _Training:
             self._runner.alg.seconds = self._state.seconds
 
     def _best(self) -> Best | None:
-        """Return the best policy so far: the one that played the end of the last window, unless an older one is better.
+        """Return the best policy so far.
 
-        If all windows met the spec, the last one is taken even if an older one has a better score.
+        It is the one that played the end of the last window, unless an older one has a better
+        score.  If all episodes of all windows met the spec, it is always the one of the last
+        window.
         """
         best, score = self._state.best, self._windows.score
         if score is None or (best is not None and score < best.score and not self._windows.met):
@@ -243,7 +250,7 @@ class _Training:
         return Best(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: Best, iteration: int) -> Confirmation:
-        """Confirm the policy that met the spec in all windows; the first process plays the episodes."""
+        """Confirm the policy that met the spec in all windows; the first process plays."""
         confirmation = None
         if self._own.rank == 0:
             policy = policy_of(self._card, best.actor)
@@ -275,7 +282,7 @@ class _Training:
 
 
 def _unbegun(run: Run, runner: Runner) -> Checkpoint:
-    """Return the state of a training before its first iteration, without the own states of its processes."""
+    """Return the state before the first iteration, without the own states of the processes."""
     return Checkpoint(
         run=identity(run),
         iteration=0,

@@ -19,9 +19,9 @@ class Keeping:
 
     ``card`` is the card of its policies.  ``saved`` is the checkpoint in the folder, or None.
 
-    All methods may raise:
-        TltlError: TLT0005, a file cannot be written; TLT0001, the metrics cannot be read; TLT0866, a
-            weight is too large for a policy.
+    Raises:
+        TltlError: in any method: TLT0005, a file cannot be written; TLT0001, the metrics cannot be
+            read; TLT0866, a weight is too large for a policy.
     """
 
     def __init__(self, run: Run, card: Card, saved: Checkpoint | None) -> None:
@@ -34,7 +34,8 @@ class Keeping:
     def take_up(self, state: Checkpoint) -> None:
         """Bring the folder to the state of the training.
 
-        The state is saved at once, so that a process that is killed soon need not repeat the search.
+        The state is saved at once, so that a process that is killed soon need not repeat the
+        search.
         """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)
