@@ -1,1 +1,1 @@
-"""A monitor as a program of no language: declarations, assignments and branches, which backends print."""
+"""Language-independent monitor programs: declarations, assignments and branches, which backends print."""

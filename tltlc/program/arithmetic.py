@@ -1,8 +1,11 @@
-"""The expressions of predicates as statements of a program.
+"""Turn the expressions of predicates into statements of a program.
 
-A ``when`` inside an expression becomes a branch before it, that assigns a variable; so does what nests too deep for a
-language's own parser, and the base of a power that is a product.  What Python would not compute is not computed: parts
-of ``and`` and ``or`` that need statements stand in branches of their own.
+A ``when`` inside an expression becomes a branch before it that assigns a variable. A variable also
+holds a subexpression that nests too deep for the parsers of some languages, and the base of a power
+that is written as a product.
+
+Evaluation is as lazy as in Python: operands of ``and`` and ``or`` that need statements of their own
+go into separate branches.
 """
 
 from __future__ import annotations
@@ -32,15 +35,16 @@ from tltlc.program.tree import (
 )
 
 _DEEPEST: Final = 30
-"""How deep expressions nest; C# and GDScript compilers take some hundreds of levels, Lua 200."""
+"""The depth at which expressions are split. C# and GDScript compilers take some hundreds of levels, Lua takes 200."""
 
 _Node = Union[source.Expression, source.Condition]
 
 
 def defined(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
-    """What :meth:`Arithmetic.assigned` gives, and the declaration of the variable: with its value where it can be.
+    """Return the statements of :meth:`Arithmetic.assigned` with a declaration of the variable.
 
-    The variable ``changes`` where the value of an atom is brought into its range afterwards.
+    The declaration includes the value where a single assignment gives it. Pass ``changes=True`` if
+    the variable is assigned again later, as when the value of an atom is clamped to its range.
     """
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
@@ -49,9 +53,10 @@ def defined(name: str, statements: Sequence[Statement], *, changes: bool = True)
 
 
 class Arithmetic:
-    """Writes expressions over variables; ``signals`` and ``params`` map names to those of variables.
+    """Translates expressions; ``signals`` and ``params`` map names to the names of variables.
 
-    New variables are called ``PREFIX1``, ``PREFIX2`` and so on, counted over all that one object writes.
+    New variables are called ``PREFIX1``, ``PREFIX2`` and so on. The count continues over all calls
+    on one object.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -59,7 +64,7 @@ class Arithmetic:
         self._count = 0
 
     def assigned(self, name: str, expression: source.Expression) -> list[Statement]:
-        """Statements that give a variable, which is declared, the value of an expression."""
+        """Return statements that assign the value of an expression to a declared variable."""
         lines: list[Statement] = []
         if isinstance(expression, source.When):
             return self._cases(name, expression)
@@ -67,15 +72,15 @@ class Arithmetic:
         return [*lines, Assign(name, value)]
 
     def _cases(self, name: str, node: source.When) -> list[Statement]:
-        """A ``when`` as branches: flat where conditions need no statements of their own."""
+        """Return a ``when`` as branches; nested only where a condition needs statements of its own."""
         condition, value = node.cases[0]
         before: list[Statement] = []
         cases = [(self._test(condition, before), tuple(self.assigned(name, value)))]
-        for place, (following, its_value) in enumerate(node.cases[1:], start=1):
+        for index, (condition_after, its_value) in enumerate(node.cases[1:], start=1):
             needed: list[Statement] = []
-            test = self._test(following, needed)
+            test = self._test(condition_after, needed)
             if needed:
-                rest = source.When(node.cases[place:], node.otherwise)
+                rest = source.When(node.cases[index:], node.otherwise)
                 return [*before, If(tuple(cases), tuple(self._cases(name, rest)))]
             cases.append((test, tuple(self.assigned(name, its_value))))
         return [*before, If(tuple(cases), tuple(self.assigned(name, node.otherwise)))]
@@ -83,7 +88,7 @@ class Arithmetic:
     # --- numbers ----------------------------------------------------------------------------------
 
     def _value(self, node: source.Expression, lines: list[Statement]) -> Expression:
-        """The value of an expression, after the statements that are added to ``lines``."""
+        """Return the value of an expression; statements that must run first are appended to ``lines``."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
         if isinstance(node, source.Signal):
@@ -126,7 +131,7 @@ class Arithmetic:
     # --- tests ------------------------------------------------------------------------------------
 
     def _test(self, node: _Node, lines: list[Statement]) -> Expression:
-        """A test, after the statements that are added to ``lines``."""
+        """Return a test; statements that must run first are appended to ``lines``."""
         assert isinstance(node, source.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
             return Not(self._part(node.args[0], lines))
@@ -146,7 +151,11 @@ class Arithmetic:
         return Variable(name)
 
     def _joined(self, node: source.Condition, lines: list[Statement]) -> Expression:
-        """``and`` or ``or``; what a part needs first stands where the parts before it have decided nothing yet."""
+        """Return ``and`` or ``or`` of several tests.
+
+        If an operand needs statements first, they run only where the operands before it are
+        undecided.
+        """
         tests: list[Expression] = []
         for part in node.args:
             needed: list[Statement] = []
@@ -165,7 +174,7 @@ class Arithmetic:
     # --- variables --------------------------------------------------------------------------------
 
     def _named(self, value: Expression, lines: list[Statement]) -> Expression:
-        """The value as a variable or number that can be written several times."""
+        """Return the value as a variable or number, which can be repeated without computing it again."""
         if isinstance(value, (Variable, Real)):
             return value
         self._count += 1
@@ -197,7 +206,7 @@ def _all_or_any(op: str, tests: list[Expression]) -> Expression:
 
 
 def _divided(left: Expression, right: Expression) -> Expression:
-    """A quotient, which is sure to have a value where the divisor is a number other than 0."""
+    """Return a quotient; a plain ``/`` where the divisor is a number other than 0, else ``divide``, which may fail."""
     if isinstance(right, Real) and right.value != 0.0:
         return Binary("/", left, right)
     return Call("divide", (left, right))

@@ -1,8 +1,8 @@
-"""What is sure of numbers before a monitor runs: divisors that are never 0, atoms that never leave their range.
+"""Interval analysis: find divisors that are never 0, and atoms that never leave their range.
 
-Signals and params are finite and in their ranges, which a monitor sees to.  From there intervals are computed, with
-what the tests before a statement tell.  Operations of doubles round, but never turn an order around, so that the
-rounded ends of an interval bound the rounded results.
+Signals and params are finite and within their ranges; the monitor checks that. Intervals are
+computed from these ranges, narrowed by the tests that lead to a statement. Operations of doubles
+round, but rounding keeps the order, so the rounded ends of an interval bound the rounded results.
 """
 
 from __future__ import annotations
@@ -37,28 +37,29 @@ _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<="
 
 @record
 class Range:
-    """Between which ends a value lies that is sure to be a number; infinite ends may be reached."""
+    """The interval of a value that is certainly a number, both ends included; the ends may be infinite."""
 
     low: float
     high: float
 
     def without_zero(self) -> bool:
-        """Whether it is sure not to be 0."""
+        """Whether the interval excludes 0."""
         return self.low > 0.0 or self.high < 0.0
 
 
 def within(low: float | None, high: float | None) -> Range:
-    """Finite, and between the ends that there are."""
+    """Return the interval of a finite value between the given ends; None means no bound."""
     return Range(-_MOST if low is None else low, _MOST if high is None else high)
 
 
 def proven(
     name: str, statements: Sequence[Statement], known: Mapping[str, Range]
 ) -> tuple[tuple[Statement, ...], Range | None]:
-    """The statements, in which ``/`` divides where the divisor is sure not to be 0, and the range of a variable then.
+    """Return the statements with plain ``/`` where the divisor is certainly not 0, and the range of
+    a variable after them.
 
-    ``known`` are the ranges of the variables that are there before.  The range is None where the variable may be no
-    number.
+    ``known`` maps the variables that exist before to their ranges. The range is None if the
+    variable may not be a number.
     """
     facts = _Facts({Variable(variable): range_ for variable, range_ in known.items()}, frozenset())
     written = facts.statements(statements)
@@ -66,9 +67,9 @@ def proven(
 
 
 class _Facts:
-    """What holds at a point of a program: ranges of expressions, and pairs of which the first is at most the second.
+    """What is known at a point of a program: ranges of expressions, and pairs ``(a, b)`` with ``a <= b``.
 
-    ``assigned`` are the variables from outside that statements have given a value.
+    ``assigned`` are the variables of the enclosing scope that statements have assigned.
     """
 
     def __init__(self, ranges: dict[Expression, Range], ordered: frozenset[tuple[Expression, Expression]]) -> None:
@@ -80,26 +81,26 @@ class _Facts:
     # --- statements -------------------------------------------------------------------------------
 
     def statements(self, statements: Iterable[Statement]) -> tuple[Statement, ...]:
-        """The statements, rewritten; afterwards what holds behind them is known here."""
-        found: list[Statement] = []
+        """Return the statements, rewritten, and update the facts to what holds after them."""
+        rewritten: list[Statement] = []
         declared: set[str] = set()
         for statement in statements:
             if isinstance(statement, If):
-                found.append(self._branches(statement))
+                rewritten.append(self._branches(statement))
             elif isinstance(statement, (Declare, Assign)):
                 value = None if statement.value is None else self.written(statement.value)
                 self._give(statement.name, None if value is None else self.range(value))
-                found.append(replace(statement, value=value))
+                rewritten.append(replace(statement, value=value))
             else:
-                found.append(statement)
+                rewritten.append(statement)
             if isinstance(statement, Declare):
                 declared.add(statement.name)
         for name in declared:
             self.assigned.pop(name, None)
-        return tuple(found)
+        return tuple(rewritten)
 
     def _branches(self, statement: If) -> If:
-        """Behind a branch a variable is in the range of one of the cases."""
+        """Rewrite a branch. After it, a variable is in the union of its ranges over all cases."""
         before = self._copy()
         ends: list[_Facts] = []
         cases = []
@@ -117,7 +118,7 @@ class _Facts:
         return If(tuple(cases), otherwise)
 
     def _give(self, name: str, range_: Range | None) -> None:
-        """A variable has a new value: what was known of it is no longer true."""
+        """Record that a variable has a new value, and drop the facts about its old one."""
         variable = Variable(name)
         self._computed_before.clear()
         self._ranges.pop(variable, None)
@@ -137,7 +138,7 @@ class _Facts:
     # --- tests ------------------------------------------------------------------------------------
 
     def _assume(self, test: Expression, holds: bool) -> None:
-        """The test has come out so."""
+        """Record that a test came out as ``holds``."""
         match test:
             case Not(operand):
                 self._assume(operand, not holds)
@@ -149,13 +150,13 @@ class _Facts:
                     self._assume(argument, False)
             case Compare(op, left, right) if op in _OPPOSITE:
                 low, high = self.range(left), self.range(right)
-                # Of what may be no number a test that fails tells nothing.
+                # Comparisons with NaN are false, so a failed test tells nothing about a value that may be NaN.
                 if low is None or high is None:
                     return
                 op = op if holds else _OPPOSITE[op]
                 if op in (">", ">="):
                     left, right, low, high = right, left, high, low
-                # Strictly less is at most the next number below.
+                # a < b means that a is at most the next double below b.
                 least, most = low.low, high.high
                 if op in ("<", ">"):
                     least, most = math.nextafter(least, math.inf), math.nextafter(most, -math.inf)
@@ -166,14 +167,14 @@ class _Facts:
                 self._narrow(right, Range(max(least, high.low), high.high))
 
     def _narrow(self, node: Expression, range_: Range) -> None:
-        # A test that cannot come out so has an empty range: its case is never met, whatever is said of it.
+        # An empty range means that the test cannot come out this way. The branch is unreachable: any facts will do.
         if range_.low <= range_.high and not isinstance(node, Real):
             self._ranges[node] = range_
 
     # --- expressions ------------------------------------------------------------------------------
 
     def written(self, node: Expression) -> Expression:
-        """The expression, in which ``/`` divides where the divisor is sure not to be 0."""
+        """Return the expression with plain ``/`` where the divisor is certainly not 0."""
         match node:
             case Call("divide", (left, right)):
                 left, right = self.written(left), self.written(right)
@@ -198,7 +199,7 @@ class _Facts:
         return node
 
     def range(self, node: Expression) -> Range | None:
-        """Where the value of an expression lies; None where it may be no number, or nothing is known."""
+        """Return the range of an expression; None if it may not be a number, or if nothing is known."""
         if node in self._computed_before:
             return self._computed_before[node]
         computed = self._computed(node)
@@ -234,36 +235,36 @@ class _Facts:
                 range_ = self.range(operand)
                 return range_ and _absolute(range_)
             case Call("tanh", (operand,)):
-                # Languages that have none compute it from others, and round.
+                # Some languages lack tanh and compute it from other functions, so rounding may exceed 1.
                 return Range(-2.0, 2.0) if self.range(operand) else None
         return None
 
     def _difference(self, left: Expression, right: Expression) -> Range | None:
-        found = _ends(lambda x, y: x - y, self.range(left), self.range(right), "-")
-        if found is not None and (right, left) in self._ordered:
-            return Range(max(found.low, 0.0), max(found.high, 0.0))
-        return found
+        range_ = _ends(lambda x, y: x - y, self.range(left), self.range(right), "-")
+        if range_ is not None and (right, left) in self._ordered:
+            return Range(max(range_.low, 0.0), max(range_.high, 0.0))
+        return range_
 
     def _quotient(self, left: Expression, right: Expression) -> Range | None:
         dividend, divisor = self.range(left), self.range(right)
         if divisor is None or not divisor.without_zero():
             return None
-        found = _ends(lambda x, y: x / y, dividend, divisor, "/")
-        if found is not None and divisor.low > 0.0 and self._at_most(left, right):
-            return Range(min(found.low, 1.0), min(found.high, 1.0))
-        return found
+        range_ = _ends(lambda x, y: x / y, dividend, divisor, "/")
+        if range_ is not None and divisor.low > 0.0 and self._at_most(left, right):
+            return Range(min(range_.low, 1.0), min(range_.high, 1.0))
+        return range_
 
     def _at_most(self, left: Expression, right: Expression) -> bool:
-        """Whether one difference is at most another: ``a - b`` and ``a - c`` where c is at most b."""
+        """Whether ``left <= right`` follows, for differences ``a - b`` and ``a - c`` with ``c <= b``."""
         match left, right:
-            case Binary("-", first, less), Binary("-", second, least) if first == second:
-                taken, other = self.range(less), self.range(least)
-                return (least, less) in self._ordered or bool(taken and other and other.high <= taken.low)
+            case Binary("-", minuend, b), Binary("-", other_minuend, c) if minuend == other_minuend:
+                b_range, c_range = self.range(b), self.range(c)
+                return (c, b) in self._ordered or bool(b_range and c_range and c_range.high <= b_range.low)
         return False
 
 
 def _ends(operation: Callable[[float, float], float], left: Range | None, right: Range | None, op: str) -> Range | None:
-    """The range of an operation that rises or falls with each operand; None where an end is no number."""
+    """Return the range of an operation that is monotonic in each operand; None if an end is NaN."""
     if left is None or right is None:
         return None
     if op == "*" and (_is_zero_by_infinity(left, right) or _is_zero_by_infinity(right, left)):

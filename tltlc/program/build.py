@@ -1,4 +1,4 @@
-"""From an automaton to the program of its monitor."""
+"""Build the program of a monitor from an automaton."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Signal
 
 TEMPORARY = "t"
-"""What variables begin with that stand for parts of a predicate: ``t_1``, or ``t2_1`` where a name begins so."""
+"""The prefix of variables for parts of a predicate: ``t_1``, or ``t2_1`` if another name begins with ``t_``."""
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
@@ -28,15 +28,22 @@ _OWN = (
 
 @record
 class Program:
-    """The variables of signals, params and values of atoms, in the order of the automaton, and statements.
+    """The program of a monitor: names of variables and statements, in the order of the automaton.
 
-    ``values`` give each atom its value, which is declared, and may be outside [-1, 1] or no number unless the atom is
-    ``sure``.  ``only_in`` is the one state in which an atom need be computed, -1 where no state does, and None where
-    it is computed at each step; ``read_in`` says the same of the signals that atoms are computed from.  ``remarks`` say
-    what each atom is, and of a predicate only once what it means.
-    ``exclusive`` are the groups of atoms that can hold at once, with their numbers in the automaton.  ``states`` assign
-    what :mod:`tltlc.program.states` names, ``judged`` what :mod:`tltlc.program.judge` does.  Where a
-    state ``ends``, an episode is over on entry.
+    - ``signals``, ``params`` and ``atoms`` are names of variables; ``atoms`` hold the values of the
+      atoms.
+    - ``values`` are statements that declare and compute the value of each atom. It may lie outside
+      [-1, 1] or not exist, unless the atom is ``sure``.
+    - ``only_in`` is, per atom, the only state in which it must be computed; -1 if no state needs
+      it, None if every step computes it.
+    - ``read_in`` gives the same for each signal: the state whose atoms read it, -1 or None.
+    - ``remarks`` describe each atom for comments. The meaning of a predicate appears only once.
+    - ``exclusive`` are the groups of at least two exclusive atoms, each with its index in the
+      automaton.
+    - ``states`` are, per state, statements that assign the variables of
+      :mod:`tltlc.program.states`.
+    - ``judged`` assigns those of :mod:`tltlc.program.judge`.
+    - ``ends`` says, per state, whether entering it ends an episode.
     """
 
     fspa: Fspa
@@ -54,23 +61,23 @@ class Program:
     ends: tuple[bool, ...]
 
     def computed_in(self, state: int | None) -> list[int]:
-        """The numbers of the atoms that are computed in a state alone, or at each step."""
+        """Return the indices of the atoms that only this state computes; for None, those that every step computes."""
         return [place for place, only in enumerate(self.only_in) if only == state]
 
     def bools_read_in(self, state: int | None) -> list[str]:
-        """The variables of the bool signals that atoms are computed from in a state alone, or at each step."""
+        """Return the variables of the bool signals that only this state reads; for None, those read at every step."""
         signals = zip(self.fspa.signals, self.signals, self.read_in, strict=True)
         return [name for signal, name, only in signals if signal.type == "bool" and only == state]
 
     @property
     def reads_sample(self) -> bool:
-        """Whether any signal is looked at: numbers are checked, bools may be read by no atom."""
+        """Whether a step reads any signal. Numbers are always checked; a bool may be read by no atom."""
         signals = zip(self.fspa.signals, self.read_in, strict=True)
         return any(signal.type != "bool" or only != -1 for signal, only in signals)
 
     @property
     def used(self) -> frozenset[str]:
-        """The variables that the values of atoms are computed from."""
+        """The variables that the values of the atoms are computed from."""
         return read(statement for value in self.values for statement in value)
 
     @property
@@ -98,7 +105,7 @@ def _program(fspa: Fspa, names: Names) -> Program:
         proven(name, arithmetic.assigned(name, atom.expression), ranges)
         for name, atom in zip(atoms, fspa.atoms, strict=True)
     ]
-    # What may have no value counts in tests, too.
+    # A function that fails in a condition does not show in the range of the result, so calls are checked separately.
     sure = tuple(
         range_ is not None and range_.low >= -1.0 and range_.high <= 1.0 and not called(statements) & FAILING
         for statements, range_ in values
@@ -132,28 +139,37 @@ def _program(fspa: Fspa, names: Names) -> Program:
 def _only_in(
     atoms: Sequence[str], unseen: Sequence[bool], moves: Sequence[tuple[Statement, ...]]
 ) -> tuple[int | None, ...]:
-    """What one state alone reads is computed there, if that is ``unseen``: if there are no errors and no notices."""
+    """Return, per atom, the only state that reads it; -1 if none does, None if every step must compute it.
+
+    An atom that is not ``unseen``, because computing it can give an error or a notice, is computed
+    at every step.
+    """
     used = [read(statements) for statements in moves]
-    found: list[int | None] = []
+    only_in: list[int | None] = []
     for name, is_unseen in zip(atoms, unseen, strict=True):
-        reading = [state for state, names in enumerate(used) if name in names]
-        found.append((reading or [-1])[0] if is_unseen and len(reading) < 2 else None)
-    return tuple(found)
+        readers = [state for state, names in enumerate(used) if name in names]
+        only_in.append((readers or [-1])[0] if is_unseen and len(readers) < 2 else None)
+    return tuple(only_in)
 
 
 def _read_in(
     signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
 ) -> tuple[int | None, ...]:
-    """For each signal the one place where the atoms are computed that read it: a state, or at each step."""
+    """Return, per signal, the only place whose atoms read it: a state, None for every step, or -1 if no atom does.
+
+    A signal read in several places gives None.
+    """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
     for only, statements in zip(only_in, values, strict=True):
         for name in read(statements) & places.keys():
             places[name].add(only)
-    return tuple((*found, -1)[0] if len(found) < 2 else None for found in places.values())
+    return tuple((*readers, -1)[0] if len(readers) < 2 else None for readers in places.values())
 
 
 def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
-    """The atoms' names, and behind the first of each predicate, as they are computed, what it means."""
+    """Return the atoms' names. The first atom of each predicate, in order of computation, includes
+    its documentation.
+    """
     remarks = [atom.name for atom in fspa.atoms]
     explained = {""}
     eager = [place for place, only in enumerate(only_in) if only is None]
@@ -171,7 +187,7 @@ def _range(signal: Signal) -> Range:
 
 
 def _prefix(names: Sequence[str]) -> str:
-    """What no name begins with."""
+    """Return a prefix that no name begins with."""
     number, prefix = 1, f"{TEMPORARY}_"
     while any(name.startswith(prefix) for name in names):
         number += 1

@@ -1,4 +1,4 @@
-"""From terms to clauses: what an ``or`` of ``and``s is as an ``and`` of ``or``s."""
+"""Convert terms to clauses: an ``or`` of ``and``s to an ``and`` of ``or``s."""
 
 from __future__ import annotations
 
@@ -6,32 +6,35 @@ from collections.abc import Sequence
 from typing import Final, TypeVar
 
 _MOST: Final = 16
-"""How many clauses are followed up; there can be exponentially many."""
+"""The conversion gives up at more clauses than this; their number can be exponential."""
 
 _Literal = TypeVar("_Literal")
 
 
 def shorter(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """The clauses of some terms, where they have fewer literals than these, else None.
+    """Return the clauses equivalent to some terms if they have fewer literals, else None.
 
-    The greatest of the terms' least values is the least of the clauses' greatest, but for the sign of a zero, since min
-    and max distribute.  Literals stand in the order of the terms, none of which is empty.
+    ``min`` and ``max`` distribute, so the maximum over terms of their minima equals the minimum
+    over clauses of their maxima, except for the sign of a zero. Literals keep the order of the
+    terms, none of which may be empty.
     """
-    found = _clauses(terms)
-    return found if found is not None and sum(map(len, found)) < sum(map(len, terms)) else None
+    clauses = _clauses(terms)
+    return clauses if clauses is not None and sum(map(len, clauses)) < sum(map(len, terms)) else None
 
 
 def _clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """The least sets of literals that share one with each term (Berge, Hypergraphs, 1989); None if they are many."""
+    """Return the minimal sets of literals that meet every term (Berge, Hypergraphs, 1989); None if
+    there are too many.
+    """
     literals = list(dict.fromkeys(literal for term in terms for literal in term))
-    bits = {literal: 1 << place for place, literal in enumerate(literals)}
+    bits = {literal: 1 << index for index, literal in enumerate(literals)}
     clauses = [0]
     for term in terms:
         mask = sum(bits[literal] for literal in term)
-        met = [clause for clause in clauses if clause & mask]
-        longer = [clause | bits[literal] for clause in clauses if not clause & mask for literal in term]
-        clauses = met + [one for one in longer if not any(one & other == other for other in met)]
+        hitting = [clause for clause in clauses if clause & mask]
+        extended = [clause | bits[literal] for clause in clauses if not clause & mask for literal in term]
+        clauses = hitting + [candidate for candidate in extended if not any(candidate & hit == hit for hit in hitting)]
         if len(clauses) > _MOST:
             return None
-    places = sorted([place for place in range(len(literals)) if clause >> place & 1] for clause in clauses)
-    return [[literals[place] for place in clause] for clause in places]
+    places = sorted([index for index in range(len(literals)) if clause >> index & 1] for clause in clauses)
+    return [[literals[index] for index in clause] for clause in places]

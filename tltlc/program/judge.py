@@ -1,4 +1,7 @@
-"""Progress, reward and the end of an episode, of one step (Algorithm 1, the terminal penalty undiscounted)."""
+"""The statements for one step's progress, reward and end of the episode.
+
+They follow Algorithm 1, with the undiscounted terminal penalty.
+"""
 
 from __future__ import annotations
 
@@ -21,16 +24,16 @@ from tltlc.program.tree import (
 STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
     *("steps", "steps_real", "best", "reward", "done", "ends", "violated", "satisfied"),
 )
-"""What the statements read: the number of this step, from 1, as an int and as a real; whether its state ends episodes
-on entry, violates or satisfies.  They read and assign the best progress so far and whether the episode is over, and
-assign the reward.
+"""Variables that the statements read: the number of this step, from 1, as an int and as a real;
+whether the new state ends episodes on entry, violates or satisfies. The statements read and assign
+the best progress so far and whether the episode is over, and assign the reward.
 """
 BEFORE = "before"
 """The best progress before this step."""
 
 
 def judged(fspa: Fspa) -> tuple[Statement, ...]:
-    """The statements that come after the transition."""
+    """Return the statements that come after the transition."""
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
@@ -41,10 +44,10 @@ def judged(fspa: Fspa) -> tuple[Statement, ...]:
         going_on: tuple[Statement, ...] = (Assign(REWARD, gained), Assign(DONE, Variable(ENDS)))
     else:
         whole = Real(float(limit))
-        left = Binary("/", Binary("-", whole, Variable(STEPS_REAL)), whole)
+        remaining = Binary("/", Binary("-", whole, Variable(STEPS_REAL)), whole)
         going_on = (
             Assign(REWARD, Binary("-", gained, Real(1 / limit))),
-            If(((Variable(VIOLATED), (Assign(REWARD, Binary("-", Variable(REWARD), left)),)),)),
+            If(((Variable(VIOLATED), (Assign(REWARD, Binary("-", Variable(REWARD), remaining)),)),)),
             Assign(DONE, Any((Variable(ENDS), Compare(">=", steps, Int(limit))))),
         )
     lines.append(If(((Variable(DONE), (Assign(REWARD, zero),)),), going_on))
@@ -52,7 +55,11 @@ def judged(fspa: Fspa) -> tuple[Statement, ...]:
 
 
 def _survived(limit: int | None) -> list[Statement]:
-    """The share of the limit that the spec has outlived; of no limit, 0 as long as anything can still happen."""
+    """Return statements for the progress of a spec judged at its limit.
+
+    It is the share of the limit that the episode has survived. Without a limit it is 1 once
+    satisfied, else 0.
+    """
     cases: list[tuple[Expression, tuple[Statement, ...]]] = [
         (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),
     ]

@@ -1,4 +1,4 @@
-"""Pieces of generated files that languages write alike, beside the program itself."""
+"""Pieces of generated files that several languages share, besides the program itself."""
 
 from __future__ import annotations
 
@@ -15,38 +15,41 @@ _KINDS = {"ratio": "A ratio in"}
 
 
 def title(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
-    """The first comment: what the spec is called, what it is for, its formula; ``comment`` gives a text's lines."""
+    """Return the first comment: the name of the spec, its documentation and its formula.
+
+    ``comment`` turns a text into comment lines.
+    """
     about = [comment(f"Monitor of the specification `{fspa.name}`, written by tltlc."), comment(fspa.doc)]
     about.append([line.replace(" ", "     ", 1) for line in comment(fspa.formula.ascii)])
     mark = about[0][0].split()[0]
     return f"\n{mark}\n".join("\n".join(lines) for lines in about if lines)
 
 
-def described(name: str, of: Signal | Param) -> str:
-    """What is said of a field called ``name``: its name in the spec, where that is another, its text, its values."""
-    # Of what is true or false the text says enough.
-    values = "" if of.doc and of.type == "bool" else kind(of)
-    doc = f"{of.doc}." if values and of.doc[-1:].isalnum() else of.doc
-    said = f"{doc} {values}".strip()
-    return said if of.name == name else f"{of.name}: {said}"
+def described(name: str, field: Signal | Param) -> str:
+    """Return the comment on a field called ``name``: its name in the spec if different, its text, its values."""
+    # A documented bool needs no "True or false."
+    values = "" if field.doc and field.type == "bool" else kind(field)
+    doc = f"{field.doc}." if values and field.doc[-1:].isalnum() else field.doc
+    text = f"{doc} {values}".strip()
+    return text if field.name == name else f"{field.name}: {text}"
 
 
-def kind(of: Signal | Param) -> str:
-    """Which values it has, in SI units."""
-    if of.type == "bool":
+def kind(field: Signal | Param) -> str:
+    """Return a sentence on the possible values, in SI units."""
+    if field.type == "bool":
         return "True or false."
-    return f"{_KINDS.get(of.type, 'In')} {range_text(of.low, of.high)}{_UNITS.get(of.type, '')}."
+    return f"{_KINDS.get(field.type, 'In')} {range_text(field.low, field.high)}{_UNITS.get(field.type, '')}."
 
 
 def example(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
-    """A sample, as a call gives it; it stands in a comment."""
+    """Return an example sample in the syntax of a call, for a comment."""
     shown = [f"{key(signal.name)}{equals}{'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
     text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
     return visible(text) if len(text) <= _LONGEST_EXAMPLE else "signals"
 
 
 def quoted(text: str, escape: Callable[[str], str], plain: Callable[[str], bool] = str.isprintable) -> str:
-    """A string literal; characters that are not ``plain`` are escaped."""
+    """Return a string literal; characters that are not ``plain`` are escaped."""
     return '"' + "".join(_character(character, escape, plain) for character in text) + '"'
 
 
@@ -57,20 +60,20 @@ def _character(character: str, escape: Callable[[str], str], plain: Callable[[st
 
 
 def in_ascii(character: str) -> bool:
-    """Whether it is plain in a source of ASCII."""
+    """Whether the character needs no escape in an ASCII source."""
     return " " <= character <= "~"
 
 
 def boolean(value: bool) -> str:
-    """``true`` or ``false``."""
+    """Return ``true`` or ``false``."""
     return "true" if value else "false"
 
 
 def paragraphs(*parts: Sequence[str]) -> list[str]:
-    """The lines of all parts, with an empty one between them."""
+    """Return the lines of all parts, with an empty line between parts."""
     return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
 
 
 def number(value: float | None, otherwise: str = "") -> str:
-    """A number as most languages write doubles, which Python does, too; ``otherwise`` where there is none."""
+    """Return a number in the syntax that most languages share with Python; ``otherwise`` if it is None."""
     return otherwise if value is None else repr(float(value))

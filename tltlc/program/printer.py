@@ -1,4 +1,4 @@
-"""The text of a program, in the manner of C; each language says what it does otherwise."""
+"""Print a program in C-like syntax; each language overrides what differs."""
 
 from __future__ import annotations
 
@@ -30,99 +30,99 @@ from tltlc.program.tree import (
 )
 
 _OR, _AND, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(7)
-"""How tightly a text binds, loosest first."""
+"""Binding strengths of operators, loosest first."""
 
 _BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
 _LONGEST_COMMENT = 100
 _LONGEST_LIST = 60
 _LONGEST_ROW = 97
 _SHORT = 12
-"""Of items below that, several stand on a line."""
+"""Items shorter than this share a line."""
 
 
 class Printer:
-    """Prints statements and expressions, without knowing what they are for.
+    """Prints statements and expressions, whatever they are for.
 
-    A language has a class of its own that says how its words differ.
+    Each language has a subclass that overrides what differs.
     """
 
     INDENT: ClassVar[str] = "    "
     COMMENT: ClassVar[str] = "//"
-    """What begins a remark."""
+    """The start of a comment line."""
     TYPES: ClassVar[dict[Type, str]] = {"real": "double", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "&&", "or": "||", "not": "!", "true": "true", "false": "false"}
     END: ClassVar[str] = ";"
-    """What ends a statement."""
+    """The end of a statement."""
 
     # --- statements -------------------------------------------------------------------------------
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """The lines of statements that are nested so deep."""
-        found: list[str] = []
+        """Return the lines of statements, indented by ``depth`` levels."""
+        lines: list[str] = []
         for statement in statements:
             if isinstance(statement, If):
-                found += self.branches(statement, depth)
+                lines += self.branches(statement, depth)
                 continue
             indent = self.INDENT * depth
             if isinstance(statement, Comment):
-                found += [f"{indent}{line}" for line in self.comment(statement.text)]
+                lines += [f"{indent}{line}" for line in self.comment(statement.text)]
             elif isinstance(statement, Declare):
-                found.append(f"{indent}{self.declaration(statement)}")
+                lines.append(f"{indent}{self.declaration(statement)}")
             else:
-                found.append(f"{indent}{self.assignment(statement)}")
-        return found
+                lines.append(f"{indent}{self.assignment(statement)}")
+        return lines
 
     def declaration(self, statement: Declare) -> str:
-        """A declaration, with or without a value."""
+        """Return a declaration, with or without a value."""
         value = "" if statement.value is None else f" = {self.text(statement.value)}"
         return f"{self.TYPES[statement.type]} {statement.name}{value}{self.END}"
 
     def assignment(self, statement: Assign) -> str:
-        """An assignment."""
+        """Return an assignment."""
         return f"{self.name(statement.name)} = {self.text(statement.value)}{self.END}"
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """A branch: its cases, and what is done otherwise."""
+        """Return the lines of a branch: its cases and its ``else``."""
         indent = self.INDENT * depth
-        found: list[str] = []
+        lines: list[str] = []
         for place, (test, body) in enumerate(statement.cases):
-            found.append(f"{indent}{self.head(self.text(test), first=not place)}")
-            found += self.lines(body, depth + 1) or self.nothing(depth + 1)
+            lines.append(f"{indent}{self.head(self.text(test), first=not place)}")
+            lines += self.lines(body, depth + 1) or self.nothing(depth + 1)
         if statement.otherwise:
-            found.append(f"{indent}{self.otherwise()}")
-            found += self.lines(statement.otherwise, depth + 1)
-        return [*found, *(f"{indent}{line}" for line in self.closing())]
+            lines.append(f"{indent}{self.otherwise()}")
+            lines += self.lines(statement.otherwise, depth + 1)
+        return [*lines, *(f"{indent}{line}" for line in self.closing())]
 
     def head(self, test: str, *, first: bool) -> str:
-        """The line that begins a case."""
+        """Return the first line of a case."""
         return f"if ({test}) {{" if first else f"}} else if ({test}) {{"
 
     def otherwise(self) -> str:
-        """The line that begins what is done where no test holds."""
+        """Return the line that begins the ``else``."""
         return "} else {"
 
     def closing(self) -> list[str]:
-        """What ends a branch."""
+        """Return the lines that end a branch."""
         return ["}"]
 
     def nothing(self, depth: int) -> list[str]:
-        """A body without statements."""
+        """Return the lines of an empty body."""
         return []
 
     def comment(self, text: str) -> list[str]:
-        """A remark, on as many lines as it takes."""
+        """Return a comment, on as many lines as it needs."""
         return [f"{self.COMMENT} {line}" for line in remark(text)]
 
     # --- pieces of files --------------------------------------------------------------------------
 
     @classmethod
     def block(cls, lines: Iterable[str], depth: int = 1) -> str:
-        """Lines that are nested so deep."""
+        """Return the lines as a text, indented by ``depth`` levels."""
         return "\n".join(f"{cls.INDENT * depth}{line}" if line else "" for line in lines)
 
     @classmethod
     def items(cls, items: Sequence[str], depth: int = 0) -> str:
-        """What stands between the brackets of a list: one line where it is short, else lines that nest deeper."""
+        """Return the items between the brackets of a list: on one line if short, else on lines one level deeper."""
         line = ", ".join(items)
         if len(line) <= _LONGEST_LIST:
             return line
@@ -138,27 +138,27 @@ class Printer:
     # --- expressions ------------------------------------------------------------------------------
 
     def text(self, node: Expression, room: int = _OR) -> str:
-        """An expression, in brackets where it binds more loosely than ``room``."""
+        """Return an expression, in parentheses if it binds more loosely than ``room``."""
         text, binding = self._written(node)
         return text if binding >= room else f"({text})"
 
     def name(self, name: str) -> str:
-        """A variable, where it is read or assigned."""
+        """Return a variable as it is read or assigned."""
         return name
 
     def real(self, value: float) -> str:
-        """A number that is not negative."""
+        """Return a literal of a number that is not negative."""
         return repr(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """A call of a function of numbers."""
+        """Return a call of a numeric function."""
         return f"{function}({', '.join(arguments)})"
 
     def _written(self, node: Expression) -> tuple[str, int]:
-        """The text and how tightly it binds."""
+        """Return the text of an expression and its binding strength."""
         match node:
             case Real(value):
-                # The sign of -0 counts, too.
+                # A comparison with 0 would miss the sign of -0.0.
                 return (f"-{self.real(-value)}", _SIGN) if repr(value)[0] == "-" else (self.real(value), _UNIT)
             case Int(value):
                 return str(value), _SIGN if value < 0 else _UNIT
@@ -180,12 +180,15 @@ class Printer:
             case All(args) | Any(args):
                 binding = _AND if isinstance(node, All) else _OR
                 word = self.WORDS["and" if isinstance(node, All) else "or"]
-                # Compilers warn of `a && b || c` without brackets.
+                # Compilers warn about `a && b || c` without parentheses.
                 return f" {word} ".join(self.text(argument, _COMPARISON) for argument in args), binding
         raise TypeError(f"no expression: {node!r}")
 
 
 def remark(text: str) -> list[str]:
-    """A text as lines for comments, in visible characters; no line ends in a backslash, which would join the next."""
+    """Return a text as comment lines of visible characters.
+
+    No line ends in a backslash, which would join it to the next line.
+    """
     lines = wrap(visible(text), _LONGEST_COMMENT, break_long_words=False, break_on_hyphens=False)
     return [re.sub(r"\\$", r"\\ .", line) for line in lines]

@@ -1,6 +1,7 @@
-"""Statements without values that nest deep, for languages whose parsers or compilers have little room for these.
+"""Split deeply nested values, for languages whose parsers or compilers limit nesting.
 
-Guards of many literals make them: the robustness of an edge is the least or greatest of as many values.
+Guards of many literals nest deep: the robustness of an edge is a chain of ``min`` and ``max`` over
+them.
 """
 
 from __future__ import annotations
@@ -12,16 +13,16 @@ from typing import Final
 from tltlc.program.tree import Assign, Call, Declare, Expression, If, Negate, Statement, Variable
 
 PART: Final = "part"
-"""What new variables begin with, which are numbered from 1."""
+"""The prefix of new variables, which are numbered from 1."""
 
 _DEEPEST: Final = 30
-"""As predicates nest, see :mod:`tltlc.program.arithmetic`."""
+"""The same limit as for predicates, see :mod:`tltlc.program.arithmetic`."""
 
 
 def shallow(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
-    """The same statements, of a state, with parts of deep values in variables of their own.
+    """Return the statements of a state with parts of deep values moved to variables.
 
-    New variables have different names, which do not begin as a name that is ``taken`` does.
+    The new variables have distinct names, whose prefix no name in ``taken`` begins with.
     """
     prefix = PART
     while any(name.startswith(prefix) for name in taken):
@@ -46,7 +47,7 @@ def _shallow(statements: Sequence[Statement], names: Iterator[str]) -> tuple[Sta
 
 
 def _cut(value: Expression, lines: list[Statement], names: Iterator[str]) -> tuple[Expression, int]:
-    """The value with what nests too deep in variables, and how deep it nests then."""
+    """Return the value with its deep parts replaced by variables, and the depth that remains."""
     if isinstance(value, Negate):
         operand, depth = _cut(value.operand, lines, names)
         return Negate(operand), depth

@@ -1,4 +1,4 @@
-"""What a monitor does in each state: from the values of the atoms to the edge that is taken, and what it means."""
+"""The statements of each state: they pick the edge taken from the values of the atoms, and compute its results."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ from tltlc.program.tree import (
 from tltlc.program.uses import read
 
 TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "limiting"
-"""What the statements of a state assign: the next state, the robustness of the edge taken, the progress of the step
-alone, and the place of the limiting atom, -1 for none.
+"""Variables that the statements of a state assign: the next state, the robustness of the edge
+taken, the progress of this step alone, and the index of the limiting atom (-1 for none).
 """
 NEAREST, OTHER = "nearest", "other"
 _ZERO: Final = Real(0.0)
 
 
 def of_state(tables: Tables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
-    """The statements of a state; ``atoms`` are the variables of their values."""
+    """Return the statements of a state; ``atoms`` are the variables of the atoms' values."""
     return _State(tables, state, atoms).statements()
 
 
@@ -48,7 +48,7 @@ class _State:
         self._at_goal = tables.fspa.judge == "goal"
 
     def statements(self) -> tuple[Statement, ...]:
-        """A case for each edge; of the guards one is true, so that the longest needs no test."""
+        """Return a case for each edge. Exactly one guard is true, so the longest needs no test."""
         edges = sorted(self._tables.edges[self._state], key=lambda edge: (_size(edge.guard), edge.target))
         *tested, last = edges
         if not tested:
@@ -57,23 +57,26 @@ class _State:
         return (If(cases, self._taken(last)),)
 
     def _taken(self, edge: Edge) -> tuple[Statement, ...]:
-        """What taking an edge means."""
+        """Return the statements that run when an edge is taken."""
         improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
         lines: list[Statement] = [Comment(edge.guard.text), Assign(TARGET, Int(edge.target))]
         lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
         base = Real(self._tables.base_progress[edge.target])
         if not improving:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
-        # All of them are false, so that what is above 0 bounds none.
+        # The improving guards are all false, so each of their primes has a literal at or below 0: a literal that is
+        # known to be above 0 is never the least one.
         above = [literal for literal in _shared(edge.guard.primes) if literal[1]]
-        primes = [prime for other in improving for prime in other.guard.primes]
+        primes = [prime for candidate in improving for prime in candidate.guard.primes]
         lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
-        # A guard that is false has no robustness above 0, so there is nothing to cap.
+        # The improving guards are false, so their robustness is at most 0 and needs no cap.
         share = Binary("/", Binary("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size)))
         return (*lines, *self._progress(Binary("+", base, share) if base.value else share))
 
     def _progress(self, value: Expression) -> list[Statement]:
-        """Where a spec is judged at its limit, progress has nothing to do with edges."""
+        """Return the assignment of progress; none for a spec judged at its limit, whose progress is
+        independent of edges.
+        """
         return [Assign(PROGRESS, value)] if self._at_goal else []
 
     def _truth(self, guard: Guard) -> Expression:
@@ -86,9 +89,10 @@ class _State:
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
 
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
-        """The greatest of the primes' least literals, or what is the same with fewer literals, but for -0.
+        """Return the maximum over primes of the least literal, or an equal expression with fewer
+        literals (except for -0).
 
-        Literals that all primes share are taken out.
+        Literals that all primes share are factored out.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
@@ -101,22 +105,22 @@ class _State:
         return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
 
     def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
-        """The most robust of the primes, the first of equals, and the first atom that bounds it."""
-        first, *others = primes
-        lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(others))]
+        """Return statements for the most robust prime (the first of equals) and the first atom that bounds it."""
+        first, *following = primes
+        lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(following))]
         lines += self._bounding(first, NEAREST)
-        if others:
-            lines.append(Declare(OTHER, "real", self._least(others[0]), changes=len(others) > 1))
-        for place, prime in enumerate(others):
+        if following:
+            lines.append(Declare(OTHER, "real", self._least(following[0]), changes=len(following) > 1))
+        for place, prime in enumerate(following):
             if place:
                 lines.append(Assign(OTHER, self._least(prime)))
             better = (Assign(NEAREST, Variable(OTHER)), *self._bounding(prime, OTHER))
             lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))
-        # One atom alone is the limiting one, whatever its value.
+        # A single literal bounds its prime without a comparison. If nothing reads NEAREST, drop its declaration.
         return lines if self._at_goal or NEAREST in read(lines) else lines[1:]
 
     def _bounding(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
-        """The first atom of the prime whose literal has that value."""
+        """Return statements for the first atom of the prime whose literal has the given value."""
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))
         if not before:
@@ -139,7 +143,7 @@ class _State:
 
 
 def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
-    """The literals that stand in all of the primes."""
+    """Return the literals that all primes contain."""
     return [literal for literal in primes[0] if all(literal in prime for prime in primes)]
 
 
@@ -148,7 +152,7 @@ def _size(guard: Guard) -> int:
 
 
 def _fold(function: str, terms: Sequence[Expression]) -> Expression:
-    """``min`` or ``max`` of several; of no literals, ``min`` is 1."""
+    """Return ``min`` or ``max`` of several terms; without terms, 1 (the ``min`` of no literals)."""
     if not terms:
         return Real(1.0)
     return reduce(lambda left, right: Call("min" if function == "min" else "max", (left, right)), terms)

@@ -1,4 +1,4 @@
-"""The files that generated code is cut from: texts with places for what differs from one monitor to the next."""
+"""Fill the templates of generated code: texts with places for what differs between monitors."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ _PLACE = re.compile(r"@@(\w+)@@")
 
 
 def filled(file: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """A file of the folder ``templates`` with its places filled.
+    """Return a file of the folder ``templates`` with its places filled.
 
-    ``@@NAME@@`` becomes the piece of that name; a line that holds nothing else goes where the piece is empty.  Lines
-    from ``@@if NAME@@`` to ``@@end@@``, which may stand in comments and do not nest, stay where NAME is in ``present``.
+    ``@@NAME@@`` becomes the piece of that name. A line that holds only a place disappears if the
+    piece is empty. Lines from ``@@if NAME@@`` to ``@@end@@``, which may be comments and do not
+    nest, are kept if NAME is in ``present``.
 
     Raises:
-        KeyError: there is no such piece.
+        KeyError: there is no piece of that name.
     """
     path = os.path.join(os.path.dirname(__file__), "..", "backends", "templates", file)  # noqa: PTH118, PTH120 (as codes.py)
     with open(path, encoding="utf-8") as template:  # noqa: PTH123
@@ -26,7 +27,7 @@ def filled(file: str, pieces: Mapping[str, str], present: Collection[str] = ()) 
 
 
 def fill(text: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """A text with its places filled, as :func:`filled` says; what pieces hold is left as it is."""
+    """Return a text with its places filled, as in :func:`filled`; places inside pieces are left alone."""
     kept = _BLOCK.sub(lambda block: block[2] if block[1] in present else "", text)
     kept = _LINE.sub(lambda line: line[0] if pieces[line[1]] else "", kept)
     return _PLACE.sub(lambda place: pieces[place[1]], kept)

@@ -1,7 +1,8 @@
-"""The statements and expressions that a monitor's step is made of.
+"""The statements and expressions of a monitor's step.
 
-Numbers are IEEE doubles; their operations are done in the order written, each rounded.  Where an operation has no value
-in Python (a division by 0, a root of a negative number), a language notes that the atom has none, and goes on.
+Numbers are IEEE doubles. Operations run in the order written, and each result is rounded. Where an
+operation has no value in Python (division by 0, root of a negative number), the printed program
+records that the atom has no value, and continues.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from tltlc.core.record import record
 Type = Literal["real", "int", "bool"]
 
 Function = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
-"""``min`` and ``max`` are of two, and give the first of equal ones: ``b < a ? b : a`` and ``b > a ? b : a``."""
+"""``min`` and ``max`` take two arguments and return the first of equal ones: ``b < a ? b : a`` and
+``b > a ? b : a``.
+"""
 
 FAILING: Final[frozenset[Function]] = frozenset({"divide", "power", "sqrt", "exp"})
 """Functions that may have no value."""
@@ -45,7 +48,7 @@ class Bool:
 
 @record
 class Variable:
-    """A variable by its name in the program, which is one of :class:`Names`' own."""
+    """A variable, by its name in the program; :class:`tltlc.program.names.Names` gives these names."""
 
     name: str
 
@@ -59,7 +62,7 @@ class Negate:
 
 @record
 class Binary:
-    """``left op right``, of numbers."""
+    """``left op right`` of two numbers."""
 
     op: Literal["+", "-", "*", "/"]
     left: Expression
@@ -68,7 +71,7 @@ class Binary:
 
 @record
 class Call:
-    """A function of numbers."""
+    """A call of a numeric function."""
 
     function: Function
     args: tuple[Expression, ...]
@@ -76,7 +79,7 @@ class Call:
 
 @record
 class Compare:
-    """A test of two numbers of one type."""
+    """A comparison of two numbers of one type."""
 
     op: Literal["<", "<=", ">", ">=", "==", "!="]
     left: Expression
@@ -85,21 +88,21 @@ class Compare:
 
 @record
 class Not:
-    """A test that another one fails."""
+    """A test that holds if its operand fails."""
 
     operand: Expression
 
 
 @record
 class All:
-    """A test that all hold, left to right, no further than to the first that fails; at least two."""
+    """``and`` of at least two tests, evaluated left to right up to the first that fails."""
 
     args: tuple[Expression, ...]
 
 
 @record
 class Any:
-    """A test that one holds, left to right, no further than to the first that does; at least two."""
+    """``or`` of at least two tests, evaluated left to right up to the first that holds."""
 
     args: tuple[Expression, ...]
 
@@ -112,7 +115,10 @@ Expression = Union[Real, Int, Bool, Variable, Negate, Binary, Call, Compare, Not
 
 @record
 class Declare:
-    """A new variable; without a value it is given one later, once on every way, unless it ``changes``."""
+    """A new variable.
+
+    Without a value, it is assigned later: exactly once on each path, unless it ``changes``.
+    """
 
     name: str
     type: Type
@@ -122,7 +128,7 @@ class Declare:
 
 @record
 class Assign:
-    """A variable's new value."""
+    """An assignment to a variable."""
 
     name: str
     value: Expression
@@ -130,7 +136,7 @@ class Assign:
 
 @record
 class If:
-    """The body of the first case whose test holds, else ``otherwise``."""
+    """A branch: runs the body of the first case whose test holds, else ``otherwise``."""
 
     cases: tuple[tuple[Expression, tuple[Statement, ...]], ...]
     otherwise: tuple[Statement, ...] = ()
@@ -138,7 +144,7 @@ class If:
 
 @record
 class Comment:
-    """A remark, which may hold any characters."""
+    """A comment, which may contain any characters."""
 
     text: str
 

@@ -1,4 +1,4 @@
-"""What statements use, for languages whose compilers warn of what is not used."""
+"""Find the variables and functions that statements use; some compilers warn about unused ones."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from tltlc.program.tree import (
 
 
 def read(statements: Iterable[Statement]) -> frozenset[str]:
-    """The variables that are read."""
+    """Return the variables that are read."""
     return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, Variable))
 
 
 def called(statements: Iterable[Statement]) -> frozenset[Function]:
-    """The functions that are called."""
+    """Return the functions that are called."""
     return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, Call))
 
 
 def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
-    """Every expression and part of one; a stack, since predicates may nest deeply."""
+    """Yield every expression and subexpression. An explicit stack handles deeply nested predicates."""
     stack = list(expressions)
     while stack:
         node = stack.pop()
@@ -48,7 +48,7 @@ def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
 
 
 def _values(statements: Iterable[Statement]) -> Iterator[Expression]:
-    """The expressions that stand in statements, also in branches."""
+    """Yield the expressions in statements, including those in branches."""
     for statement in statements:
         match statement:
             case Declare(_, _, value):
