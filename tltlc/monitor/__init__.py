@@ -1,4 +1,4 @@
-"""Run an automaton on samples: atoms, transition, progress and reward, one sample after the other."""
+"""Run an automaton on samples: compute atoms, take the transition, and return progress and reward."""
 
 from __future__ import annotations
 

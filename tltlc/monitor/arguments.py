@@ -1,4 +1,4 @@
-"""What monitors are made of, refused where it is of another kind: an automaton, and options of the reward."""
+"""Check the types of a monitor's arguments: an automaton, and options of the reward."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from tltlc.monitor.reward import RewardOptions
 
 
 def automaton(given: object) -> Fspa:
-    """The automaton that was given; raises TypeError where it is none."""
+    """Return the given automaton; raises TypeError if it is not one."""
     if isinstance(given, Fspa):
         return given
-    way_out = "`tltlc.compile_file` returns a tuple of them, `tltlc.load` the one of an artefact"
-    raise TypeError(f"an automaton is needed, not {given!r:.60}: {way_out}")
+    advice = "`tltlc.compile_file` returns a tuple of them, `tltlc.load` the one of an artefact"
+    raise TypeError(f"an automaton is needed, not {given!r:.60}: {advice}")
 
 
 def reward_options(given: object) -> RewardOptions:
-    """The options that were given, for None the default ones; raises TypeError where they are none."""
+    """Return the given options, the defaults for None; raises TypeError for anything else."""
     if given is None:
         return RewardOptions()
     if isinstance(given, RewardOptions):

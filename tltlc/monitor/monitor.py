@@ -1,4 +1,4 @@
-"""The monitor: an automaton that runs on samples, one step after the other."""
+"""The monitor: runs an automaton on samples, step by step."""
 
 from __future__ import annotations
 
@@ -15,13 +15,16 @@ from tltlc.monitor.tables import tables
 
 
 class Step(NamedTuple):
-    """What one sample did.
+    """The result of one sample.
 
-    ``state``, its ``label`` (what remains to be satisfied), its ``verdict`` and whether it is ``accepting`` speak of
-    the prefix so far.  ``done``: an episode ends here, or ended before.  ``progress`` is the best so far, in
-    [0, 1].  ``reward`` is that of the step, 0 past the end of the episode.  ``robustness`` is that of the edge taken,
-    in [-1, 1].  ``limiting`` is the atom that bounds the nearest edge that would have improved the distance, None
-    where the automaton moved or nothing improves.
+    - ``state``, ``label`` (what remains to be satisfied), ``verdict`` and ``accepting`` describe
+      the prefix so far.
+    - ``done``: the episode has ended, with this step or before.
+    - ``progress``: the best so far, in [0, 1].
+    - ``reward``: the reward of this step; 0 after the end of the episode.
+    - ``robustness``: the robustness of the edge taken, in [-1, 1].
+    - ``limiting``: the atom that bounds the nearest edge that would have reduced the distance; None
+      if the state changed or no edge reduces it.
     """
 
     state: int
@@ -38,13 +41,13 @@ class Step(NamedTuple):
 class Monitor:
     """Runs an automaton over one trace after another.
 
-    ``params`` override values of params, in SI units.  ``notices`` collects warnings about clamped values, each
-    given once.  After :meth:`step`, ``values`` holds the values of the atoms, in order, and ``success`` whether the
-    episode is over and was a success.
+    ``params`` override values of params, in SI units. ``notices`` collects warnings about clamped
+    values, one per signal or atom. After :meth:`step`, ``values`` holds the values of the atoms, in
+    order, and ``success`` is true if the episode has ended in success.
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
-        TypeError: ``fspa`` is no automaton, or ``reward`` no options.
+        TypeError: ``fspa`` is not an automaton, or ``reward`` is not RewardOptions.
     """
 
     def __init__(
@@ -59,7 +62,7 @@ class Monitor:
         self.reset()
 
     def reset(self) -> None:
-        """Go back to the state before the first sample."""
+        """Return to the state before the first sample."""
         self.state = 0
         self.steps = 0
         self.progress = 0.0
@@ -69,22 +72,24 @@ class Monitor:
         self._memory: Any = None
 
     def step(self, signals: Mapping[str, SupportsFloat], *, last: bool = False) -> Step:
-        """Take one sample: the signals by name, numbers in SI units or bools; names that no atom uses are ignored.
+        """Take one sample: a mapping of signal names to numbers in SI units or bools. Names that no
+        atom uses are ignored.
 
-        ``last``: the episode ends with this sample, whatever the spec says.
+        With ``last``, the episode ends with this sample, whatever the spec says.
 
         Raises:
-            MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
-                TLT0614 exclusive atoms that hold at once.  The state stays.
+            MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
+                a value, TLT0614 exclusive atoms that hold at once. The state stays unchanged.
         """
         return self._take(self._samples.atom_values(signals, self.steps + 1), last)
 
     def step_atoms(self, values: Sequence[float], *, last: bool = False) -> Step:
-        """Take one sample that is given as the values of the atoms, in order, each in [-1, 1]; ``last`` as for `step`.
+        """Take one sample given as the values of the atoms, in order, each in [-1, 1]; ``last`` as in :meth:`step`.
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms that hold at once.  The state stays.
-            ValueError: a value is not in [-1, 1], or there is not one for each atom.  The state stays.
+            MonitorError: TLT0614 exclusive atoms that hold at once. The state stays unchanged.
+            ValueError: a value is not in [-1, 1], or the number of values is not the number of
+                atoms. The state stays unchanged.
         """
         if len(values) != len(self._names) or not all(-1.0 <= value <= 1.0 for value in values):
             raise ValueError(f"{len(self._names)} values in [-1, 1] are needed, not {tuple(values)}")
@@ -113,7 +118,7 @@ class Monitor:
             done=self.done,
             progress=self.progress,
             reward=reward,
-            # Adding 0 turns -0 into 0, so that every monitor prints the same.
+            # Adding 0 turns -0 into 0, so that all monitors print the same number.
             robustness=robustness(taken.guard, values) + 0.0,
             limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
         )

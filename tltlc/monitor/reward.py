@@ -16,12 +16,16 @@ TerminalPenalty = Literal["undiscounted", "discounted"]
 
 @record
 class RewardOptions:
-    """How steps are rewarded and episodes end (semantics, section 4).
+    """How steps are rewarded and when episodes end (semantics, section 4).
 
-    ``mode`` names the reward; those beside ``progress`` are in :mod:`tltlc.monitor.reward_modes`.
-    ``termination``: ``entry`` ends an episode on entry into an accepting or trap state, ``paper`` one step
-    later as the listing does, judged at the goal whatever the spec says.  ``gamma`` in (0, 1] is the discount of
-    mode ``potential`` and of the ``discounted`` terminal penalty.  Raises ValueError for anything else.
+    - ``mode`` names the reward; modes other than ``progress`` are in
+      :mod:`tltlc.monitor.reward_modes`.
+    - ``termination``: ``entry`` ends an episode on entry into an accepting or trap state. ``paper``
+      ends it one step later, as the listing does, and judges every spec at the goal.
+    - ``gamma`` in (0, 1] is the discount of mode ``potential`` and of the ``discounted`` terminal
+      penalty.
+
+    Other values raise ValueError.
     """
 
     mode: Mode = "progress"
@@ -40,9 +44,10 @@ class RewardOptions:
 
 @record
 class RewardStep:
-    """The outcome of one step: its ``reward``, the best ``progress`` so far, in [0, 1], and whether the episode ends.
+    """The outcome of one step: ``reward``, the best ``progress`` so far, in [0, 1], and whether the
+    episode is ``done``.
 
-    ``success`` speaks of an episode that ends here; elsewhere it is False.
+    ``success`` is meaningful where the episode ends; elsewhere it is False.
     """
 
     reward: float
@@ -61,27 +66,27 @@ def reward_step(
     options: RewardOptions | None = None,
     last: bool = False,
 ) -> RewardStep:
-    """One pass through the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
+    """One iteration of the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
 
-    ``values`` are those of the atoms at the sample that moved the automaton (line 8); ``best`` is the best
-    progress before it (``episode progress``); ``step`` counts the samples of the episode, this one included;
-    ``last`` says that the episode ends here whatever the spec says, as where a game is over before its time.
-    With ``T`` the spec's limit in steps, the order of operations is::
+    ``values`` are the atoms' values at the sample that moved the automaton (line 8). ``best`` is
+    the best progress before it (``episode progress``). ``step`` counts the samples of the episode,
+    this one included. ``last`` ends the episode here whatever the spec says, as when the game is
+    over early. With ``T`` the spec's limit in steps, the order of operations is::
 
         reward = max(0, progress - best)          lines 25 to 28
-        reward = reward - 1 / T                   line 29, where there is a limit
-        reward = reward - terminal penalty        line 20, on a violation, where there is a limit;
-                                                  also where ``last`` makes a failure of what was not over
+        reward = reward - 1 / T                   line 29, if there is a limit
+        reward = reward - terminal penalty        line 20, on a violation, if there is a limit;
+                                                  also if ``last`` makes an unfinished episode a failure
 
     Deviations from the listing:
 
     ▲ line 10: the caller moved the automaton by truth, not by the highest robustness.
     ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
-      ``termination="paper"`` runs the lines as they stand.
-    ▲ line 11: where S is 0 nothing is divided; a trap has no progress, so that none is gained there.
+    ``termination="paper"`` runs the lines as printed.
+    ▲ line 11: if S is 0, nothing is divided. A trap has no progress, so entering it gains none.
     ▲ line 14: the robustness that is added is capped at 0.
-    ▲ a spec that is judged at its limit (``judge``) ends at T, or before where its verdict is settled; its progress is
-      the share of T survived.
+    ▲ a spec judged at its limit (``judge``) ends at T, or earlier once its verdict is settled; its
+    progress is the share of T survived.
     """
     options = options or RewardOptions()
     limit = tables.fspa.limit_steps
@@ -101,7 +106,7 @@ def reward_step(
 def step_progress(
     tables: Tables, state: int, target: int, values: Sequence[float], step: int, options: RewardOptions
 ) -> float:
-    """The progress of this step alone (``step progress``), in [0, 1]: lines 11 to 18."""
+    """Return the progress of this step alone (``step progress``, lines 11 to 18), in [0, 1]."""
     if tables.fspa.judge == "limit" and options.termination == "entry":
         return _share_survived(tables, target, step)
     progress = tables.base_progress[target]
@@ -111,13 +116,16 @@ def step_progress(
 
 
 def approach(tables: Tables, state: int, values: Sequence[float]) -> float:
-    """What line 14 adds: how near the best edge is that improves, as a share of the spec's size."""
+    """Return what line 14 adds: the nearness of the best improving edge, as a share of the spec's size."""
     nearest = max(robustness(edge.guard, values) for edge in tables.improving[state])
     return (1.0 + min(0.0, nearest)) / tables.fspa.spec_size
 
 
 def _share_survived(tables: Tables, target: int, step: int) -> float:
-    """The share of the limit that the spec has outlived; of no limit, 0 as long as anything can still happen."""
+    """Return the share of the limit that the episode has survived.
+
+    A satisfied spec gives 1, a violated one 0. Without a limit, an undecided spec gives 0.
+    """
     verdict, limit = tables.fspa.states[target].verdict, tables.fspa.limit_steps
     if verdict == "satisfied":
         return 1.0
@@ -127,11 +135,11 @@ def _share_survived(tables: Tables, target: int, step: int) -> float:
 
 
 def _end(tables: Tables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
-    """Whether the episode ends, and if so whether in success."""
+    """Return whether the episode ends, and whether it ends in success."""
     fspa, reached = tables.fspa, tables.fspa.states[target]
     settled = reached.verdict in ("satisfied", "violated")
     if options.termination == "paper":
-        # Lines 12 to 21: it ends where the automaton stayed and no edge improves.
+        # Lines 12 to 21: the episode ends if the state did not change and no edge improves.
         ends = state == target and not tables.improving[target]
     elif fspa.judge == "goal":
         ends = reached.accepting or settled
@@ -142,14 +150,18 @@ def _end(tables: Tables, state: int, target: int, step: int, options: RewardOpti
 
 
 def _succeeds_early(tables: Tables, target: int, options: RewardOptions) -> bool:
-    """Whether an episode that is cut off here is a success: a spec that is outlived must have no limit to reach."""
+    """Whether an episode that is cut off here is a success. A spec judged at its limit succeeds
+    only if it has no limit.
+    """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
 
 
 def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
-    """The step penalties that an end after ``step`` of ``limit`` steps saves: ``(T - t) / T``, or what they are worth
-    discounted to this step.
+    """Return the step penalties saved by an end after ``step`` of ``limit`` steps.
+
+    It is ``(T - t) / T``, or with the ``discounted`` penalty the sum of these penalties discounted
+    to this step.
     """
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:

@@ -12,7 +12,7 @@ from tltlc.monitor.monitor import Monitor, Step
 
 @record
 class Row:
-    """One step of a run: its number, from 1, what the monitor said, and the values of the atoms in order."""
+    """One step of a run: its number, from 1, the monitor's result, and the values of the atoms, in order."""
 
     number: int
     step: Step
@@ -21,7 +21,7 @@ class Row:
 
 @record
 class Outcome:
-    """How a whole trace was judged: whether its end is accepted, and the verdict of the last state."""
+    """The judgement of a whole trace: whether its end is accepted, and the verdict of the last state."""
 
     accepted: bool
     verdict: Verdict
@@ -31,10 +31,10 @@ class Outcome:
 
 
 def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[Row]:
-    """A row per sample, as the samples come in; the monitor is reset before the first one.
+    """Yield a row per sample as the samples come in; the monitor is reset before the first one.
 
     Raises:
-        TltlError: what :meth:`Monitor.step` and the trace raise.
+        TltlError: the errors of :meth:`Monitor.step` and of the trace.
     """
     monitor.reset()
     for number, sample in enumerate(trace, start=1):
@@ -43,18 +43,22 @@ def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Itera
 
 
 def header(fspa: Fspa) -> tuple[str, ...]:
-    """The names of the columns that :func:`cells` fills."""
+    """Return the names of the columns that :func:`cells` fills."""
     return ("step", "state", "verdict", "progress", "reward", *(atom.name for atom in fspa.atoms))
 
 
 def cells(row: Row) -> tuple[str, ...]:
-    """A row as text, numbers with 17 significant digits."""
+    """Return a row as texts; numbers have 17 significant digits."""
     numbers = (row.step.progress, row.step.reward, *row.values)
     return (str(row.number), str(row.step.state), row.step.verdict, *(f"{number + 0.0:.17g}" for number in numbers))
 
 
 def outcome(rows: Iterable[Row]) -> Outcome:
-    """The judgement of a trace that ends after the last of the rows, of which there is at least one."""
+    """Return the judgement of a trace that ends with the last of the rows.
+
+    Raises:
+        ValueError: there are no rows.
+    """
     total = 0.0
     last: Row | None = None
     for last in rows:

@@ -1,4 +1,4 @@
-"""From what the game supplies to the values of the atoms: checks, clamping, predicates."""
+"""Compute the values of the atoms from the game's signals: checks, clamping, predicates."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from tltlc.expression.python import compile_expressions
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
-"""How far outside [-1, 1] the value of an atom may be before it is worth a notice."""
+"""The value of an atom may exceed [-1, 1] by this much without a notice."""
 
 
 class MonitorError(TltlError):
-    """A sample that no automaton can take, or a param that does not fit; the state stays as it was."""
+    """A sample that the automaton cannot take, or a param that does not fit; the state stays unchanged."""
 
 
 class Samples:
     """Computes the values of the atoms of an automaton from samples of its signals.
 
-    ``notices`` receives a warning, once per signal or atom, where a value had to be clamped.
+    ``notices`` receives a warning about a clamped value, once per signal or atom.
     """
 
     def __init__(self, fspa: Fspa, params: Mapping[str, float] | None, notices: list[Diagnostic]) -> None:
@@ -35,12 +35,13 @@ class Samples:
         )
 
     def atom_values(self, signals: Mapping[str, SupportsFloat], step: int) -> tuple[float, ...]:
-        """The values of the atoms, each in [-1, 1], at a sample.
+        """Return the values of the atoms at a sample, each in [-1, 1].
 
         ``step`` is the number of the sample, from 1, for messages.
 
         Raises:
-            MonitorError: TLT0611 signals are missing, TLT0612 one has no finite value, TLT0613 an atom has none.
+            MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
+                an atom has no value.
         """
         missing = [name for name in self._names if name not in signals]
         if missing:
@@ -50,7 +51,7 @@ class Samples:
         return tuple(self._in_range(index, value, step) for index, value in enumerate(values))
 
     def _number(self, signal: Signal, given: SupportsFloat, step: int) -> float:
-        """The value of a signal as a number in its range."""
+        """Return the value of a signal as a number, clamped to its range."""
         value = number(signal, given, step)
         low, high = signal.low, signal.high
         if signal.type == "bool":
@@ -67,12 +68,12 @@ class Samples:
         try:
             return self._atoms[index](sample)
         except ZeroDivisionError:
-            what = "divides by zero"
+            problem = "divides by zero"
         except OverflowError:
-            what = "is too large to compute"
+            problem = "is too large to compute"
         except ValueError:
-            what = "takes a root or power that does not exist"
-        raise _error("TLT0613", step, f"the atom `{self._fspa.atoms[index].name}` {what}")
+            problem = "takes a root or power that does not exist"
+        raise _error("TLT0613", step, f"the atom `{self._fspa.atoms[index].name}` {problem}")
 
     def _in_range(self, index: int, value: float, step: int) -> float:
         if -1.0 <= value <= 1.0:
@@ -93,16 +94,17 @@ class Samples:
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
-    """The value of every param: the given one, else its own.
+    """Return the value of every param: the given one, else its default.
 
     Raises:
-        MonitorError: TLT0308 no param of that name, or no finite number; TLT0307 outside its range.
+        MonitorError: TLT0308 there is no param of that name, or the value is not a finite number;
+            TLT0307 the value is outside its range.
     """
     known = {param.name: param for param in params}
     for name, value in given.items():
         if name not in known:
-            there = f"there are: {listed(list(known))}" if known else "its atoms use none: leave it out"
-            raise _wrong_param("TLT0308", f"there is no param `{name}` to set", there)
+            advice = f"there are: {listed(list(known))}" if known else "its atoms use none: leave it out"
+            raise _wrong_param("TLT0308", f"there is no param `{name}` to set", advice)
         if isinstance(value, str) or not hasattr(value, "__float__"):
             raise _wrong_param("TLT0308", f"the value given for the param `{name}` is no number")
         low, high = known[name].low, known[name].high
@@ -114,12 +116,12 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
     return {name: float(given.get(name, param.value)) for name, param in known.items()}
 
 
-def _wrong_param(code: str, title: str, way_out: str = "give a number in its range, in SI units") -> MonitorError:
-    return MonitorError([Diagnostic(code, title, help=way_out)])
+def _wrong_param(code: str, title: str, advice: str = "give a number in its range, in SI units") -> MonitorError:
+    return MonitorError([Diagnostic(code, title, help=advice)])
 
 
 def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
-    """Raises MonitorError (TLT0614) where two atoms that a declaration calls exclusive hold at once."""
+    """Raise MonitorError (TLT0614) if two atoms that a declaration calls exclusive hold at once."""
     for group in fspa.exclusive:
         holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
         if len(holding) > 1:
@@ -128,27 +130,29 @@ def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
 
 
 def shown(value: float) -> str:
-    """A number for a message: the shortest text that reads back as the same number."""
+    """Return a number for a message: the shortest text that reads back as the same number."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
 
 
 def range_text(low: float | None, high: float | None) -> str:
-    """``[0, inf]`` and the like."""
+    """Return a range as text, for example ``[0, inf]``."""
     return f"[{'-inf' if low is None else shown(low)}, {'inf' if high is None else shown(high)}]"
 
 
 def listed(names: Sequence[str]) -> str:
-    """The names in backquotes, the last one behind ``and``."""
+    """Return the names in backquotes, with ``and`` before the last one."""
     quoted = [f"`{name}`" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 
 
 def number(signal: Signal, given: SupportsFloat, when: int | str) -> float:
-    """The value of a signal as a finite number; ``when``, the number of the step or a word for it, is for messages.
+    """Return the value of a signal as a finite number.
+
+    ``when``, the number of the step or a phrase for it, is for messages.
 
     Raises:
-        MonitorError: TLT0612 it is none.
+        MonitorError: TLT0612 the value is not a finite number.
     """
     value = given if type(given) is float else _as_float(signal, given, when)
     if not isfinite(value):
@@ -175,7 +179,7 @@ WAYS_OUT: Final = {
     "TLT0615": "supply it on the scale that is declared, or declare the range that it has",
     "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
 }
-"""What helps against each problem with a sample."""
+"""The help of each diagnostic about a sample."""
 
 
 def _error(code: str, when: int | str, text: str) -> MonitorError:

@@ -1,4 +1,4 @@
-"""What a monitor looks up at every step, computed once from the automaton."""
+"""Lookup tables of a monitor, computed once from the automaton."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from tltlc.core.record import record
 
 @record
 class Tables:
-    """Per state, by its number: the edges that leave it, those of them that improve, and its base progress.
+    """Per state, by its number: the edges that leave it, the improving ones among them, and its base progress.
 
-    An edge improves if its target has a smaller distance than its source.  ``base_progress`` is in [0, 1].
+    An edge improves if its target has a smaller distance than its source. ``base_progress`` is in
+    [0, 1].
     """
 
     fspa: Fspa
@@ -20,7 +21,7 @@ class Tables:
 
 
 def tables(fspa: Fspa) -> Tables:
-    """The tables of an automaton."""
+    """Return the tables of an automaton."""
     edges: list[list[Edge]] = [[] for _ in fspa.states]
     for edge in fspa.edges:
         edges[edge.source].append(edge)
@@ -39,7 +40,7 @@ def _improves(fspa: Fspa, edge: Edge) -> bool:
 
 
 def _base_progress(distance: int | None, spec_size: int) -> float:
-    """``(S - d) / S``, line 11 of Algorithm 1; 0 in a trap, 1 in a goal where S is 0 (▲ the paper divides)."""
+    """``(S - d) / S``, line 11 of Algorithm 1; 0 in a trap, 1 in a goal state if S is 0 (▲ the paper divides by S)."""
     if distance is None:
         return 0.0
     return (spec_size - distance) / spec_size if spec_size else 1.0

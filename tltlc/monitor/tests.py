@@ -1,4 +1,4 @@
-"""Run the ``test`` blocks of a program: traces in atoms, and what must hold of them."""
+"""Run the ``test`` blocks of a program: traces of atoms, with expectations."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tltlc.resolve.spec import Expect, Program, Test
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 _TOLERANCE: Final = 1e-12
-"""Progress adds up in floating point: ``progress >= 0.3`` is met by 0.1 + 0.2, and ``progress < 0.3`` is not."""
+"""Rounding of floating-point sums: 0.1 + 0.2 meets ``progress >= 0.3`` and fails ``progress < 0.3``."""
 
 
 @record
 class TestResult:
-    """A test and what went wrong in it: nothing, the first expectation that failed, or a sample that cannot be."""
+    """A test and its failure: None, the first expectation that failed, or a sample in which exclusive atoms hold."""
 
     test: Test
     failure: Diagnostic | None
@@ -33,16 +33,16 @@ class TestResult:
 
 
 def run_tests(program: Program, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
-    """The results of the tests of a program, in order; those of specs without an automaton are left out."""
+    """Return the results of a program's tests, in order; tests of specs without an automaton are skipped."""
     by_name = {fspa.name: fspa for fspa in automata}
     return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)
 
 
 def run_test(test: Test, fspa: Fspa) -> TestResult:
-    """The result of one test: an atom that a step names has the robustness 1, every other one -1.
+    """Return the result of one test. An atom that a step names has the robustness 1, every other atom -1.
 
-    Each expectation judges the prefix so far.  Diagnostics: TLT0640 it does not hold, TLT0614 a step in which
-    exclusive atoms hold.
+    Each expectation judges the prefix so far. Diagnostics: TLT0640 an expectation fails, TLT0614
+    exclusive atoms hold in one step.
     """
     monitor = Monitor(fspa)
     last: Step | None = None
@@ -57,7 +57,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
             for _ in range(item.times):
                 before, last = last, monitor.step_atoms(values)
                 if last == before:
-                    break  # the same sample again would change nothing
+                    break  # repeating the same sample would change nothing
         except MonitorError as error:
             label = Label(test.source, test.span, "in this test")
             advice = "let each step name one of them at most"
@@ -66,7 +66,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
 
 
 def _unmet(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
-    """What is wrong, or None where the expectation holds."""
+    """Return why the expectation fails; None if it holds."""
     if step is None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
     if expect.kind == "verdict":
@@ -90,7 +90,7 @@ def _compares(progress: float, expect: Expect) -> bool:
 
 
 def _squeezed(label: str) -> str:
-    """A label without white space: `F (a)` and `F(a)` are the same."""
+    """Return a label without white space, so that `F (a)` and `F(a)` compare equal."""
     return "".join(label.split())
 
 

@@ -1,4 +1,4 @@
-"""Read the rows of a trace by the rules of ``docs/traces.md``, before it is known which columns matter."""
+"""Read the rows of a trace by the rules of ``docs/traces.md``, before it is known which columns are needed."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _NUMBER: Final = re.compile(
 
 
 class Stream(Protocol):
-    """A binary file that is open for reading."""
+    """A binary file open for reading."""
 
     def readline(self, size: int = -1, /) -> bytes:
-        """The next line, or its first ``size`` bytes; nothing at the end."""
+        """Return the next line, or its first ``size`` bytes; empty at the end."""
 
 
 @record
 class Table:
-    """A trace in CSV: its columns, and its rows, each as long as ``header``, as they are read."""
+    """A trace in CSV: its columns, and its rows as they are read, each as long as ``header``."""
 
     header: tuple[str, ...]
     rows: Iterator[list[str]]
@@ -38,13 +38,13 @@ class Table:
 
 @record
 class Objects:
-    """A trace in JSON lines, as they are read."""
+    """A trace in JSON lines: its objects as they are read."""
 
     rows: Iterator[dict[str, Any]]
 
 
 def read_rows(lines: Lines) -> Table | Objects | None:
-    """The trace on these lines, as CSV or JSON lines; None where it is blank.
+    """Return the trace as CSV or JSON lines; None if it is blank.
 
     Raises:
         TltlError: TLT0622 a line that cannot be read; the rows raise it when the reader gets there.
@@ -59,7 +59,7 @@ def read_rows(lines: Lines) -> Table | Objects | None:
 
 
 def cell_number(cell: str) -> float | None:
-    """The number in a cell, 1 or 0 for true or false; None where there is none."""
+    """Return the number in a cell, 1 or 0 for true or false; None if there is none."""
     text = cell.strip(_BLANKS)
     if _NUMBER.fullmatch(text):
         return float(text)
@@ -68,26 +68,26 @@ def cell_number(cell: str) -> float | None:
 
 
 class Lines:
-    """The lines of a stream, decoded and checked; remembers where the present row begins, for messages.
+    """The lines of a stream, decoded and checked; for messages, it remembers the start of the current row.
 
-    ``name`` is what messages call the trace.  No more of it is held than a row, which has at most
+    ``name`` is the trace's name in messages. At most one row is kept in memory; a row has at most
     ``TRACE_LINE.size`` bytes.
     """
 
     def __init__(self, stream: Stream, name: str) -> None:
         self.name = name
         self.text = ""
-        """The first line of the present row."""
+        """The first line of the current row."""
         self._stream = stream
         self._read = 0
         self._first = 0
         self._used = 0
 
     def first_of_row(self) -> str | None:
-        """The next line that is not blank, with which a row begins, without its line feed; None at the end.
+        """Return the next line that is not blank, without its line feed; it begins a row. None at the end.
 
         Raises:
-            TltlError: TLT0622, as :meth:`next_of_row`.
+            TltlError: TLT0622, as in :meth:`next_of_row`.
         """
         line: str | None = ""
         while line is not None and not line.removesuffix("\r").strip(_BLANKS):
@@ -97,10 +97,10 @@ class Lines:
         return line
 
     def next_of_row(self) -> str | None:
-        """The next line, which belongs to the present row, without its line feed; None at the end.
+        """Return the next line of the current row, without its line feed; None at the end.
 
         Raises:
-            TltlError: TLT0622, it makes the row too long, is not UTF-8, or holds a NUL.
+            TltlError: TLT0622 the line makes the row too long, is not UTF-8, or contains a NUL.
         """
         room = TRACE_LINE.size - self._used
         line = self._stream.readline(room + 1) if room >= 0 else b"-"
@@ -127,20 +127,20 @@ class Lines:
         return text
 
     def _bad_line(self, line: bytes, remark: str, column: int, help: str) -> TltlError:  # noqa: A002
-        """The error of the present line, whichever line the row began with."""
+        """Return an error that points at the current line, even if the row began on an earlier one."""
         self._first, self.text = self._read, line.decode(errors="replace")
         return self.error(remark, (column, column + 1), help)
 
     def error(self, remark: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
-        """TLT0622, pointing at the line in which the present row begins, or at some of its columns (from 0)."""
+        """Return TLT0622, pointing at the first line of the current row, or at some of its columns (from 0)."""
         title = f"line {self._first} of the trace cannot be read"
         return TltlError([Diagnostic("TLT0622", title, (self.label(remark, columns),), help)])
 
     def label(self, remark: str, columns: tuple[int, int] | None = None) -> Label:
-        """A place in the line in which the present row begins."""
+        """Return a label on the first line of the current row, or on some of its columns (from 0)."""
         start, end = columns or (0, len(self.text))
         offset = self._first - 1
-        # The lines before have gone by; empty ones keep the number right. A CR would count as a line end.
+        # Earlier lines are no longer in memory; empty ones keep the line number right. A CR would count as a line end.
         source = SourceFile(self.name, "\n" * offset + self.text.replace("\r", " "))
         return Label(source, Span(offset + start, offset + max(start, end)), remark)
 
@@ -163,7 +163,7 @@ def _rows(lines: Lines, count: int) -> Iterator[list[str]]:
 
 
 def _cells(line: str, lines: Lines) -> list[str]:
-    """The cells of a row that begins with this line; further lines are read where quotes go on there."""
+    """Return the cells of a row that begins with this line; a quoted cell may continue on further lines."""
     if '"' not in line:
         line = line.removesuffix("\r")
         _check_returns(line, lines)
@@ -174,9 +174,9 @@ def _cells(line: str, lines: Lines) -> list[str]:
         if line.startswith('"', start):
             cell, line, place = _quoted(line, start + 1, lines)
         else:
-            found = line.find(",", start)
-            place = len(line) if found < 0 else found
-            cell = line[start:].removesuffix("\r") if found < 0 else line[start:place]
+            comma = line.find(",", start)
+            place = len(line) if comma < 0 else comma
+            cell = line[start:].removesuffix("\r") if comma < 0 else line[start:place]
             _check_returns(cell, lines)
             cell = cell.strip(_BLANKS)
         cells.append(cell)
@@ -189,7 +189,9 @@ def _check_returns(text: str, lines: Lines) -> None:
 
 
 def _quoted(line: str, start: int, lines: Lines) -> tuple[str, str, int]:
-    """A cell whose text begins there in a line; the line in which it ends, and where the comma or the end is."""
+    """Return a quoted cell whose text begins at ``start``, the line in which it ends, and the
+    position of the comma or end after it.
+    """
     pieces = []
     while (end := _closing_quote(line, start)) < 0:
         pieces.append(line[start:])
@@ -206,7 +208,7 @@ def _quoted(line: str, start: int, lines: Lines) -> tuple[str, str, int]:
 
 
 def _closing_quote(line: str, start: int) -> int:
-    """Where the quotes end that go on there in a line; -1 where they do not."""
+    """Return the position of the closing quote of a cell that continues at ``start``; -1 if it is not in this line."""
     end = line.find('"', start)
     while end >= 0 and line.startswith('""', end):
         end = line.find('"', end + 2)
@@ -223,7 +225,7 @@ def _after_blanks(line: str, start: int) -> int:
 
 
 class _BadObjectError(ValueError):
-    """JSON that a trace must not hold; the message says what."""
+    """A JSON object that a trace may not contain; the message says why."""
 
 
 def _object(line: str, lines: Lines) -> dict[str, Any]:
@@ -234,9 +236,9 @@ def _object(line: str, lines: Lines) -> dict[str, Any]:
             raise _BadObjectError(f"this holds more than {TRACE_LINE.values:,} values")
         if "\r" in line.removesuffix("\r"):
             raise _BadObjectError("a carriage return stands alone")
-        # Whole numbers may have more digits than Python's own reading takes.
-        found = json.loads(line, parse_int=float, object_pairs_hook=_with_keys_once)
-        if line.count("{") + line.count("[") > TRACE_LINE.depth and _depth(found) > TRACE_LINE.depth:
+        # Integers may have more digits than Python's int() accepts.
+        value = json.loads(line, parse_int=float, object_pairs_hook=_with_keys_once)
+        if line.count("{") + line.count("[") > TRACE_LINE.depth and _depth(value) > TRACE_LINE.depth:
             raise RecursionError
     except json.JSONDecodeError as error:
         raise lines.error("this is not JSON", (error.pos, error.pos + 1), OBJECTS) from None
@@ -244,22 +246,22 @@ def _object(line: str, lines: Lines) -> dict[str, Any]:
         raise lines.error(f"this nests deeper than {TRACE_LINE.depth} levels", help=OBJECTS) from None
     except _BadObjectError as error:
         raise lines.error(str(error), help=OBJECTS) from None
-    if not isinstance(found, dict):
+    if not isinstance(value, dict):
         raise lines.error("this is no object", help=OBJECTS)
-    return found
+    return value
 
 
 def _with_keys_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    object_ = dict(pairs)
+    if len(object_) < len(pairs):
         raise _BadObjectError("a key stands twice")
-    if any("\ud800" <= character <= "\udfff" for key in found if not key.isascii() for character in key):
+    if any("\ud800" <= character <= "\udfff" for key in object_ if not key.isascii() for character in key):
         raise _BadObjectError("a key holds half a character")
-    return found
+    return object_
 
 
 def _depth(value: Any) -> int:
-    """How deep a JSON value nests; 0 for one that holds no others."""
+    """Return the nesting depth of a JSON value; 0 for a scalar."""
     if not isinstance(value, (dict, list)):
         return 0
     return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)

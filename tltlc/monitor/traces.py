@@ -1,4 +1,4 @@
-"""Read traces, one sample at a time: CSV with a header of signal names, or JSON lines of objects."""
+"""Read traces sample by sample: CSV with a header of signal names, or JSON lines."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _TRUTHS: Final = "write `true`, `false`, 1 or 0"
 
 
 def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator[Sample]:
-    """The samples of a trace, as the lines come in: the values of the signals, others are ignored.
+    """Yield the samples of a trace as its lines come in: the values of the given signals. Other columns are ignored.
 
-    ``stream`` is binary; ``name`` is what messages call it.  ``docs/traces.md`` has the rules.  A value that is
-    missing from a JSON object, and one that is not finite, is left to the monitor.
+    ``stream`` is binary; ``name`` is the trace's name in messages. ``docs/traces.md`` has the
+    rules. Values that are missing from a JSON object or not finite are left to the monitor.
 
     Raises:
         TltlError: TLT0620 no sample, TLT0621 no column for a signal, TLT0622 a line that cannot be
-            read; while iterating, when the reader gets there.
+            read. It is raised while iterating, when the reader gets there.
     """
     lines = Lines(stream, name)
     trace = read_rows(lines)
@@ -33,7 +33,7 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
         columns = _columns(trace.header, lines, signals)
         samples = (_row_sample(row, columns, lines) for row in trace.rows)
     elif trace is not None:
-        samples = (_object_sample(found, signals, lines) for found in trace.rows)
+        samples = (_object_sample(object_, signals, lines) for object_ in trace.rows)
     count = 0
     for count, sample in enumerate(samples, start=1):  # noqa: B007 (counts)
         yield sample
@@ -45,15 +45,15 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
 
 
 def _columns(header: Sequence[str], at: Lines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
-    """The signals and the positions of their columns."""
+    """Return the signals and the positions of their columns."""
     places: dict[str, int] = {}
     twice = {name for place, name in enumerate(header) if places.setdefault(name, place) != place}
     missing = [signal.name for signal in signals if signal.name not in places]
     if missing:
         title = f"the trace has no column for {listed(missing)}"
-        found = f"its columns are {listed(header[:10])}" + (", …" if len(header) > 10 else "")
-        way_out = _other_form(at.text) or _suggestion(missing[0], header) or found
-        raise TltlError([Diagnostic("TLT0621", title, (at.label(""),), way_out)])
+        listing = f"its columns are {listed(header[:10])}" + (", …" if len(header) > 10 else "")
+        advice = _other_form(at.text) or _suggestion(missing[0], header) or listing
+        raise TltlError([Diagnostic("TLT0621", title, (at.label(""),), advice)])
     for signal in signals:
         if signal.name in twice:
             raise at.error(f"two columns are called `{signal.name}`", help="keep one of them")
@@ -61,7 +61,7 @@ def _columns(header: Sequence[str], at: Lines, signals: Sequence[Signal]) -> lis
 
 
 def _other_form(line: str) -> str | None:
-    """What to do where the line looks like the start of something other than commas between names."""
+    """Return advice if the line looks like JSON or like another separator than commas."""
     if line.lstrip().startswith("["):
         return OBJECTS
     return "separate the columns by commas" if ";" in line or "\t" in line else None
@@ -81,7 +81,7 @@ def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], at: L
         value = cell_number(row[column])
         if value is None or not _is_allowed(signal, value):
             remark = _problem(signal, value) if row[column] else f"`{signal.name}` has no value"
-            raise at.error(remark, _cell_span(at.text, column), _way_out(signal))
+            raise at.error(remark, _cell_span(at.text, column), _advice(signal))
         sample[signal.name] = value
     return sample
 
@@ -91,16 +91,16 @@ def _is_allowed(signal: Signal, value: float) -> bool:
 
 
 def _problem(signal: Signal, value: float | None) -> str:
-    """What is wrong with the value of a signal."""
+    """Return what is wrong with the value of a signal."""
     return f"this value of `{signal.name}` is {'no number' if value is None else 'not true or false'}"
 
 
-def _way_out(signal: Signal) -> str:
+def _advice(signal: Signal) -> str:
     return _TRUTHS if signal.type == "bool" else _VALUES
 
 
 def _cell_span(line: str, column: int) -> tuple[int, int] | None:
-    """Where a cell stands in its line; None where quotes make that hard to say."""
+    """Return the columns of a cell in its line; None if the line has quotes, which move the cells."""
     cells = line.split(",")
     if '"' in line or column >= len(cells):
         return None
@@ -111,15 +111,15 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 # --- JSON lines -----------------------------------------------------------------------------------
 
 
-def _object_sample(found: Mapping[str, Any], signals: Sequence[Signal], at: Lines) -> Sample:
+def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], at: Lines) -> Sample:
     sample = {}
     for signal in signals:
-        given = found.get(signal.name)
+        given = object_.get(signal.name)
         if given is None:
-            # A missing value is the monitor's business.
-            continue
+            continue  # the monitor reports missing values
+
         value = float(given) if isinstance(given, (int, float)) else None
         if value is None or not _is_allowed(signal, value):
-            raise at.error(_problem(signal, value), help=_way_out(signal))
+            raise at.error(_problem(signal, value), help=_advice(signal))
         sample[signal.name] = value
     return sample

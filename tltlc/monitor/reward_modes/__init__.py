@@ -1,8 +1,8 @@
-"""Rewards to compare Algorithm 1 with: one module per mode, loaded when asked for.
+"""Alternative rewards to compare with Algorithm 1: one module per mode, loaded on first use.
 
-A module has ``reward(tables, transition, options, memory) -> (reward, memory)``, a pure function.
-``memory`` is what the mode carries from step to step, None at the start of an episode.  None of these
-modes has step or terminal penalties.  Adding a mode means adding its file and its name to
+A module defines ``reward(tables, transition, options, memory) -> (reward, memory)``, a pure
+function. ``memory`` is the mode's state from step to step, None at the start of an episode. None of
+these modes has step or terminal penalties. To add a mode, add its file and its name to
 :data:`tltlc.monitor.reward.Mode`.
 """
 
@@ -19,7 +19,7 @@ from tltlc.monitor.tables import Tables
 
 @record
 class Transition:
-    """One step of the automaton, at the ``values`` of the atoms, and whether the episode ends with it, and how."""
+    """One step of the automaton at the ``values`` of the atoms; whether the episode ends with it, and in success."""
 
     state: int
     target: int
@@ -32,6 +32,6 @@ ModeFunction = Callable[[Tables, Transition, RewardOptions, Any], tuple[float, A
 
 
 def mode_function(name: str) -> ModeFunction:
-    """The function of a mode, by name."""
+    """Return the reward function of a mode."""
     function: ModeFunction = importlib.import_module(f"{__name__}.{name}").reward
     return function

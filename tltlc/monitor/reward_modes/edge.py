@@ -1,4 +1,4 @@
-"""The robustness of leaving the state, at every step (Li, Serlin, Yang, Belta, Science Robotics 2019)."""
+"""Reward the robustness of leaving the state, at every step (Li, Serlin, Yang, Belta, Science Robotics 2019)."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from tltlc.monitor.tables import Tables
 
 
 def reward(tables: Tables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
-    """The robustness of the disjunction of the edges that leave the state, in [-1, 1]; of no edges, 0.
+    """Return the robustness of the disjunction of the edges that leave the state, in [-1, 1]; 0 without such edges.
 
-    ▲ Edges into a trap are left out: the disjunction would pay for a violation.
+    ▲ Edges into a trap are left out: the disjunction would reward a violation.
     """
     states = tables.fspa.states
     leaving = [

@@ -1,4 +1,4 @@
-"""Success, shaped by progress as a potential: the optimal policies stay those of success alone.
+"""Reward success, shaped with progress as the potential: the optimal policies are those of success alone.
 
 Ng, Harada, Russell, Policy invariance under reward transformations, ICML 1999.
 """
@@ -11,11 +11,11 @@ from tltlc.monitor.tables import Tables
 
 
 def reward(tables: Tables, transition: Transition, options: RewardOptions, memory: float | None) -> tuple[float, float]:
-    """``1`` on success, plus ``gamma * potential after - potential before``.
+    """Return ``1`` on success, plus ``gamma * potential after - potential before``.
 
-    The potential of a state at a sample is its base progress and what line 14 of Algorithm 1 adds, moved or
-    not.  It is 0 where the episode has ended; before the first sample it is the base progress of the
-    initial state.
+    The potential of a state at a sample is its base progress plus what line 14 of Algorithm 1 adds,
+    whether or not the state changed. It is 0 after the end of the episode. Before the first sample
+    it is the base progress of the initial state.
     """
     before = tables.base_progress[0] if memory is None else memory
     after = 0.0 if transition.done else _potential(tables, transition)
