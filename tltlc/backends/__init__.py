@@ -1,8 +1,8 @@
-"""The targets that an automaton can be written for: one module of this package each, loaded when asked for.
+"""The output targets of the compiler: one module of this package each, loaded on first use.
 
 A target is a module with ``TARGET`` (a :class:`Target`) and ``emit(fspa, options) -> Files``, both
-pure: nothing is written to disk here.  Adding one means adding that file; what several targets
-share lies in the subpackages.
+pure: targets write nothing to disk. To add a target, add its module; code that several targets
+share is in the subpackages.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Files = dict[str, Union[str, bytes]]
-"""File names (without folders) and what is to stand in them."""
+"""File names (without folders) and their contents."""
 
 Notation = Literal["unicode", "ascii", "english"]
 
@@ -26,9 +26,9 @@ DEFAULT_TARGETS = ("json", "dot", "python")
 
 @record
 class Target:
-    """What a target is: its name (that of its module), a title for listings, how its files' names end.
+    """A target: its name (the module's name), a title for listings, and the endings of its files' names.
 
-    ``known_as`` are other words that people look for it by, in lower case.
+    ``known_as`` are other words that people search for, in lower case.
     """
 
     name: str
@@ -38,16 +38,16 @@ class Target:
 
 
 def _ignore(_: Diagnostic) -> None:
-    """Drop a remark."""
+    """Drop a diagnostic."""
 
 
 @record
 class Options:
-    """How targets write.
+    """Options of the targets.
 
-    ``notation`` is that of the formulas in pictures.  ``layout_limit_s`` bounds, in seconds, each
-    attempt to lay a picture out.  ``report`` receives a diagnostic when a target had to leave
-    something out.
+    ``notation`` is the notation of formulas in pictures. ``layout_limit_s`` is the time limit, in
+    seconds, of each attempt to lay out a picture. ``report`` receives a diagnostic when a target
+    has to leave something out.
     """
 
     notation: Notation = "unicode"
@@ -56,11 +56,11 @@ class Options:
 
 
 def emit(name: str, fspa: Fspa, options: Options | None = None) -> Files:
-    """The files of one target.
+    """Return the files of one target.
 
     Raises:
-        TltlError: TLT0710 where there is no such target, and what the target itself raises.
-        ValueError: the automaton's name is not plain, so that it cannot name a file.
+        TltlError: TLT0710 there is no such target; or an error of the target itself.
+        ValueError: the automaton's name is not an ASCII identifier, so it cannot name a file.
     """
     if not (fspa.name.isascii() and fspa.name.isidentifier()):
         raise ValueError(f"{fspa.name!r} is no plain name")
@@ -69,13 +69,13 @@ def emit(name: str, fspa: Fspa, options: Options | None = None) -> Files:
 
 
 def target(name: str) -> Target:
-    """What is known of a target; raises TltlError (TLT0710) where there is none of that name."""
-    found: Target = _module(name).TARGET
-    return found
+    """Return the description of a target; raises TltlError (TLT0710) if there is no target of that name."""
+    target_: Target = _module(name).TARGET
+    return target_
 
 
 def targets() -> tuple[str, ...]:
-    """The names of all targets, in alphabetical order."""
+    """Return the names of all targets, in alphabetical order."""
     import pkgutil
 
     return tuple(sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.ispkg))
@@ -99,7 +99,7 @@ def _unknown(name: str) -> Diagnostic:
     from difflib import get_close_matches
 
     known = targets()
-    near = [each for each in known if name.lower() in (each, *target(each).known_as)]
-    near = near or get_close_matches(name, known, n=1)
-    way_out = f"did you mean `{near[0]}`?" if near else f"there are: {', '.join(known)}"
-    return Diagnostic("TLT0710", f"there is no target `{name}`", help=way_out)
+    matches = [candidate for candidate in known if name.lower() in (candidate, *target(candidate).known_as)]
+    matches = matches or get_close_matches(name, known, n=1)
+    advice = f"did you mean `{matches[0]}`?" if matches else f"there are: {', '.join(known)}"
+    return Diagnostic("TLT0710", f"there is no target `{name}`", help=advice)

@@ -23,7 +23,7 @@ LINES: dict[Verdict, str] = {
     "pending": "#475569",
     "violated": "#dc2626",
 }
-"""Colour of the outline and of the corner mark by verdict; the interior is a pale shade of it."""
+"""Colour of a state's outline and corner mark, by verdict; ``FILLS`` are pale shades of these colours."""
 
 FILLS: dict[Verdict, str] = {
     "satisfied": "#dcfce7",
@@ -33,11 +33,13 @@ FILLS: dict[Verdict, str] = {
 }
 
 Detail = Literal["full", "labels", "sketch"]
-"""What the drawing shows: everything; no guards; states by their number alone, for a layout by forces."""
+"""What the drawing shows: everything; everything except guards; only the numbers of states, for a
+force-directed layout.
+"""
 
 LABEL_WIDTH, GUARD_WIDTH, WIDE_GUARD_WIDTH = 30, 22, 32
 MOST_GUARDS = 24
-"""At one arrow; the others are counted."""
+"""The most guards shown on one arrow; the others are only counted."""
 TITLE_WIDTH = 100
 
 FONT = "Helvetica,Arial,sans-serif"
@@ -55,7 +57,9 @@ GRAPH = {
     "fontcolor": "#0f172a",
 }
 DENSE_FROM = 30
-"""Edges, each with a guard to be placed, from which on the layers get twice as tall as need be."""
+"""Above this number of edges, the node distance is reduced: layers of many guards would become
+twice as tall as needed.
+"""
 DENSE = {"nodesep": "0.2"}
 SKETCH = {"overlap": "prism", "K": "1.2", "splines": "line", "outputorder": "edgesfirst"}
 NODE = {
@@ -71,16 +75,17 @@ EDGE = {"color": "#64748b", "arrowsize": "0.75", "fontname": FONT, "fontsize": "
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.dot``."""
+    """Return ``NAME.dot``."""
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
 def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: Detail = "full") -> str:
-    """The DOT text of a drawing, that of everything if none is given.
+    """Return the DOT text of a drawing, by default of the whole automaton.
 
-    Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting states are green with
-    a double outline, traps red, and folded ones dashed.  From one state to another there is one arrow; over infinite
-    traces it may have several guards, each with the pairs that name it behind: ``a [inf 0]``.
+    Each state shows its label and, as a mark in its upper right corner, its distance. Accepting
+    states are green with a double outline, traps are red, and folded states are dashed. There is
+    one arrow from one state to another. Over infinite traces it may list several guards, each
+    followed by the pairs that name its edge: ``a [inf 0]``.
     """
     from graphviz import Digraph
 
@@ -103,7 +108,7 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
 
 
 def _title(fspa: Fspa, drawing: Drawing) -> str:
-    """The name, what it is for, and what the marks mean that the drawing has."""
+    """Return the title: the name of the spec, its documentation, and a legend of the marks that occur."""
     legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrapped(note, TITLE_WIDTH)]
     lines = [f"<B>{escaped(fspa.name)}</B>"]
     if fspa.doc.strip():
@@ -119,25 +124,27 @@ def _legend(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """A state, or with a dashed outline the inner states of a run, which ``text`` spans."""
+    """Draw a state; for a run of folded states, draw them as one with a dashed outline and ``text``
+    for all of them.
+    """
     state, last = run[0], run[-1]
     line, fill = LINES[state.verdict], FILLS[state.verdict]
     distance = span(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
     name = f"state {state.id}" if state is last else f"{len(run)} states, {state.id} to {last.id}"
     body = "<BR/>".join(map(escaped, wrapped(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
-    manner = {"peripheries": "2"} if state.accepting else {}
+    style = {"peripheries": "2"} if state.accepting else {}
     if state is not last:
         body = table([f"<I>{len(run)} more like these</I>", body]) if full else f"<B>{state.id}…{last.id}</B>"
-        manner["style"] = f"{NODE['style']},dashed"
+        style["style"] = f"{NODE['style']},dashed"
     mark = f'<FONT COLOR="white" POINT-SIZE="10"><B> {distance} </B></FONT>'
-    # A cell gets its share of the width that the label asks for: one column of twelve keeps the mark small.
+    # Columns share the width of the label equally: one column of twelve keeps the mark small.
     html = (
         f'<<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="1"><TR><TD COLSPAN="11"></TD>'
         f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
         f'<TR><TD COLSPAN="12" CELLPADDING="6">{body}</TD></TR></TABLE>>'
     )
     tip = plain(f"{name}, {state.verdict}, distance {distance}: {text}")
-    drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **manner)
+    drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **style)
 
 
 def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[str], full: bool) -> None:
@@ -152,9 +159,9 @@ def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[s
 
 
 def _manner(source: State, target: State) -> dict[str, str]:
-    """How an edge is drawn: progress is dark and kept straight, ways into a trap are pale red and give way."""
+    """Return the style of an edge: progress is dark and kept straight; edges into a trap are pale red and may bend."""
     if source.id == target.id:
-        # Nothing leaves a state that is final: its loop is out of the way on the right, where no edge arrives.
+        # No other edge leaves a final state, so its loop goes on the right, where no edge arrives.
         return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}
     if source.distance is not None and target.distance is None:
         return {"color": "#f87171", "weight": "0"}

@@ -1,7 +1,8 @@
-"""The automaton in the Hanoi omega-automata format, version 1 (http://adl.github.io/hoaf/), for the tools of others.
+"""The automaton in the Hanoi omega-automata format (HOA), version 1 (http://adl.github.io/hoaf/), for other tools.
 
-Over infinite traces a Rabin automaton with marks on edges.  Over finite ones, which the format does not know, a
-Büchi automaton with marks on the accepting states, and a header that says so: the run on a finite trace ends in one.
+Over infinite traces, it is a Rabin automaton with marks on edges. The format does not know finite
+traces; for these, it is a Büchi automaton with marks on the accepting states, and a header says
+that a trace is accepted if its run ends in one.
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ from tltlc.backends.drawing.texts import visible
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
-# A capital first letter: a tool that does not know the header has to warn, for it would read another language.
+# By its capital first letter, a tool that does not know this header must warn: it would read another language.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
 FINITE_COMMENT = "A finite trace is accepted where its run ends in a state of set 0."
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.hoa``; texts are in ASCII notation, atoms numbered as in the artefact.
+    """Return ``NAME.hoa``; texts are in ASCII notation, and atoms are numbered as in the artefact.
 
     Raises:
-        TltlError: TLT0004, the file would be larger than what `tltlc import` reads.
+        TltlError: TLT0004 the file would be larger than `tltlc import` reads.
     """
     clashes = sorted({pair for group in fspa.exclusive for pair in combinations(sorted(set(group)), 2)})
     with recursion_room():
@@ -43,7 +44,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
-    """The lines before the body; ``clashes`` are the pairs of atoms that never hold at once."""
+    """Yield the lines before the body; ``clashes`` are the pairs of atoms that never hold at once."""
     yield "HOA: v1"
     yield f'tool: "tltlc" {_string(__version__)}'
     yield f"name: {_string(fspa.name)}"
@@ -53,7 +54,7 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
     yield "Start: 0"
     yield " ".join([f"AP: {len(fspa.atoms)}", *(_string(atom.name) for atom in fspa.atoms)])
     if clashes:
-        yield f"Alias: @allowed {' & '.join(f'!({one}&{other})' for one, other in clashes)}"
+        yield f"Alias: @allowed {' & '.join(f'!({first}&{second})' for first, second in clashes)}"
         yield _comment(ALLOWED_COMMENT)
     infinite = fspa.semantics == "infinite"
     yield from _rabin(len(fspa.acceptance)) if infinite else ("acc-name: Buchi", "Acceptance: 1 Inf(0)")
@@ -71,7 +72,11 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
 
 
 def _rabin(pairs: int) -> tuple[str, str]:
-    """The acceptance in the format's canonical form: of pair i the sets 2i, to be left, and 2i + 1, to be met."""
+    """Return the acceptance in the format's canonical form.
+
+    Pair i has the sets 2i, which a run may visit only finitely often, and 2i + 1, which it must
+    visit infinitely often.
+    """
     terms = [f"Fin({2 * pair})&Inf({2 * pair + 1})" for pair in range(pairs)]
     condition = "|".join(map("({})".format, terms)) if pairs > 1 else "".join(terms) or "f"
     return f"acc-name: Rabin {pairs}", f"Acceptance: {2 * pairs} {condition}"
@@ -91,7 +96,8 @@ def _body(fspa: Fspa) -> Iterator[str]:
 class _Labels:
     """Guards as expressions over the numbers of atoms, true on exactly the letters that take the edge.
 
-    They are made from the primes, on which everything else stands, too: a guard's text is for reading.
+    They are built from the primes, which everything else uses as well: a guard's text is only for
+    readers.
     """
 
     def __init__(self, fspa: Fspa) -> None:
@@ -103,7 +109,7 @@ class _Labels:
         self._known: dict[tuple[Implicant, ...], str] = {}
 
     def label(self, guard: Guard) -> str:
-        """The guard as a label, without its square brackets."""
+        """Return the guard as a label, without its square brackets."""
         if guard.primes not in self._known:
             self._known[guard.primes] = self._label(guard.primes)
         return self._known[guard.primes]
@@ -115,11 +121,11 @@ class _Labels:
             text = " | ".join(map(_product, primes))
         if self._allowed == ACCEPT:
             return text
-        # Exclusive atoms leave the primes free on letters that there are not.
+        # The primes may be true or false on letters that exclusive atoms rule out, so the label excludes these letters.
         return "@allowed" if text == "t" else f"@allowed & ({text})" if "|" in text else f"@allowed & {text}"
 
     def _short(self, primes: Sequence[Implicant]) -> str:
-        """As short as a guard's text, of which it has the structure."""
+        """Return a label as short as the guard's text, with the same structure."""
         diagrams, function = self._diagrams, REJECT
         for prime in primes:
             cube = ACCEPT
@@ -135,7 +141,7 @@ def _product(prime: Implicant) -> str:
 
 
 def _string(text: str) -> str:
-    r"""A string as in C: quotes and backslashes behind a backslash, what would not be seen as ``\uXXXX``."""
+    r"""Return a C-style string: quotes and backslashes are escaped, invisible characters are ``\uXXXX``."""
     return f'"{"".join(map(_character, text))}"'
 
 
@@ -149,6 +155,6 @@ def _character(character: str) -> str:
 
 
 def _comment(text: str) -> str:
-    """A comment that ends where it should: they nest, so that no end and no beginning may stand inside."""
+    """Return a comment. HOA comments nest, so the text must contain no comment start or end."""
     lines = [visible(line.strip()) for line in text.strip().splitlines()]
     return f"/* {re.sub('(?<=[*])(?=/)|(?<=/)(?=[*])', ' ', chr(10).join(lines))} */"

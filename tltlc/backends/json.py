@@ -1,4 +1,4 @@
-"""The JSON artefact: what monitors, training and every other tool load."""
+"""The JSON artefact, which monitors, training and all other tools load."""
 
 from __future__ import annotations
 
@@ -26,15 +26,16 @@ RECOMPILE = "compile the spec again"
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.fspa.json``, checked against the schema.
+    """Return ``NAME.fspa.json``, checked against the schema.
 
     Raises:
-        TltlError: TLT0004, the file would be larger than what :func:`read` takes; TLT0006, it would hold more values.
-        ValueError: the automaton cannot be said in the format (a bug of the construction).
+        TltlError: TLT0004 the file would be larger than :func:`read` accepts; TLT0006 it would have
+            more values.
+        ValueError: the automaton cannot be written in the format (a bug of the construction).
     """
-    what = f"the artefact of `{fspa.name}`"
-    # Most automata that are too large are known before any of their text is made.
-    check_size(what, *least_size(fspa))
+    subject = f"the artefact of `{fspa.name}`"
+    # This finds most automata that are too large before any text is built.
+    check_size(subject, *least_size(fspa))
     document = encode(fspa)
     validate(document)
     blocks: list[str] = []
@@ -42,16 +43,16 @@ def emit(fspa: Fspa, options: Options) -> Files:
     for block in layout(document):
         blocks.append(block)
         size, commas = size + len(block.encode()), commas + block.count(",")
-        check_size(what, size, commas)
+        check_size(subject, size, commas)
     return {f"{fspa.name}.fspa.json": "".join(blocks)}
 
 
 def read(text: str, name: str) -> Fspa:
-    """The automaton that an artefact holds; messages speak of the artefact as ``name``.
+    """Return the automaton of an artefact; messages call the artefact ``name``.
 
     Raises:
-        TltlError: TLT0601 not an artefact, TLT0602 another version, TLT0603 against the schema,
-            TLT0604 it contradicts itself.
+        TltlError: TLT0006 it is too large or nests too deep, TLT0601 it is not an artefact, TLT0602
+            it has another version, TLT0603 it does not fit the schema, TLT0604 it is inconsistent.
     """
     from tltlc.artefact.consistency import problems
 
@@ -59,21 +60,21 @@ def read(text: str, name: str) -> Fspa:
     try:
         fspa = decode(_document(source))
         _check_arithmetic(fspa, source)
-        found = []
+        diagnostics = []
         for problem in problems(fspa):
-            found.append(_problem(source, "TLT0604", problem.message, problem.path))
-            if len(found) == MOST_PROBLEMS:
+            diagnostics.append(_problem(source, "TLT0604", problem.message, problem.path))
+            if len(diagnostics) == MOST_PROBLEMS:
                 break
     except RecursionError:
         title = f"`{name}` cannot be read: it nests too deep"
         raise TltlError([Diagnostic("TLT0006", title, help=RECOMPILE)]) from None
-    if found:
-        raise TltlError(found)
+    if diagnostics:
+        raise TltlError(diagnostics)
     return fspa
 
 
 def _check_arithmetic(fspa: Fspa, source: SourceFile) -> None:
-    """Raise TLT0006 for the first atom whose expression is larger than a spec could have made it."""
+    """Raise TLT0006 for the first atom whose expression is larger than any spec could produce."""
     for index, atom in enumerate(fspa.atoms):
         path = ("atoms", index, "expression")
         if depth(atom.expression) > ARITHMETIC.compared:
@@ -85,7 +86,7 @@ def _check_arithmetic(fspa: Fspa, source: SourceFile) -> None:
 
 
 def _document(source: SourceFile) -> dict[str, Any]:
-    """The parsed text, once it is known to be an artefact of this version and to fit the schema."""
+    """Return the parsed text after checking that it is an artefact of this version and fits the schema."""
     import json
 
     from tltlc.io.json_text import JsonLimitError, loads
@@ -114,7 +115,7 @@ def _document(source: SourceFile) -> dict[str, Any]:
 
 
 class _NoNumberError(Exception):
-    """``NaN`` or ``Infinity``, which Python would read."""
+    """``NaN`` or ``Infinity``, which Python's parser would accept."""
 
 
 def _no_constant(constant: str) -> None:
@@ -122,7 +123,7 @@ def _no_constant(constant: str) -> None:
 
 
 def _remark(message: str) -> str:
-    """The parser's words, fit to stand behind a caret."""
+    """Return the parser's message as the text of a label."""
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 
@@ -139,8 +140,8 @@ def _broken_schema(source: SourceFile, error: JsonSchemaValueException) -> Diagn
     return _problem(source, "TLT0603", worded(error), path_of(error.place))
 
 
-def _problem(source: SourceFile, code: str, title: str, path: Path, way_out: str | None = RECOMPILE) -> Diagnostic:
+def _problem(source: SourceFile, code: str, title: str, path: Path, advice: str | None = RECOMPILE) -> Diagnostic:
     span = span_of(source.text, path)
     line_end = source.text.find("\n", span.start, span.end)
     first_line = span if line_end < 0 else Span(span.start, line_end)
-    return Diagnostic(code, title, (Label(source, first_line),), way_out)
+    return Diagnostic(code, title, (Label(source, first_line),), advice)

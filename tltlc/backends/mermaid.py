@@ -1,6 +1,7 @@
-"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place; what counts is folded.
+"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place; counting states are folded.
 
-From one state to another there is one arrow: of several loops of a state Mermaid would draw the last one alone.
+There is one arrow from one state to another: of several loops of a state, Mermaid would draw only
+the last one.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
 
 WIDTH, MOST_LINES = 22, 16
-"""Of a text: Mermaid breaks longer lines itself, anywhere between words."""
+"""Width and height of a text; Mermaid breaks longer lines itself, anywhere between words."""
 
 CLASSES = """\
     classDef satisfied fill:#dcfce7,stroke:#15803d,stroke-width:4px,color:#0f172a
@@ -31,9 +32,9 @@ _PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.mmd``: labels with their distances, guards, a class for each verdict, a legend; folded states are dashed.
+    """Return ``NAME.mmd``: labels with distances, guards, a class per verdict and a legend; folded states are dashed.
 
-    Over infinite traces, the pairs that name an edge stand behind its guard.
+    Over infinite traces, the pairs that name an edge follow its guard.
     """
     drawing = shown(fspa)
     lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escaped(fspa.name)}"]
@@ -51,11 +52,11 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _state(run: tuple[State, ...], options: Options) -> str:
-    """A state, or the inner states of a run in one."""
+    """Return a state, or the inner states of a run as one."""
     ends = run[0], run[-1]
     distance = span(*("∞" if state.distance is None else str(state.distance) for state in ends))
-    more = [f"{len(run)} more like these:"] if len(run) > 1 else []
-    texts = [*more, span(*(label(state.label, options.notation) for state in ends)), f"[{distance}]"]
+    heading = [f"{len(run)} more like these:"] if len(run) > 1 else []
+    texts = [*heading, span(*(label(state.label, options.notation) for state in ends)), f"[{distance}]"]
     return f'    state "{_lines(texts)}" as s{run[0].id}'
 
 
@@ -64,10 +65,12 @@ def _lines(texts: Sequence[str]) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Text with everything but letters, digits and a few marks as Mermaid's ``#38;``, so that nothing in it counts."""
+    """Return text with all but letters, digits and a few marks as Mermaid escapes (``#38;``), so
+    that nothing is syntax.
+    """
     escaped = "".join(
         character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"
         for character in visible(text)
     )
-    # Mermaid takes any line with `direction LR` in it for that statement.
+    # Mermaid treats any line that contains `direction LR` as that statement.
     return re.sub("direction", lambda match: f"#{ord(match.group()[0])};{match.group()[1:]}", escaped, flags=re.I)

@@ -10,5 +10,5 @@ TARGET = Target("png", "a picture of pixels", (".png",))
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.png``; see :func:`tltlc.backends.drawing.layout.draw` for what happens to graphs too large to draw."""
+    """Return ``NAME.png``; see :func:`tltlc.backends.drawing.layout.draw` for graphs that are too large to draw."""
     return draw(fspa, options, "png")

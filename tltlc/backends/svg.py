@@ -10,5 +10,5 @@ TARGET = Target("svg", "a picture that scales", (".svg",))
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.svg``; see :func:`tltlc.backends.drawing.layout.draw` for what happens to graphs too large to draw."""
+    """Return ``NAME.svg``; see :func:`tltlc.backends.drawing.layout.draw` for graphs that are too large to draw."""
     return draw(fspa, options, "svg")

@@ -35,9 +35,9 @@ class RewardOptions:
 
     def __post_init__(self) -> None:
         for name, choice in (("mode", Mode), ("termination", Termination), ("terminal_penalty", TerminalPenalty)):
-            given, there = getattr(self, name), get_args(choice)
-            if given not in there:
-                raise ValueError(f"{name} is one of {', '.join(map(repr, there))}, not {given!r:.40}")
+            value, choices = getattr(self, name), get_args(choice)
+            if value not in choices:
+                raise ValueError(f"{name} is one of {', '.join(map(repr, choices))}, not {value!r:.40}")
         if not isinstance(self.gamma, (float, int)) or not 0.0 < self.gamma <= 1.0:
             raise ValueError(f"gamma is a number above 0, and 1 at most, not {self.gamma!r:.40}")
 

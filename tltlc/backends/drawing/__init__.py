@@ -1,1 +1,1 @@
-"""What the targets that draw share: texts for pictures, and the layout in a child process."""
+"""Code shared by the targets that draw: texts for pictures, and the layout in a child process."""

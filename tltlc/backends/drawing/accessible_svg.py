@@ -1,4 +1,4 @@
-"""A layout's SVG made ready for its readers: names for those who listen, and texts that are in place in any font."""
+"""Make a layout's SVG accessible: titles for screen readers, and texts that stay in place in any font."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ _ends = re.compile(r"(\d+)(?::\w+)?->(\d+)(?::\w+)?")
 
 
 def worded(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]) -> bytes:
-    """The picture with a title, and with the tooltips of its states and edges as theirs.
+    """Return the picture with a title, and with the tooltips of its states and edges as their titles.
 
-    States have ``data-states``, the numbers of the states that they stand for by ``folded``; edges ``data-source`` and
-    ``data-target``.  Texts are centred in their shape: begun where Graphviz has it, wider fonts would lead out of it.
+    States get the attribute ``data-states``: the numbers of the states that they stand for by
+    ``folded``. Edges get ``data-source`` and ``data-target``. Texts are centred in their shape: at
+    the start position that Graphviz computes, a wider font would run out of the shape.
     """
     root = ET.fromstring(svg)
     root.set("role", "group")
@@ -62,18 +63,22 @@ def _name(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
 
 
 def _without_links(group: ET.Element) -> None:
-    """Put what is in links into the group itself: they have a tooltip, and lead nowhere."""
-    inside: list[ET.Element] = []
-    for part in group:
-        link = part.find(f"{_SVG}a")
-        inside += [part] if link is None else link
-    group[:] = inside
+    """Replace links by their contents: they carry a tooltip but have no target."""
+    children: list[ET.Element] = []
+    for child in group:
+        link = child.find(f"{_SVG}a")
+        children += [child] if link is None else link
+    group[:] = children
 
 
 def _centre(group: ET.Element) -> None:
-    """Anchor each text at the middle of the smallest shape in which it begins."""
-    # The curve of an edge is no shape, and has no filling.
-    shapes = (each for each in group if each.tag in (f"{_SVG}path", f"{_SVG}polygon") and each.get("fill") != "none")
+    """Anchor each text at the middle of the smallest shape that contains its start."""
+    # An edge's curve has no fill and is not a shape around text.
+    shapes = (
+        element
+        for element in group
+        if element.tag in (f"{_SVG}path", f"{_SVG}polygon") and element.get("fill") != "none"
+    )
     areas = [_area(shape) for shape in shapes]
     for text in group.iter(f"{_SVG}text"):
         x, y = float(text.get("x", "")), float(text.get("y", ""))
@@ -85,5 +90,5 @@ def _centre(group: ET.Element) -> None:
 
 
 def _area(shape: ET.Element) -> Area:
-    numbers = [float(found) for found in _number.findall(shape.get("points") or shape.get("d") or "")]
+    numbers = [float(text) for text in _number.findall(shape.get("points") or shape.get("d") or "")]
     return min(numbers[::2]), min(numbers[1::2]), max(numbers[::2]), max(numbers[1::2])

@@ -1,6 +1,6 @@
-"""The process that lays a graph out: ``python child.py FORMAT ENGINE < graph.dot > picture``.
+"""Child process that lays out a graph: ``python child.py FORMAT ENGINE < graph.dot > picture``.
 
-A layout cannot be interrupted from within, so that it runs where it can be ended from outside.
+A layout cannot be interrupted from within Python, so it runs in a process that the parent can kill.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import sys
 
 
 def main() -> None:
-    """Read a DOT text, write the picture."""
+    """Read a DOT text and write the picture."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        # Ctrl-C reaches the parent, too, which recognises this end.
+        # Ctrl-C also reaches the parent, which recognises that the child died of SIGINT.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     import pygraphviz
 

@@ -1,4 +1,4 @@
-"""What is drawn of an automaton that counts: of a long run of states that differ in the count alone, the ends."""
+"""Fold counting states: of a long run of states that differ only in a count, draw the ends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tltlc.automaton.fspa import Edge, Fspa, Guard, State
 from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
-"""Inner states from which on a run is folded: five states with both ends."""
+"""A run with at least this many inner states is folded: five states with both ends."""
 
 _number = re.compile(r"(\d+)")
 _one_step = re.compile(r"\b1 step\b")
@@ -17,10 +17,10 @@ _one_step = re.compile(r"\b1 step\b")
 
 @record
 class Drawing:
-    """The states and edges that are drawn, in the automaton's order, edges with their marks (:func:`marked`).
+    """The states and edges that are drawn, in the automaton's order; edges have their marks (:func:`marked`).
 
-    ``folded`` has the inner states of each run, by the id of the first of them, which is drawn for
-    all; its edge along the run leads to the last state of the run.
+    ``folded`` maps the first inner state of each run, which is drawn for all of them, to the run's
+    inner states. Its edge along the run leads to the last state of the run.
     """
 
     states: tuple[State, ...]
@@ -29,16 +29,17 @@ class Drawing:
 
 
 def whole(fspa: Fspa) -> Drawing:
-    """Every state and every edge."""
+    """Return a drawing of every state and edge."""
     return Drawing(fspa.states, marked(fspa).edges)
 
 
 def folded(fspa: Fspa) -> Drawing:
-    """The drawing with the inner states of each run folded into one.
+    """Return the drawing with the inner states of each run folded into one.
 
-    A run is a path on which each state has an edge with the same guard to the next (the last one: to
-    another state), and all agree in verdict, acceptance and their other edges' guards and targets.
-    An inner state is entered only from the one before it, so that distances stay or fall by one.
+    A run is a path on which each state has an edge with the same guard to the next state (the last
+    one: to another state), and all agree in verdict, acceptance and the guards and targets of their
+    other edges. An inner state is entered only from the state before it, so distances stay equal or
+    fall by one.
     """
     fspa = marked(fspa)
     runs = _inner_states(fspa)
@@ -53,14 +54,14 @@ def folded(fspa: Fspa) -> Drawing:
 
 
 def _inner_states(fspa: Fspa) -> list[list[tuple[int, Edge]]]:
-    """The inner states of each run that is long enough, each with its edge along the run."""
+    """Return the inner states of each run that is long enough, each with its edge along the run."""
     outgoing: list[list[Edge]] = [[] for _ in fspa.states]
     entering: list[list[Edge]] = [[] for _ in fspa.states]
     for edge in fspa.edges:
         outgoing[edge.source].append(edge)
         entering[edge.target].append(edge)
     along: dict[int, Edge] = {}
-    for state in range(1, len(fspa.states)):  # state 0 is entered by the start of the trace, too
+    for state in range(1, len(fspa.states)):  # not state 0, which the start of the trace also enters
         if len(entering[state]) == 1:
             onward = _onward(entering[state][0], fspa, outgoing)
             if onward is not None and _onward(onward, fspa, outgoing) is not None:
@@ -77,16 +78,16 @@ def _inner_states(fspa: Fspa) -> list[list[tuple[int, Edge]]]:
 
 
 def _onward(edge: Edge, fspa: Fspa, outgoing: list[list[Edge]]) -> Edge | None:
-    """The edge by which a run that takes this edge goes on, None if its two states do not belong to one run."""
+    """Return the edge that continues a run after this edge; None if its two states do not belong to one run."""
     source, target = fspa.states[edge.source], fspa.states[edge.target]
     if (source.verdict, source.accepting) != (target.verdict, target.accepting):
         return None
-    others = _without(edge, outgoing[source.id])
+    other_edges = _without(edge, outgoing[source.id])
     for onward in outgoing[target.id]:
         if (
             onward.guard == edge.guard
             and onward.target != target.id
-            and _without(onward, outgoing[target.id]) == others
+            and _without(onward, outgoing[target.id]) == other_edges
         ):
             return onward
     return None
@@ -97,9 +98,10 @@ def _without(left_out: Edge, edges: list[Edge]) -> list[tuple[Guard, int]]:
 
 
 def marked(fspa: Fspa) -> Fspa:
-    """The automaton with the pairs that name an edge behind the text of its guard, ``a & b [fin 0] [inf 1]``.
+    """Return the automaton with the pairs that name an edge after the text of its guard: ``a & b [fin 0] [inf 1]``.
 
-    Edges that pairs tell apart are not alike then.  Over finite traces it is the same.
+    Edges that differ only in their pairs then have different guards. Over finite traces the
+    automaton is unchanged.
     """
     if not fspa.acceptance:
         return fspa
@@ -111,9 +113,9 @@ def marked(fspa: Fspa) -> Fspa:
 
 
 def span(first: str, last: str) -> str:
-    """Two texts as one: with ranges where they differ in numbers alone, ``F[0,39…2] p``, else both."""
+    """Return two texts as one: with ranges if they differ only in numbers (``F[0,39…2] p``), else both."""
     for texts in ((first, last), [_one_step.sub("1 steps", text) for text in (first, last)]):
-        one, other = map(_number.split, texts)
-        if one[::2] == other[::2]:
-            return "".join(a if a == b else f"{a}…{b}" for a, b in zip(one, other, strict=True))
+        first_parts, last_parts = map(_number.split, texts)
+        if first_parts[::2] == last_parts[::2]:
+            return "".join(a if a == b else f"{a}…{b}" for a, b in zip(first_parts, last_parts, strict=True))
     return f"{first} … {last}"

@@ -1,4 +1,4 @@
-"""Texts as Graphviz reads them: its HTML-like labels, and strings that are no labels."""
+"""Texts in Graphviz syntax: HTML-like labels, and plain strings."""
 
 from __future__ import annotations
 
@@ -7,29 +7,31 @@ from collections.abc import Iterable
 from tltlc.backends.drawing.texts import visible
 
 CENTRED, LEFT, BACKED = "<TD>", '<TD ALIGN="LEFT">', '<TD BGCOLOR="white">'
-"""Cells; what is in one with a white back can be read where edges pass behind it."""
+"""Table cells; a white background keeps text readable over edges that pass behind it."""
 
 LONGEST_TEXT = 2000
-"""In characters: Graphviz reads no string of more than 16 KiB, in which one may take seven."""
+"""In characters. Graphviz reads strings of at most 16 KiB, and one character may take seven bytes."""
 
 
 def table(rows: Iterable[str], cell: str = CENTRED, spacing: int = 0) -> str:
-    """Rows of one cell: as lines of a single one, those in different fonts would be too close to each other."""
+    """Return rows of one cell each. As lines of a single cell, texts in different fonts would be
+    too close to each other.
+    """
     inside = "".join(f"<TR>{cell}{row}</TD></TR>" for row in rows)
     return f'<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="{spacing}">{inside}</TABLE>'
 
 
 def escaped(text: str) -> str:
-    """Text inside an HTML-like label."""
+    """Return text escaped for an HTML-like label."""
     text = visible(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return text.replace('"', "&quot;").replace("[", "&#91;").replace("]", "&#93;")
 
 
 def plain(text: str) -> str:
-    """A text that means itself: no escapes, and no markup though it may look like it; of a long one the beginning."""
+    """Return a text that Graphviz takes literally, without escapes or markup; a long one is cut."""
     from graphviz import escape
 
-    # A subclass of str says so: made a bare str again, "<b>" would be markup.
+    # `escape` returns a subclass of str that marks the text as literal. As a bare str, "<b>" would become markup.
     text = visible(text)
-    found: str = escape(text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]} …")
-    return found
+    literal: str = escape(text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]} …")
+    return literal

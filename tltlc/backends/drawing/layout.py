@@ -18,10 +18,10 @@ from tltlc.io.child_interrupts import raise_if_interrupted
 CHILD = Path(__file__).with_name("child.py")
 
 MOST_EDGES_WITH_GUARDS = 150
-"""Beyond, guards cover each other, or keep the states so far apart that nothing can be read."""
+"""With more edges, guards cover each other or push the states too far apart to be readable."""
 
 MOST_EDGES_IN_LAYERS = 400
-"""Beyond, the layered layout would only use up its time."""
+"""With more edges, the layered layout would only run into its time limit."""
 
 WHOLE_GRAPH = "`tltlc compile -t dot` writes the whole graph for other tools"
 
@@ -30,19 +30,19 @@ ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
     ("labels", "dot", MOST_EDGES_IN_LAYERS, "without guards"),
     ("sketch", "sfdp", float("inf"), "by number, without guards"),
 )
-"""Detail, layout engine, the most edges for which it is tried, what to say of that detail."""
+"""Detail, layout engine, the most edges for which it is tried, and how a message describes the reduced detail."""
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
-    """``NAME.FORMAT``, or the best that could be done in time.
+    """Return ``NAME.FORMAT``, or the best that could be drawn in time.
 
-    States that count are folded.  Tried in this order, as far as there are not too many
-    edges, each within ``options.layout_limit_s``: everything in layers; the same without guards, which
-    an SVG still has as tooltips; only the states' numbers, by forces.  If nothing is done in time,
-    ``NAME.dot``, with nothing folded.  What was left out is reported (TLT0711).
+    Counting states are folded. The attempts, each within ``options.layout_limit_s`` and skipped if
+    there are too many edges, are in this order: everything in layers; the same without guards,
+    which an SVG still has as tooltips; only the states' numbers, by forces. If none succeeds, the
+    result is ``NAME.dot`` with nothing folded. What was left out is reported (TLT0711).
 
     Raises:
-        TltlError: TLT0730 where pygraphviz is not installed, TLT0712 where the layout itself failed.
+        TltlError: TLT0730 pygraphviz is not installed, TLT0712 the layout itself failed.
     """
     if find_spec("pygraphviz") is None:
         title = "a picture needs `pygraphviz`, which is not installed"
@@ -63,16 +63,19 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
 
 
 def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
-    """The picture of a graph, None if the limit was reached first; raises KeyboardInterrupt if a signal ended it."""
+    """Return the picture of a graph; None if the time limit was reached or the process was killed.
+
+    Raises KeyboardInterrupt if Ctrl-C ended the process.
+    """
     command = [sys.executable, str(CHILD), picture_format, engine]
     try:
-        done = subprocess.run(command, input=dot.encode(), capture_output=True, timeout=limit_s, check=False)
+        process = subprocess.run(command, input=dot.encode(), capture_output=True, timeout=limit_s, check=False)
     except subprocess.TimeoutExpired:
         return None
-    raise_if_interrupted(done.returncode)
-    if done.returncode < 0:
-        return None  # the process was ended from outside, mostly since it used up the memory or the stack
-    if done.returncode or not done.stdout:
-        reason = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {done.returncode}"]
+    raise_if_interrupted(process.returncode)
+    if process.returncode < 0:
+        return None  # a signal ended the process, usually because it ran out of memory or stack
+    if process.returncode or not process.stdout:
+        reason = process.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {process.returncode}"]
         raise TltlError([Diagnostic("TLT0712", f"the picture could not be drawn: {reason[-1]}", help=WHOLE_GRAPH)])
-    return done.stdout
+    return process.stdout

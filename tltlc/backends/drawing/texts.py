@@ -1,4 +1,4 @@
-"""The texts in pictures: labels and guards in the notation asked for, wrapped, with nothing invisible in them."""
+"""The texts in pictures: labels and guards in the chosen notation, wrapped, without invisible characters."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ BREAK_BEFORE = ("∧", "∨", "⇒", "⇔", "𝒰", "&", "|", "->", "<->", "and"
 
 
 _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/", "^"})
-# The end of a line that goes on inside a bound, `F[0,3] p`, between the arguments of an atom, `near(a, b)`, or inside
-# the mark of a pair, `[inf 0]`.
+# A line end that splits a bound from its operand (`F[0,3] p`), the arguments of an atom (`near(a, b)`), or the mark of
+# a pair (`[inf 0]`).
 _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
 def label(text: Text, notation: Notation) -> str:
-    """A formula in the notation asked for."""
+    """Return a formula in the given notation."""
     return {"unicode": text.unicode, "ascii": text.ascii, "english": text.english}[notation]
 
 
 class Guards:
-    """Guards' texts in a notation; the names of an automaton's atoms are kept as they are."""
+    """Translates the texts of guards into a notation; the names of the automaton's atoms stay unchanged."""
 
     def __init__(self, fspa: Fspa, notation: Notation) -> None:
         names = sorted((atom.name for atom in fspa.atoms), key=len, reverse=True)
-        # Longer tokens first, so that no operator is found inside a name, nor `->` inside `<->`.
+        # Longer tokens come first, so that no operator matches inside a name, and `->` does not match inside `<->`.
         tokens = [*map(re.escape, names), "<->", "->", "[!&|]", r"\b(?:true|false)\b"]
         self._tokens = re.compile("|".join(tokens))
         self._operators = _OPERATORS[notation]
         self._names = frozenset(names)
 
     def text(self, guard: str) -> str:
-        """The guard, which is given in the ASCII notation of artefacts."""
+        """Return the guard, which is given in the ASCII notation of artefacts."""
         return self._tokens.sub(lambda match: self._token(match.group()), guard)
 
     def _token(self, token: str) -> str:
@@ -55,26 +55,27 @@ class Guards:
 
 
 def arrows(fspa: Fspa, edges: Iterable[Edge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
-    """Of each source and target the guards of the edges between them; several, which differ in their pairs, share
-    one arrow over infinite traces.
+    """Return the guards of the edges between each source and target.
+
+    Over infinite traces, several edges that differ in their pairs share one arrow.
     """
     guards = Guards(fspa, notation)
-    found: dict[tuple[int, int], list[str]] = {}
+    guards_of_arrow: dict[tuple[int, int], list[str]] = {}
     for edge in edges:
-        found.setdefault((edge.source, edge.target), []).append(guards.text(edge.guard.text))
-    return found
+        guards_of_arrow.setdefault((edge.source, edge.target), []).append(guards.text(edge.guard.text))
+    return guards_of_arrow
 
 
 def visible(text: str) -> str:
-    r"""The text with every character that would not be seen, or would reorder the others, spelt out as ``\uXXXX``."""
+    r"""Return the text with characters that are invisible or reorder others spelt out as ``\uXXXX``."""
     return _unseen.sub(lambda match: f"\\u{ord(match.group()):04x}", text)
 
 
 def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
-    """The text on lines of about ``width`` characters, broken at blanks and before infix operators.
+    """Return the text on lines of about ``width`` characters, broken at blanks and before infix operators.
 
-    No word is split, and no comparison nor list of arguments of up to two widths.  What goes beyond ``most_lines`` is
-    cut and marked by an ellipsis.
+    Words are never split, nor are comparisons or lists of arguments of up to two widths. Text
+    beyond ``most_lines`` is cut and marked by an ellipsis.
     """
     pieces = _pieces(visible(" ".join(text.split())).split(" "), 2 * width)
     lines = [pieces[0]]
@@ -89,7 +90,7 @@ def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
 
 
 def _pieces(words: list[str], longest: int) -> list[str]:
-    """The words, those that belong on one line put together unless they get longer than ``longest``."""
+    """Return the words; words that belong on one line are joined unless they become longer than ``longest``."""
     pieces = [words[0]]
     for before, word in pairwise(words):
         tied = word in _TIES or before in _TIES or _tied_end.search(pieces[-1]) is not None
