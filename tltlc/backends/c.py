@@ -1,8 +1,9 @@
-"""A stand-alone monitor in C99, which is C++17, too: one header, the standard library only, nothing is allocated.
+"""A stand-alone monitor in C99 that is also valid C++17: one header, standard library only, no allocation.
 
-It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, where the C library's
-``pow``, ``exp`` and ``tanh`` are those that Python was built with.  Where an atom has no value for two reasons, the
-message may name either, since C leaves open which operand comes first.
+It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
+if the C library's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. If an atom
+has no value for two reasons, the message may name either one, since C does not specify the order in
+which operands are evaluated.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ _LIBRARY = """
     index rindex size_t ptrdiff_t offsetof tolower toupper isspace errno assert complex imaginary I main
 """.split()
 
-# What the same headers define as macros, on Linux, Windows and macOS; the last ones are codes of errors.
+# Macros of the same headers on Linux, Windows and macOS; the last ones are error codes.
 _CONSTANTS = """
     BIG_ENDIAN LITTLE_ENDIAN PDP_ENDIAN BYTE_ORDER EXIT_FAILURE EXIT_SUCCESS FD_SETSIZE NFDBITS FILENAME_MAX
     FOPEN_MAX TMP_MAX RAND_MAX MB_CUR_MAX MAXFLOAT FP_ILOGB0 FP_ILOGBNAN FP_LLOGB0 FP_LLOGBNAN FP_INT_DOWNWARD
@@ -81,7 +82,7 @@ _CONSTANTS = """
     EUNATCH EUSERS EWOULDBLOCK EXDEV EXFULL
 """.split()
 
-# Those that systems have once for each type of numbers.
+# Macros that systems define once for each floating-point type.
 _NUMBERS = """
     HUGE_VAL SNAN M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2
 """.split()
@@ -90,7 +91,7 @@ _ENDINGS = (
     *(f"{sign}{size}" for sign in ("f", "F", "_F") for size in ("32", "64", "128", "32x", "64x", "32X", "64X")),
 )
 
-# What headers of systems and engines define beside it: windows.h, X11, Qt, macOS, Unreal, gcc's own.
+# Macros of other headers of systems and engines: windows.h, X11, Qt, macOS, Unreal, and gcc's built-in ones.
 _MACROS = """
     near far NEAR FAR min max small hyper interface pascal cdecl CDECL PASCAL IN OUT OPTIONAL CONST VOID ERROR DELETE
     TRUE FALSE BOOL BYTE CHAR INT LONG SHORT FLOAT DOUBLE STRICT THIS INTERFACE ABSOLUTE RELATIVE TRANSPARENT OPAQUE
@@ -109,38 +110,38 @@ _RESERVED = (
     *_MACROS,
     *("monitor", "sample", "result", "states", "none"),
 )
-"""The last ones are the step function's own; the program has reserved the others."""
+"""The last group are variables of the step function; :mod:`tltlc.program.build` reserves its other variables."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.h``."""
+    """Return ``NAME_monitor.h``."""
     name = f"{fspa.name}{TARGET.endings[0]}"
     return {name: _Source(fspa, name).text()}
 
 
 class _C(Printer):
-    """Prints C; functions are those of the header of one spec."""
+    """Prints C; functions have the prefix of the spec's header."""
 
     def __init__(self, prefix: str, atoms: Sequence[Atom]) -> None:
         self._prefix, self._atoms = prefix, atoms
 
     def comment(self, text: str) -> list[str]:
-        """Remarks in ASCII, since compilers differ in how they read others, and without trigraphs."""
+        """Return a comment in ASCII without trigraphs, since compilers differ in how they read other characters."""
         return super().comment(re.sub(r"[^\x00-\x7f]", _escaped, visible(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
-        """The limiting atom is given by its name."""
+        """Return an assignment; the limiting atom is assigned by its name."""
         match statement:
             case Assign(states.LIMITING, Int(place)):
                 return f"{states.LIMITING} = {_string(self._atoms[place].name) if place >= 0 else 'NULL'};"
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """What may have no value notes that in the monitor."""
+        """Return a call; functions that may have no value also receive the monitor, to record the problem there."""
         if function in ("abs", "tanh"):
             return super().call({"abs": "fabs"}.get(function, function), arguments)
-        noting = ["monitor"] if function in FAILING else []
-        return super().call(f"{self._prefix}_{function}_", [*noting, *arguments])
+        monitor_argument = ["monitor"] if function in FAILING else []
+        return super().call(f"{self._prefix}_{function}_", [*monitor_argument, *arguments])
 
 
 class _Source:
@@ -152,14 +153,14 @@ class _Source:
         self._printer = _C(fspa.name, fspa.atoms)
 
     def text(self) -> str:
-        """The whole file."""
-        fspa, made = self._fspa, self._program
-        signals = list(zip(fspa.signals, made.signals, strict=True))
-        params = list(zip(fspa.params, made.params, strict=True))
-        failing = made.functions & FAILING
-        present = [*failing, *(["note"] if failing else []), *([] if all(made.sure) else ["atom"])]
+        """Return the whole file."""
+        fspa, program_ = self._fspa, self._program
+        signals = list(zip(fspa.signals, program_.signals, strict=True))
+        params = list(zip(fspa.params, program_.params, strict=True))
+        failing = program_.functions & FAILING
+        present = [*failing, *(["note"] if failing else []), *([] if all(program_.sure) else ["atom"])]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
-        present += ["exclusive"] if made.exclusive else []
+        present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
         with recursion_room():
             step = _C.block(self._step())
@@ -198,7 +199,9 @@ class _Source:
         return filled("monitor.h.txt", places, present)
 
     def _text_size(self) -> int:
-        """Room for any message, of which the one of an exclusive group is longest: it names atoms twice."""
+        """Return a buffer size for any message; the longest one is about an exclusive group and
+        names its atoms twice.
+        """
         atoms = sum(2 * len(_bytes(atom.name)) + 12 for atom in self._fspa.atoms)
         signals = max((len(_bytes(signal.name)) for signal in self._fspa.signals), default=0)
         params = max((len(_bytes(param.name)) for param in self._fspa.params), default=0)
@@ -210,12 +213,12 @@ class _Source:
         return "bool" if signal.type == "bool" else "double"
 
     def _fields(self, fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
-        """The fields of a struct, each under its name in the spec and what is said of it; C wants one at least."""
+        """Return the fields of a struct, each with its comment; C requires at least one field."""
         lines: list[str] = []
-        for name, type_, of in fields:
-            remarks = self._printer.comment(pieces.described(name, of))
+        for name, type_, declared in fields:
+            remarks = self._printer.comment(pieces.described(name, declared))
             field = f"{type_} {name};"
-            # A short remark stands behind its field.
+            # A short comment goes on the line of its field.
             if len(remarks) == 1 and len(field) + len(remarks[0]) < 100:
                 lines.append(f"{field}    {remarks[0]}")
             else:
@@ -228,12 +231,14 @@ class _Source:
         tests += [] if param.low is None else [f"{name} >= {pieces.number(param.low)}"]
         tests += [] if param.high is None else [f"{name} <= {pieces.number(param.high)}"]
         lines = self._refused(f"{self._prefix}_wrong_param", place)
-        # The value, for the message.
+        # The message shows the value.
         lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
         return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
 
     def _refused(self, problem: str, place: int) -> list[str]:
-        """The inside of a branch; what it returns stands there, so that compilers see what callers may rely on."""
+        """Return the body of a branch that refuses the sample. The ``return`` is inlined so that
+        compilers can see which values callers may rely on.
+        """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {place});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
 
@@ -245,7 +250,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """A case for each signal, by its number."""
+        """Return code that sets a signal by its number: one case per signal."""
         if not self._fspa.signals:
             return ["(void)sample, (void)signal, (void)value;"]
         lines = ["switch (signal) {"]
@@ -264,24 +269,24 @@ class _Source:
         return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Signals in their range, and params, in variables of their own."""
-        made = self._program
-        signals = enumerate(zip(self._fspa.signals, made.signals, strict=True))
+        """Return code that reads signals, clamped to their ranges, and params into local variables."""
+        program_ = self._program
+        signals = enumerate(zip(self._fspa.signals, program_.signals, strict=True))
         numbers = [(place, signal, name) for place, (signal, name) in signals if signal.type != "bool"]
         lines = [f"double {name} = sample->{name};" for _, _, name in numbers]
-        lines += self._corrected(numbers) if numbers else []
+        lines += self._checked_reads(numbers) if numbers else []
         lines += self._bools(None)
-        lines += [] if made.reads_sample else ["(void)sample;"]
-        used = made.used
-        return [*lines, *(f"const double {name} = monitor->params.{name};" for name in made.params if name in used)]
+        lines += [] if program_.reads_sample else ["(void)sample;"]
+        used = program_.used
+        return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Bools as numbers, where atoms are computed from them."""
+        """Return code that converts to numbers the bools that atoms of this state read."""
         return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
-    def _corrected(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
-        """Where not all signals are as they should be, one after the other is looked at."""
-        tests = self._usual([(signal, name) for _, signal, name in numbers])
+    def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
+        """Return code that checks the signals one by one if their common test fails."""
+        tests = self._range_tests([(signal, name) for _, signal, name in numbers])
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
         for place, signal, name in numbers:
             low, high = pieces.number(signal.low, "-HUGE_VAL"), pieces.number(signal.high, "HUGE_VAL")
@@ -289,11 +294,11 @@ class _Source:
             lines.append(f"{_INDENT}if (monitor->problem) return false;")
         return [*lines, "}"]
 
-    def _usual(self, numbers: Sequence[tuple[Signal, str]]) -> list[str]:
-        """Tests that signals pass together only where each is finite and in its range.
+    def _range_tests(self, numbers: Sequence[tuple[Signal, str]]) -> list[str]:
+        """Return tests that pass together only if every signal is finite and in its range.
 
-        The sum of those without a bound is finite only where all of them are; one that is too large costs a look at
-        each.
+        The sum of the signals without both bounds is finite only if all of them are. If finite
+        values overflow the sum, the signals are merely checked one by one.
         """
         bounded: list[str] = []
         least: dict[float, list[str]] = {}
@@ -318,20 +323,20 @@ class _Source:
         return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
 
     def _compute(self) -> list[str]:
-        """The values of the atoms that are computed at each step."""
-        made = self._program
-        places = made.computed_in(None)
+        """Return code for the atoms that every step computes."""
+        program_ = self._program
+        places = program_.computed_in(None)
         lines = [line for place in places for line in self._value(place)]
         for place in places:
-            name = made.atoms[place]
-            if not made.sure[place]:
+            name = program_.atoms[place]
+            if not program_.sure[place]:
                 lines.append(f"if (!(fabs({name}) <= 1.0)) {{")
                 lines.append(f"{_INDENT}{name} = {self._prefix}_value_(monitor, {place}, {name});")
                 lines += [f"{_INDENT}if (monitor->problem) return false;", "}"]
         return lines
 
     def _value(self, place: int) -> list[str]:
-        """The value of an atom."""
+        """Return code for the value of an atom."""
         statements = self._program.values[place]
         lines = self._printer.comment(self._program.remarks[place])
         lines += self._printer.lines(defined(self._program.atoms[place], statements))
@@ -340,7 +345,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for place, group in self._program.exclusive:
             tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
@@ -350,34 +355,34 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state."""
+        """Return code for the transition: one case per state."""
         lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines.append("switch (monitor->state) {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            # A brace, since declarations may follow.
+            # The case needs braces because it may contain declarations.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"{_INDENT}case {state.id}: {{")
-            alone = [line for place in self._program.computed_in(state.id) for line in self._value(place)]
-            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(state.id), *alone)]
+            values = [line for place in self._program.computed_in(state.id) for line in self._value(place)]
+            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(state.id), *values)]
             lines += self._printer.lines(statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
-        """Progress, reward and the end of the episode."""
+        """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
         ends, verdict = f"states[{states.TARGET}].ends", f"states[{states.TARGET}].verdict"
         lines = [f"double {judge.BEST} = monitor->progress;", f"bool {judge.DONE} = monitor->done;"]
         lines.append(f"double {judge.REWARD};")
-        given = {
+        declarations = {
             judge.STEPS_REAL: f"double {judge.STEPS_REAL} = (double){judge.STEPS};",
             judge.ENDS: f"bool {judge.ENDS} = {ends};",
             judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == {self._prefix}_violated;",
             judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == {self._prefix}_satisfied;",
         }
-        lines += [f"const {line}" for name, line in given.items() if name in used]
+        lines += [f"const {line}" for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
 
 
@@ -389,12 +394,12 @@ def _escaped(match: re.Match[str]) -> str:
 
 
 def _bytes(text: str) -> bytes:
-    """The text as C holds it: UTF-8, without the character that ends strings."""
+    """Return the text as a C string stores it: UTF-8, without NUL."""
     return text.replace("\0", "").encode("utf-8", "replace")
 
 
 def _string(text: str) -> str:
-    """A string literal in ASCII; question marks are escaped, as two begin a trigraph."""
+    """Return a string literal in ASCII. Question marks are escaped, since two of them begin a trigraph."""
     return pieces.quoted(text, _octal, pieces.in_ascii).replace("?", "\\?")
 
 
@@ -403,10 +408,10 @@ def _octal(character: str) -> str:
 
 
 def _wrapped(line: str) -> list[str]:
-    """A test on as many lines as it takes."""
+    """Return a test on as many lines as it needs."""
     return wrap(line, 100, subsequent_indent=" " * len("if (!("), break_long_words=False, break_on_hyphens=False)
 
 
 def _list(items: Sequence[str], otherwise: str) -> str:
-    """The items between braces, which hold one at least."""
+    """Return the items of an initializer, which needs at least one item."""
     return _C.items(items or [otherwise], depth=1)

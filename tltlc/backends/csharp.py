@@ -1,7 +1,8 @@
-"""A stand-alone monitor in C# 6, which Unity takes, and beside it a component for Unity; a step allocates nothing.
+"""A stand-alone monitor in C# 6, the version Unity accepts, and a Unity component; a step allocates nothing.
 
-It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, where the runtime's
-``Math.Pow``, ``Math.Exp`` and ``Math.Tanh`` are those that Python was built with, as Mono's are on Linux.
+It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
+if the runtime's ``Math.Pow``, ``Math.Exp`` and ``Math.Tanh`` are those that Python was built with,
+as Mono's are on Linux.
 """
 
 from __future__ import annotations
@@ -57,38 +58,38 @@ _TEMPLATE = """
     Refuse Result Signals Sqrt States Step System Tltl ToString Verdict Without entered none number own result
     sample
 """.split()
-"""What fields of records and variables of a step would hide."""
+"""Names of the template that fields of records and variables of a step would hide."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs`` for Unity."""
+    """Return ``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs`` for Unity."""
     monitor, behaviour = (f"{fspa.name}{ending}" for ending in TARGET.endings)
     return {monitor: _Source(fspa, monitor).text(), behaviour: filled("behaviour.cs.txt", {"p": fspa.name})}
 
 
 class _CSharp(Printer):
-    """Prints C#, each brace on a line of its own."""
+    """Prints C#, with each brace on its own line."""
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """A branch: its cases, and what is done otherwise."""
+        """Return the lines of a branch: its cases and its ``else``."""
         indent = self.INDENT * depth
-        found: list[str] = []
+        lines: list[str] = []
         for place, (test, body) in enumerate(statement.cases):
-            found += [f"{indent}{'else ' if place else ''}if ({self.text(test)})", f"{indent}{{"]
-            found += [*self.lines(body, depth + 1), f"{indent}}}"]
+            lines += [f"{indent}{'else ' if place else ''}if ({self.text(test)})", f"{indent}{{"]
+            lines += [*self.lines(body, depth + 1), f"{indent}}}"]
         if statement.otherwise:
-            found += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
-        return found
+            lines += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
+        return lines
 
     def assignment(self, statement: Assign) -> str:
-        """An assignment; what only adds or subtracts says so."""
+        """Return an assignment; additions and subtractions use ``+=`` and ``-=``."""
         match statement:
             case Assign(name, Binary("+" | "-" as op, Variable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """A call of a method of the monitor, or of the library."""
+        """Return a call of a method of the monitor or of the library."""
         return super().call(_FUNCTIONS[function], arguments)
 
 
@@ -101,14 +102,17 @@ class _Source:
         self._printer = _CSharp()
 
     def text(self) -> str:
-        """The whole file."""
-        fspa, made = self._fspa, self._program
-        signals = list(zip(fspa.signals, made.signals, strict=True))
-        params = list(zip(fspa.params, made.params, strict=True))
-        present: list[str] = [*made.functions, *called(statement for state in made.states for statement in state)]
-        present += ["note"] if made.functions & FAILING else []
-        present += ["exclusive"] if made.exclusive else []
-        present += [] if all(made.sure) else ["keep"]
+        """Return the whole file."""
+        fspa, program_ = self._fspa, self._program
+        signals = list(zip(fspa.signals, program_.signals, strict=True))
+        params = list(zip(fspa.params, program_.params, strict=True))
+        present: list[str] = [
+            *program_.functions,
+            *called(statement for state in program_.states for statement in state),
+        ]
+        present += ["note"] if program_.functions & FAILING else []
+        present += ["exclusive"] if program_.exclusive else []
+        present += [] if all(program_.sure) else ["keep"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
             step = _CSharp.block(self._step(), 3)
@@ -143,7 +147,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """A case for each signal, by its number."""
+        """Return code that sets a signal by its number: one case per signal."""
         if not self._fspa.signals:
             return []
         lines = ["switch (signal)", "{"]
@@ -163,7 +167,7 @@ class _Source:
         return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Signals in their range, and params, in variables of their own."""
+        """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -173,7 +177,7 @@ class _Source:
                 pieces.number(signal.low, "double.NegativeInfinity"),
                 pieces.number(signal.high, "double.PositiveInfinity"),
             )
-            # Of two infinities, neither is inside.
+            # A missing bound becomes a strict comparison with infinity, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
             lines.append(f"double {name} = sample.{name};")
             lines += _checked(
@@ -183,11 +187,11 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Bools as numbers, where atoms are computed from them."""
+        """Return code that converts to numbers the bools that atoms of this state read."""
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
+        """Return code for the atoms that every step computes."""
         lines: list[str] = []
         kept: list[str] = []
         for place in self._program.computed_in(None):
@@ -201,12 +205,12 @@ class _Source:
         return [*lines, *kept]
 
     def _value(self, place: int) -> tuple[Statement, ...]:
-        """What gives an atom its value."""
-        made = self._program
-        return (Comment(made.remarks[place]), *defined(made.atoms[place], made.values[place]))
+        """Return the statements that declare and compute an atom's value."""
+        program_ = self._program
+        return (Comment(program_.remarks[place]), *defined(program_.atoms[place], program_.values[place]))
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for place, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -216,37 +220,37 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state."""
+        """Return code for the transition: one case per state."""
         lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines += ["switch (_state)", "{"]
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            # Braces, since declarations may follow.
+            # The case needs braces because it may contain declarations.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
             lines += [f"{_INDENT * 2}{line}" for line in self._bools(state.id)]
-            lines += self._printer.lines((*self._alone(state.id), *statements), depth=2)
+            lines += self._printer.lines((*self._values_only_in(state.id), *statements), depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
 
-    def _alone(self, state: int) -> list[Statement]:
-        """The values of the atoms that nothing but this state needs."""
+    def _values_only_in(self, state: int) -> list[Statement]:
+        """Return the statements for the atoms that only this state reads."""
         return [statement for place in self._program.computed_in(state) for statement in self._value(place)]
 
     def _judge(self) -> list[str]:
-        """Progress, reward and the end of the episode."""
+        """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
         verdict = "entered.Verdict"
         lines = [f"Place entered = States[{states.TARGET}];"]
         lines += [f"double {judge.BEST} = _progress;", f"bool {judge.DONE} = _done;", f"double {judge.REWARD};"]
-        given = {
+        declarations = {
             judge.STEPS_REAL: f"double {judge.STEPS_REAL} = {judge.STEPS};",
             judge.ENDS: f"bool {judge.ENDS} = entered.Ends;",
             judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == Verdict.Violated;",
             judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == Verdict.Satisfied;",
         }
-        lines += [line for name, line in given.items() if name in used]
+        lines += [line for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
 
 
@@ -254,7 +258,7 @@ class _Source:
 
 
 def _checked(test: str, otherwise: str) -> list[str]:
-    """What is done where the test fails; it may find a problem."""
+    """Return code that runs ``otherwise`` if the test fails, and ends the step if that reports a problem."""
     return [
         f"if (!({test}))",
         "{",
@@ -269,16 +273,16 @@ def _type(signal: Signal) -> str:
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
-    """The fields of a record, each under its name in the spec and what is said of it."""
+    """Return the fields of a record, each with its documentation."""
     lines: list[str] = []
-    for name, type_, of in fields:
-        remarks = [_in_xml(line) for line in remark(pieces.described(name, of))]
+    for name, type_, declared in fields:
+        remarks = [_in_xml(line) for line in remark(pieces.described(name, declared))]
         if len(remarks) == 1:
             lines.append(f"/// <summary>{remarks[0]}</summary>")
         else:
             lines += ["/// <summary>", *(f"/// {line}" for line in remarks), "/// </summary>"]
         lines += [f"public {type_} {name};", ""]
-    # The line after the last field stays empty, too.
+    # An empty line follows every field, also the last one.
     return _CSharp.block(lines, 3)
 
 
@@ -296,7 +300,7 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 
 def _string(text: str) -> str:
-    """A string literal in ASCII."""
+    """Return a string literal in ASCII."""
     return pieces.quoted(text, _escape, pieces.in_ascii)
 
 
@@ -306,5 +310,5 @@ def _escape(character: str) -> str:
 
 
 def _list(items: Sequence[str]) -> str:
-    """The items between braces."""
+    """Return the items of an initializer."""
     return _CSharp.items(items, depth=2)

@@ -20,5 +20,5 @@ DIALECT = Dialect(
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    """Return ``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
     return files(fspa, DIALECT)

@@ -1,7 +1,8 @@
-"""A stand-alone monitor in JavaScript: one ES module for browsers and Node, and its types for TypeScript.
+"""A stand-alone monitor in JavaScript: one ES module for browsers and Node, and its TypeScript types.
 
-It computes what :class:`tltlc.monitor.Monitor` computes with its default reward: to the last bit where predicates take
-no ``exp``, ``tanh`` or power, else within 1e-12, since engines have functions of their own.
+It gives the same results as :class:`tltlc.monitor.Monitor` with its default reward: to the last bit
+if predicates use no ``exp``, ``tanh`` or power, else within 1e-12, since engines implement these
+functions themselves.
 """
 
 from __future__ import annotations
@@ -33,10 +34,10 @@ TARGET = Target(
 _LONGEST = 110
 
 _FEW = 3
-"""Of so many atoms, pairs are compared; more are counted."""
+"""Up to this many exclusive atoms are compared in pairs; more are counted."""
 
 _ENTERED = "entered"
-"""The row of the state that is entered."""
+"""The variable for the row of the state that is entered."""
 
 _RESERVED = """
     abstract arguments as async await boolean break byte case catch char class const continue debugger default delete
@@ -46,11 +47,11 @@ _RESERVED = """
     Infinity Math Monitor MonitorError NaN Number Object Result RowReader Set String TextDecoder globalThis process
     ATOMS EXCLUSIVE PARAMS SIGNALS STATES entered listed max min paramValues result shown signals
 """.split()
-"""Words of the language, and what the step function reads beside its own variables."""
+"""Words of the language, and names of the step function other than its own variables."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.mjs`` and ``NAME_monitor.d.mts``."""
+    """Return ``NAME_monitor.mjs`` and ``NAME_monitor.d.mts``."""
     module, declarations = (f"{fspa.name}{ending}" for ending in TARGET.endings)
     source = _Source(fspa, module, declarations)
     return {module: source.module(), declarations: source.declarations()}
@@ -65,34 +66,34 @@ class _JavaScript(Printer):
         self._atoms, self._built_in = atoms, built_in
 
     def declaration(self, statement: Declare) -> str:
-        """``const`` where a variable keeps its value."""
+        """Return a declaration: ``const`` if the variable keeps its value, else ``let``."""
         if statement.value is None:
             return f"let {statement.name};"
         return f"{'let' if statement.changes else 'const'} {statement.name} = {self.text(statement.value)};"
 
     def assignment(self, statement: Assign) -> str:
-        """The limiting atom is given by its name."""
+        """Return an assignment; the limiting atom is assigned by its name."""
         match statement:
             case Assign(states.LIMITING, Int(place)):
                 return f"{states.LIMITING} = {_string(self._atoms[place]) if place >= 0 else 'null'};"
         return super().assignment(statement)
 
     def name(self, name: str) -> str:
-        """There is one kind of numbers."""
+        """Return a variable; integers and reals are the same type here."""
         return judge.STEPS if name == judge.STEPS_REAL else name
 
     def real(self, value: float) -> str:
-        """A number, whole ones without a point."""
+        """Return a number; whole numbers have no decimal point."""
         return _number(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """A call of a function of numbers."""
+        """Return a call of a numeric function."""
         if function in self._built_in:
             function = f"Math.{function}"
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
 
     def _written(self, node: Expression) -> tuple[str, int]:
-        """Numbers are compared without conversions."""
+        """Return the text of an expression and its binding strength; ``===`` compares without conversions."""
         text, binding = super()._written(node)
         if isinstance(node, Compare) and node.op in ("==", "!="):
             text = text.replace(f" {node.op} ", f" {node.op}= ")
@@ -108,23 +109,23 @@ class _Source:
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         names = [atom.name for atom in fspa.atoms]
         self._printer = _JavaScript(names)
-        # Among values of atoms no sign of a 0 matters, and Math.min is quicker than a function of our own.
+        # For values of atoms, the sign of a zero does not matter, and Math.min is faster than a function of our own.
         self._moves = _JavaScript(names, ("min", "max"))
 
     def module(self) -> str:
-        """The whole module."""
+        """Return the whole module."""
         fspa = self._fspa
-        made = self._program
+        program_ = self._program
         with recursion_room():
             step = _JavaScript.block(self._step(), depth=2)
-        present: list[str] = [*made.functions, *(["failing"] if made.functions & FAILING else [])]
+        present: list[str] = [*program_.functions, *(["failing"] if program_.functions & FAILING else [])]
         present += ["signal"] if fspa.signals else []
-        present += [] if all(made.sure) else ["range"]
-        present += ["exclusive"] if made.exclusive else []
+        present += [] if all(program_.sure) else ["range"]
+        present += ["exclusive"] if program_.exclusive else []
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
         present += ["some"] if fspa.signals or "atom" in present else []
         present += ["clamp"] if fspa.signals or "range" in present else []
-        present += ["params"] if made.used & {*made.params} else []
+        present += ["params"] if program_.used & {*program_.params} else []
         places = {
             "title": pieces.title(fspa, self._printer.comment),
             "file": self._module,
@@ -135,7 +136,7 @@ class _Source:
             ),
             "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
-            # Where no atom reads a param, names are checked all the same.
+            # Names are checked even if no atom reads a param.
             "params_kept": "this.#params = " if "params" in present else "",
             "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "states": _list(self._states()),
@@ -144,7 +145,7 @@ class _Source:
         return filled("monitor.mjs.txt", places, present)
 
     def declarations(self) -> str:
-        """The whole file of types."""
+        """Return the whole file of types."""
         fspa = self._fspa
         signals = [
             (
@@ -173,13 +174,13 @@ class _Source:
         return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Signals in their range, and params, in variables of their own."""
+        """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             checked = f"this.#signal({place}, signals)"
             if name not in used:
-                # It is held to be a number all the same.
+                # An unused signal is checked, too.
                 lines.append(f"{checked};")
                 continue
             given = _member("signals", signal.name)
@@ -193,7 +194,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """The atoms' values, but for those that one state alone reads."""
+        """Return code for the atoms that every step computes."""
         lines = self._values(None)
         for place, (name, sure) in enumerate(zip(self._program.atoms, self._program.sure, strict=True)):
             if not sure:
@@ -201,25 +202,28 @@ class _Source:
         return lines
 
     def _values(self, state: int | None) -> list[str]:
-        """The values of the atoms that are computed in a state alone, or at each step."""
+        """Return code for the atoms that only this state computes; for None, for those that every step computes."""
         return [line for place in self._program.computed_in(state) for line in self._value(place)]
 
     def _value(self, place: int) -> list[str]:
-        """The value of one atom."""
-        made, statements = self._program, self._program.values[place]
-        lines = self._printer.comment(made.remarks[place])
+        """Return code for the value of one atom."""
+        program_, statements = self._program, self._program.values[place]
+        lines = self._printer.comment(program_.remarks[place])
         if called(statements) & FAILING:
             lines.append(f"this.#atom = {place};")
-        return [*lines, *self._printer.lines(defined(made.atoms[place], statements, changes=not made.sure[place]))]
+        return [
+            *lines,
+            *self._printer.lines(defined(program_.atoms[place], statements, changes=not program_.sure[place])),
+        ]
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for place, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
             refusal = f"throw this.#together({place}, [{', '.join(names)}]);"
             if len(names) <= _FEW:
-                pairs = [f"{one} > 0 && {other} > 0" for one, other in combinations(names, 2)]
+                pairs = [f"{first} > 0 && {second} > 0" for first, second in combinations(names, 2)]
                 tests = pairs if len(pairs) == 1 else [f"({pair})" for pair in pairs]
                 lines += _branch(tests, refusal, "||")
             else:
@@ -228,13 +232,13 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state."""
+        """Return code for the transition: one case per state."""
         lines = [f"let {states.TARGET} = this.state;", f"let {states.ROBUSTNESS} = 0;"]
         lines += [f"let {states.PROGRESS} = 0;"] if self._fspa.judge == "goal" else []
         lines.append(f"let {states.LIMITING} = null;")
         lines.append("switch (this.state) {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            # A brace, since declarations may follow.
+            # The case needs braces because it may contain declarations.
             lines += [f"  {line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"  case {state.id}: {{")
             lines += [f"    {line}" for line in self._values(state.id)]
@@ -243,16 +247,16 @@ class _Source:
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
-        """Progress, reward and the end of the episode."""
+        """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
         lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {judge.BEST} = this.progress;"]
         lines += [f"let {judge.DONE} = this.done;", f"let {judge.REWARD};"]
-        given = {
+        definitions = {
             judge.ENDS: f"{_ENTERED}.ends",
             judge.VIOLATED: f'{_ENTERED}.verdict === "violated"',
             judge.SATISFIED: f'{_ENTERED}.verdict === "satisfied"',
         }
-        lines += [f"const {name} = {value};" for name, value in given.items() if name in used]
+        lines += [f"const {name} = {value};" for name, value in definitions.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
 
 
@@ -260,22 +264,22 @@ class _Source:
 
 
 def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
-    """The fields of an interface, each behind what is said of it."""
+    """Return the fields of an interface, each with its documentation before it."""
     lines: list[str] = []
     for name, type_, doc in fields:
-        said = [line.replace("*/", "* /") for line in remark(doc)]
-        if len(said) == 1:
-            lines.append(f"/** {said[0]} */")
-        elif said:
-            lines += ["/**", *(f" * {line}" for line in said), " */"]
+        doc_lines = [line.replace("*/", "* /") for line in remark(doc)]
+        if len(doc_lines) == 1:
+            lines.append(f"/** {doc_lines[0]} */")
+        elif doc_lines:
+            lines += ["/**", *(f" * {line}" for line in doc_lines), " */"]
         lines.append(f"{_key(name)}: {type_};")
     return _JavaScript.block(lines)
 
 
-def _row(of: Signal | Param, more: str) -> str:
-    least = "-Infinity" if of.low is None else _number(of.low)
-    greatest = "Infinity" if of.high is None else _number(of.high)
-    return f"{{ name: {_string(of.name)}, {more}, low: {least}, high: {greatest} }}"
+def _row(field: Signal | Param, properties: str) -> str:
+    least = "-Infinity" if field.low is None else _number(field.low)
+    greatest = "Infinity" if field.high is None else _number(field.high)
+    return f"{{ name: {_string(field.name)}, {properties}, low: {least}, high: {greatest} }}"
 
 
 def _number(value: float) -> str:
@@ -292,7 +296,7 @@ def _escape(character: str) -> str:
 
 
 def _in_range(name: str, low: float | None, high: float | None) -> str:
-    """A test whether a variable is a finite number from ``low`` to ``high``."""
+    """Return a test whether a variable is a finite number from ``low`` to ``high``."""
     if low is None and high is None:
         return f"Number.isFinite({name})"
     least = f"-Infinity < {name}" if low is None else f"{_number(low)} <= {name}"
@@ -301,7 +305,7 @@ def _in_range(name: str, low: float | None, high: float | None) -> str:
 
 
 def _branch(tests: Sequence[str], body: str, word: str = "") -> list[str]:
-    """``if (A word B) body``, on several lines where it is long."""
+    """Return ``if (A word B) body``, on several lines if it is long."""
     head = f"if ({f' {word} '.join(tests)})"
     if len(head) + len(body) < _LONGEST:
         return [f"{head} {body}"]
@@ -322,16 +326,16 @@ def _is_plain(name: str) -> bool:
 
 
 def _key(name: str) -> str:
-    """A property's name, where an object or a type lists it."""
+    """Return a property's name as an object or a type lists it."""
     return name if _is_plain(name) else _string(name)
 
 
-def _member(of: str, name: str) -> str:
-    return f"{of}.{name}" if _is_plain(name) else f"{of}[{_string(name)}]"
+def _member(owner: str, name: str) -> str:
+    return f"{owner}.{name}" if _is_plain(name) else f"{owner}[{_string(name)}]"
 
 
 def _list(items: Sequence[str]) -> str:
-    """An array on one line where that is short, else with a line for each item."""
+    """Return an array: on one line if short, else with one line per item."""
     line = f"[{', '.join(items)}]"
     if len(line) <= 80 and not any("{" in item for item in items):
         return line

@@ -1,8 +1,9 @@
-"""A stand-alone monitor in Lua 5.1 to 5.4, LuaJIT and Luau: one module, the standard library only.
+"""A stand-alone monitor in Lua 5.1 to 5.4, LuaJIT and Luau: one module, standard library only.
 
-It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, but for ``tanh``,
-which newer versions lack, and powers in LuaJIT, which has its own: these are within 1e-12.  Lua takes no more than 200
-local variables and blocks in each other: where a spec has more, variables are fields, and inner blocks are functions.
+It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
+except for ``tanh``, which newer versions lack, and powers in LuaJIT, which has its own; these agree
+within 1e-12. Lua allows at most 200 local variables and 200 nested blocks. For a spec that needs
+more, variables become fields and inner blocks become functions.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ TARGET = Target(
 )
 
 _MOST_LOCALS: Final = 150
-"""How many local variables and arguments fit beside those of the step itself."""
+"""How many local variables and arguments fit besides those of the step itself."""
 
 _FEW_STATES: Final = 8
-"""How many are told apart one after the other; those of more have functions of their own."""
+"""Up to this many states are tested one after the other; with more, each state has a function."""
 
 _DEEPEST: Final = 60
-"""How deep blocks nest; the expressions in them need some of Lua's 200 levels, too."""
+"""The depth at which blocks are split; expressions in them also need some of Lua's 200 levels."""
 
 _KEYWORDS = """
     and break do else elseif end false for function goto if in local nil not or repeat return then true until while
@@ -51,24 +52,25 @@ _OWN = """
     MOVES STATES abs at_step divide entered exp failure huge kept max min param part power problem read result self
     signal signals sqrt tanh together type value
 """.split()
-"""What a step reads beside the variables of its program."""
+"""Names that a step reads besides the variables of its program."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.lua``."""
+    """Return ``NAME_monitor.lua``."""
     name = f"{fspa.name}{TARGET.endings[0]}"
     return {name: _Source(fspa, name).text()}
 
 
 class _Lua(Printer):
-    """Prints Lua; ``fields`` says how variables are written that are fields of tables, the others are local.
+    """Prints Lua; ``fields`` maps variables that are fields of tables to their text. The others are local.
 
-    ``parts`` are the lines of functions that hold what would nest too deep; their variables are all fields.
+    ``parts`` are the lines of functions for blocks that would nest too deep; all their variables
+    are fields.
     """
 
     INDENT = "  "
     COMMENT = "--"
-    """The blank behind it keeps brackets from beginning a long one."""
+    """A blank follows it, so that brackets cannot begin a long comment."""
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END = ""
 
@@ -78,11 +80,11 @@ class _Lua(Printer):
         self.parts: list[str] = []
 
     def name(self, name: str) -> str:
-        """There is one kind of numbers."""
+        """Return a variable; integers and reals are the same type here."""
         return judge.STEPS if name == judge.STEPS_REAL else self._fields.get(name, name)
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """The lines of statements; a field without a value needs no declaration."""
+        """Return the lines of statements; a field without a value needs no declaration."""
         needed = [
             statement
             for statement in statements
@@ -91,20 +93,20 @@ class _Lua(Printer):
         return super().lines(needed, depth)
 
     def declaration(self, statement: Declare) -> str:
-        """A declaration; of a field, an assignment."""
+        """Return a declaration; for a field, an assignment."""
         local = "" if statement.name in self._fields else "local "
         value = "" if statement.value is None else f" = {self.text(statement.value)}"
         return f"{local}{self.name(statement.name)}{value}"
 
     def assignment(self, statement: Assign) -> str:
-        """The limiting atom is given by its name."""
+        """Return an assignment; the limiting atom is assigned by its name."""
         match statement:
             case Assign(states.LIMITING, Int(place)):
                 return f"{states.LIMITING} = {_string(self._atoms[place]) if place >= 0 else 'nil'}"
         return super().assignment(statement)
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """A branch, or a call of the function that holds it."""
+        """Return the lines of a branch, or a call of the function that contains it."""
         if depth < _DEEPEST:
             return super().branches(statement, depth)
         self._part_count += 1
@@ -114,15 +116,15 @@ class _Lua(Printer):
         return [f"{self.INDENT * depth}{call}"]
 
     def head(self, test: str, *, first: bool) -> str:
-        """The line that begins a case."""
+        """Return the first line of a case."""
         return f"{'if' if first else 'elseif'} {test} then"
 
     def otherwise(self) -> str:
-        """The line that begins what is done where no test holds."""
+        """Return the line that begins the ``else``."""
         return "else"
 
     def closing(self) -> list[str]:
-        """What ends a branch."""
+        """Return the lines that end a branch."""
         return ["end"]
 
     def _written(self, node: Expression) -> tuple[str, int]:
@@ -137,35 +139,38 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        made = self._program = program(fspa, [*_KEYWORDS, *_OWN])
+        program_ = self._program = program(fspa, [*_KEYWORDS, *_OWN])
         self._names = [atom.name for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
-        variables = (*made.signals, *made.params, *made.atoms)
+        variables = (*program_.signals, *program_.params, *program_.atoms)
         with recursion_room():
-            parts = [declared.name for value in made.values for declared in _declared(value)]
-            deepest = max(map(_depth, made.values), default=0)
-        # Variables count twice: they are arguments, too.
+            parts = [declaration.name for value in program_.values for declaration in _declared(value)]
+            deepest = max(map(_depth, program_.values), default=0)
+        # Variables count twice because they are also arguments.
         self._many = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= _DEEPEST
         fields = {
-            **{name: f"signal{_index(signal.name)}" for signal, name in zip(fspa.signals, made.signals, strict=True)},
-            **{name: f"param{_index(param.name)}" for param, name in zip(fspa.params, made.params, strict=True)},
-            **{name: f"value{_index(atom.name)}" for atom, name in zip(fspa.atoms, made.atoms, strict=True)},
+            **{
+                name: f"signal{_index(signal.name)}"
+                for signal, name in zip(fspa.signals, program_.signals, strict=True)
+            },
+            **{name: f"param{_index(param.name)}" for param, name in zip(fspa.params, program_.params, strict=True)},
+            **{name: f"value{_index(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
             **{name: f"part.{name}" for name in parts},
         }
         self._few_states = len(fspa.states) <= _FEW_STATES
         self._printer = _Lua(fields if self._many else {}, self._names)
 
     def text(self) -> str:
-        """The whole file."""
-        fspa, made = self._fspa, self._program
-        functions = called(statement for part in (*made.values, *made.states) for statement in part)
+        """Return the whole file."""
+        fspa, program_ = self._fspa, self._program
+        functions = called(statement for part in (*program_.values, *program_.states) for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
             step = _Lua.block(self._step())
         present = [*functions, *(["failing"] if functions & FAILING else []), *(["many"] if self._many else [])]
-        present += [] if all(made.sure) else ["kept"]
+        present += [] if all(program_.sure) else ["kept"]
         present += [] if self._few_states else ["moves"]
-        present += ["exclusive"] if made.exclusive else []
+        present += ["exclusive"] if program_.exclusive else []
         places = {
             "p": fspa.name,
             "title": pieces.title(fspa, self._printer.comment),
@@ -208,34 +213,42 @@ class _Source:
     # --- the functions of states ------------------------------------------------------------------
 
     def _returned(self) -> str:
-        """What the functions of states return; where a spec is judged at its limit, progress is no matter of edges."""
+        """Return the variables that the functions of states return.
+
+        Progress is one of them unless the spec is judged at its limit, where it does not depend on
+        edges.
+        """
         progress = (states.PROGRESS,) if self._at_goal else ()
         return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING))
 
-    def _given(self) -> str:
-        """What they take: all atoms but those that one state alone needs, and what these are computed from."""
+    def _parameters(self) -> str:
+        """Return the parameters of the functions of states.
+
+        They are the atoms that every step computes, and the signals and params that the functions
+        read.
+        """
         if self._many:
             return "signal, param, value"
-        made = self._program
-        alone = [value for value, only in zip(made.values, made.only_in, strict=True) if only is not None]
-        used = read(statement for statements in (*made.states, *alone) for statement in statements)
-        atoms = [name for name, only in zip(made.atoms, made.only_in, strict=True) if only is None]
-        return ", ".join(name for name in (*made.signals, *made.params, *atoms) if name in used)
+        program_ = self._program
+        lazy_values = [value for value, only in zip(program_.values, program_.only_in, strict=True) if only is not None]
+        used = read(statement for statements in (*program_.states, *lazy_values) for statement in statements)
+        atoms = [name for name, only in zip(program_.atoms, program_.only_in, strict=True) if only is None]
+        return ", ".join(name for name in (*program_.signals, *program_.params, *atoms) if name in used)
 
     def _moves(self) -> list[str]:
-        """A function for each state."""
+        """Return a function for each state."""
         lines: list[str] = []
         for state in [] if self._few_states else self._fspa.states:
             lines += ["", *self._printer.comment(state.label.ascii)]
-            lines += [f"MOVES[{state.id}] = function({self._given()})", f"  local {self._returned()}"]
+            lines += [f"MOVES[{state.id}] = function({self._parameters()})", f"  local {self._returned()}"]
             lines += [*self._branch(state.id), f"  return {self._returned()}", "end"]
         return lines
 
     def _branch(self, state: int) -> list[str]:
-        """What is done in a state: the values of the atoms that nothing else needs, and the transition."""
+        """Return the code of a state: the values of the atoms that only it reads, and the transition."""
         lines: list[str] = []
         for place in self._program.computed_in(state):
-            # A line between the comments.
+            # An empty line separates the comments.
             lines += ["", *(f"  {line}" for line in self._value(place))]
         statements = shallow(self._program.states[state], self._program.atoms)
         return [*lines, *self._printer.lines(statements, depth=1)]
@@ -247,21 +260,21 @@ class _Source:
         return pieces.paragraphs(*parts)
 
     def _tables(self) -> list[str]:
-        """What is wrong with the sample, and the tables that variables are fields of."""
+        """Return the declaration of ``problem``, and of the tables whose fields are variables."""
         lines = ["local problem"] if self._fspa.signals or not all(self._program.sure) else []
         if self._many:
             lines.append("local signal, param, value = self._signal, self.params, self._value")
         return lines
 
     def _read(self) -> list[str]:
-        """Signals in their range, and params, in variables of their own."""
+        """Return code that reads signals, clamped to their ranges, and params into local variables."""
         lines: list[str] = []
         if any(signal.type != "bool" for signal in self._fspa.signals):
             lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True), start=1):
             variable = self._printer.name(name)
             lines.append(f"{'' if self._many else 'local '}{variable} = signals{_index(signal.name)}")
-            lines += _taken(signal, variable)
+            lines += _accepted_first(signal, variable)
             lines += [
                 "else",
                 f"  {variable}, problem = read(self, {place}, signals)",
@@ -275,7 +288,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
+        """Return code for the atoms that every step computes."""
         lines: list[str] = []
         kept: list[str] = []
         failing = False
@@ -298,13 +311,13 @@ class _Source:
         return [*(["failure = nil"] if failing else []), *lines, *kept]
 
     def _value(self, place: int) -> list[str]:
-        """What gives an atom its value."""
-        made = self._program
-        lines = self._printer.comment(made.remarks[place])
-        return [*lines, *self._printer.lines(defined(made.atoms[place], made.values[place]))]
+        """Return code for the value of one atom."""
+        program_ = self._program
+        lines = self._printer.comment(program_.remarks[place])
+        return [*lines, *self._printer.lines(defined(program_.atoms[place], program_.values[place]))]
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for place, group in self._program.exclusive:
             atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
@@ -314,9 +327,9 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state."""
+        """Return code for the transition, by state."""
         if not self._few_states:
-            return [f"local {self._returned()} = MOVES[self.state]({self._given()})"]
+            return [f"local {self._returned()} = MOVES[self.state]({self._parameters()})"]
         lines = ["local state = self.state", f"local {self._returned()}"]
         for state in self._fspa.states:
             lines.append(f"{'elseif' if state.id else 'if'} state == {state.id} then")
@@ -325,9 +338,9 @@ class _Source:
         return [*lines, "end"]
 
     def _judge(self) -> list[str]:
-        """Progress, reward and the end of the episode."""
+        """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
-        given = {
+        definitions = {
             judge.ENDS: "entered.ends",
             judge.VIOLATED: 'entered.verdict == "violated"',
             judge.SATISFIED: 'entered.verdict == "satisfied"',
@@ -336,7 +349,7 @@ class _Source:
             f"local entered = STATES[{states.TARGET}]",
             f"local {judge.STEPS}, {judge.BEST}, {judge.DONE} = self.steps + 1, self.progress, self.done",
             f"local {judge.REWARD}",
-            *(f"local {name} = {value}" for name, value in given.items() if name in used),
+            *(f"local {name} = {value}" for name, value in definitions.items() if name in used),
             *_Lua({}, self._names).lines(self._program.judged),
         ]
 
@@ -345,7 +358,7 @@ class _Source:
 
 
 def _declared(statements: Iterable[Statement]) -> Iterator[Declare]:
-    """Every declaration, also in branches."""
+    """Yield every declaration, including those in branches."""
     for statement in statements:
         if isinstance(statement, Declare):
             yield statement
@@ -355,7 +368,7 @@ def _declared(statements: Iterable[Statement]) -> Iterator[Declare]:
 
 
 def _depth(statements: Iterable[Statement]) -> int:
-    """How deep branches nest."""
+    """Return how deep branches nest."""
     bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
     return 1 + max(map(_depth, bodies)) if bodies else 0
 
@@ -368,13 +381,13 @@ def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
 
 
 def _field(name: str, type_: str, doc: str) -> str:
-    """A field of a class, as language servers read it."""
-    said = f" {visible(doc)}" if doc else ""
-    return f"---@field {visible(_key(name))} {type_}{said}"
+    """Return a field annotation of a class, as language servers read it."""
+    description = f" {visible(doc)}" if doc else ""
+    return f"---@field {visible(_key(name))} {type_}{description}"
 
 
-def _taken(signal: Signal, variable: str) -> list[str]:
-    """The lines that begin the branch of a signal: what is done where its value needs no second look."""
+def _accepted_first(signal: Signal, variable: str) -> list[str]:
+    """Return the first cases of a signal's branch: values that need no further check."""
     if signal.type == "bool":
         return [
             f"if {variable} == true then",
@@ -387,13 +400,13 @@ def _taken(signal: Signal, variable: str) -> list[str]:
     return [f'if type({variable}) == "number" and {low} and {high} then', f"  {variable} = {variable} + 0.0"]
 
 
-def _row(of: Signal | Param, more: str) -> str:
-    low, high = pieces.number(of.low, "-huge"), pieces.number(of.high, "huge")
-    return f"{{ name = {_string(of.name)}, {more}, low = {low}, high = {high} }}"
+def _row(field: Signal | Param, entries: str) -> str:
+    low, high = pieces.number(field.low, "-huge"), pieces.number(field.high, "huge")
+    return f"{{ name = {_string(field.name)}, {entries}, low = {low}, high = {high} }}"
 
 
 def _string(text: str) -> str:
-    """A string literal; what does not print is escaped, byte by byte."""
+    """Return a string literal; characters that do not print are escaped byte by byte."""
     return pieces.quoted(text, _escape)
 
 
@@ -402,17 +415,17 @@ def _escape(character: str) -> str:
 
 
 def _key(name: str) -> str:
-    """A key, where a table lists it."""
+    """Return a key as a table lists it."""
     plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) and name not in _KEYWORDS
     return name if plain else f"[{_string(name)}]"
 
 
 def _index(name: str) -> str:
-    """A key, behind a table."""
+    """Return an access to a key of a table."""
     key = _key(name)
     return key if key[0] == "[" else f".{key}"
 
 
 def _list(items: Sequence[str]) -> str:
-    """A list, with a line for each item."""
+    """Return a list with one line per item."""
     return "{\n" + "".join(f"{_Lua.INDENT}{item},\n" for item in items) + "}" if items else "{}"

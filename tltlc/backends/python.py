@@ -1,6 +1,6 @@
 """A stand-alone monitor in Python: one file, standard library only, one function per state.
 
-It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward.
+It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tltlc.resolve.spec import Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
 
-# What the step function itself calls its variables, and what it reads from the module.
+# Names of the step function's own variables, and names that it reads from the module.
 _RESERVED = (
     *keyword.kwlist,
     *dir(builtins),
@@ -33,7 +33,7 @@ _RESERVED = (
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.py``."""
+    """Return ``NAME_monitor.py``."""
     name = f"{fspa.name}_monitor.py"
     return {name: _Source(fspa, name).text()}
 
@@ -52,7 +52,7 @@ class _Source:
         self._states = StateWriter(fspa, self._atoms, self._at_goal)
 
     def text(self) -> str:
-        """The whole file."""
+        """Return the whole file."""
         fspa = self._fspa
         step = "\n".join(f"{INDENT * 2}{line}" if line else "" for line in self._step())
         functions = [*self._expressions.parts, *(self._states.function(state.id) for state in fspa.states)]
@@ -83,9 +83,9 @@ class _Source:
         return re.sub(r"@@(\w+)@@", lambda match: pieces[match[1]], _template())
 
     def _state(self, state: int) -> str:
-        found = self._fspa.states[state]
-        ends = found.verdict in ("satisfied", "violated") or (self._at_goal and found.accepting)
-        return f"({literal(found.label.ascii)}, {literal(found.verdict)}, {found.accepting}, {ends})"
+        fspa_state = self._fspa.states[state]
+        ends = fspa_state.verdict in ("satisfied", "violated") or (self._at_goal and fspa_state.accepting)
+        return f"({literal(fspa_state.label.ascii)}, {literal(fspa_state.verdict)}, {fspa_state.accepting}, {ends})"
 
     # --- the step function --------------------------------------------------------------------
 
@@ -93,7 +93,7 @@ class _Source:
         return [*self._read(), *self._compute(), *self._check(), *self._move(), *self._judge()]
 
     def _read(self) -> list[str]:
-        """Signals as floats in their range, params into variables."""
+        """Return code that reads signals as floats in their ranges, and params, into variables."""
         if not self._signals:
             return [f"({', '.join(self._params.values())},) = self._params"] if self._params else []
         lines = ["try:"]
@@ -113,7 +113,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
+        """Return code for the atoms' values."""
         if not self._atoms:
             return []
         lines = ["failing = 0", "try:"]
@@ -136,7 +136,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for number_, group in enumerate(self._fspa.exclusive):
             atoms = [self._atoms[atom] for atom in group]
@@ -148,7 +148,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, and the progress of this step alone."""
+        """Return code for the transition and the progress of this step alone."""
         results = "state, robustness, progress, limiting" if self._at_goal else "state, robustness, limiting"
         lines = [
             *call(f"{results} = _TRANSITIONS[self.state]", self._atoms),
@@ -159,11 +159,11 @@ class _Source:
             return lines
         limit = self._fspa.limit_steps
         survived = "0.0" if limit is None else f"min(steps, {limit}) / {limit}"
-        unless = f'0.0 if verdict == "violated" else {survived}' if limit is not None else survived
-        return [*lines, f'progress = 1.0 if verdict == "satisfied" else {unless}']
+        otherwise = f'0.0 if verdict == "violated" else {survived}' if limit is not None else survived
+        return [*lines, f'progress = 1.0 if verdict == "satisfied" else {otherwise}']
 
     def _judge(self) -> list[str]:
-        """Reward, best progress, the end of the episode (Algorithm 1)."""
+        """Return code for reward, best progress and the end of the episode (Algorithm 1)."""
         limit = self._fspa.limit_steps
         penalties = [
             f"{INDENT}reward -= 1 / {limit}",
@@ -196,7 +196,7 @@ class _Source:
 
 
 def _within(signal: Signal, variable: str) -> str:
-    """The test that a float is in the range of a signal; no infinity or NaN passes it."""
+    """Return a test that a float is in the range of a signal; infinities and NaN fail it."""
     if signal.type == "bool":
         return f"({variable} == 0.0 or {variable} == 1.0)"
     low = f"-inf < {variable}" if signal.low is None else f"{number(signal.low)} <= {variable}"
@@ -204,12 +204,12 @@ def _within(signal: Signal, variable: str) -> str:
 
 
 def _two_hold(atoms: Sequence[str]) -> str:
-    """The test that two of the atoms hold, which is quick where none does."""
+    """Return a test that two of the atoms hold, which is fast if none does."""
     if len(atoms) > 8:
         return f"sum(value > 0.0 for value in {_inline(atoms)}) > 1"
     tests = [f"{atom} > 0.0" for atom in atoms]
-    others = [" or ".join(tests[index + 1 :]) for index in range(len(tests) - 1)]
-    pairs = [f"({test} and {f'({other})' if ' or ' in other else other})" for test, other in zip(tests, others)]  # noqa: B905
+    later_tests = [" or ".join(tests[index + 1 :]) for index in range(len(tests) - 1)]
+    pairs = [f"({test} and {f'({rest})' if ' or ' in rest else rest})" for test, rest in zip(tests, later_tests)]  # noqa: B905
     return " or ".join(pairs)
 
 
@@ -230,7 +230,7 @@ def _inline(items: Sequence[str]) -> str:
 
 
 def _tuple(items: Sequence[str]) -> str:
-    """A tuple, one item a line."""
+    """Return a tuple, one item per line."""
     return "\n".join(["(", *(f"{INDENT}{item}," for item in items), ")"]) if items else "()"
 
 

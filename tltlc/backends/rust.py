@@ -1,7 +1,7 @@
-"""A stand-alone monitor in Rust, which is one module of `core` alone but for roots, powers, ``exp`` and ``tanh``.
+"""A stand-alone monitor in Rust: one module that needs only `core`, except for roots, powers, ``exp`` and ``tanh``.
 
-It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, where the platform's
-``pow``, ``exp`` and ``tanh`` are those that Python was built with.
+It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
+if the platform's ``pow``, ``exp`` and ``tanh`` are those that Python was built with.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bev
 
 _INDENT = Printer.INDENT
 _MATH = {"sqrt", "power", "exp", "tanh"}
-"""Functions that ``core`` does not have."""
+"""Functions that ``core`` lacks."""
 
 _RESERVED = """
     abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen if
@@ -38,7 +38,7 @@ _RESERVED = """
     ATOM_NAMES Default Err GROUPS LARGEST_GROUP Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem Refused
     Result SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
 """.split()
-"""Words of the language, and what stands in the template beside the program."""
+"""Words of the language, and names of the template other than the program's own."""
 
 _CORE = "It needs `core` alone."
 _MORE = """
@@ -48,13 +48,13 @@ It needs `core`, and {names} of `std`.  Without `std`, build with `--cfg tltl_no
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME_monitor.rs``."""
+    """Return ``NAME_monitor.rs``."""
     name = f"{fspa.name}{TARGET.endings[0]}"
     return {name: _Source(fspa, name).text()}
 
 
 class _Rust(Printer):
-    """Prints Rust; ``atom`` is the number of the one whose predicate is being printed."""
+    """Prints Rust; ``atom`` is the number of the atom whose predicate is being printed."""
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
 
@@ -62,25 +62,25 @@ class _Rust(Printer):
         self.atom = 0
 
     def declaration(self, statement: Declare) -> str:
-        """A declaration; what has no value yet says its type."""
+        """Return a declaration; without a value it names its type."""
         head = f"let mut {statement.name}" if statement.changes else f"let {statement.name}"
         if statement.value is None:
             return f"{head}: {self.TYPES[statement.type]};"
         return f"{head} = {self.text(statement.value)};"
 
     def assignment(self, statement: Assign) -> str:
-        """An assignment; what only adds or subtracts says so."""
+        """Return an assignment; additions and subtractions use ``+=`` and ``-=``."""
         match statement:
             case Assign(name, Binary("+" | "-" as op, Variable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
         return super().assignment(statement)
 
     def head(self, test: str, *, first: bool) -> str:
-        """The line that begins a case."""
+        """Return the first line of a case."""
         return f"if {test} {{" if first else f"}} else if {test} {{"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """A call; what may have no value ends the step."""
+        """Return a call; a function that has no value for its arguments ends the step."""
         if function in FAILING:
             return super().call(f"self.{function}", [str(self.atom), *arguments]) + "?"
         return super().call(f"math::{function}" if function in _MATH else function, arguments)
@@ -95,13 +95,13 @@ class _Source:
         self._printer = _Rust()
 
     def text(self) -> str:
-        """The whole file."""
-        fspa, made = self._fspa, self._program
-        signals = list(zip(fspa.signals, made.signals, strict=True))
-        params = list(zip(fspa.params, made.params, strict=True))
-        present = [*made.functions, "exclusive" if made.exclusive else "single"]
-        present += [] if all(made.sure) else ["keep"]
-        present += ["math"] if made.functions & _MATH else []
+        """Return the whole file."""
+        fspa, program_ = self._fspa, self._program
+        signals = list(zip(fspa.signals, program_.signals, strict=True))
+        params = list(zip(fspa.params, program_.params, strict=True))
+        present = [*program_.functions, "exclusive" if program_.exclusive else "single"]
+        present += [] if all(program_.sure) else ["keep"]
+        present += ["math"] if program_.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
             step = _Rust.block(self._step(), 2)
@@ -110,7 +110,7 @@ class _Source:
             "p": fspa.name,
             "title": "\n".join(self._title()),
             "file": self._file,
-            "needs": "\n".join(self._needs(made.functions & _MATH)),
+            "needs": "\n".join(self._needs(program_.functions & _MATH)),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "f64", param) for param, name in params]),
             "signal_count": str(len(signals)),
@@ -127,7 +127,7 @@ class _Source:
             "param_defaults": _Rust.block([f"{name}: {pieces.number(param.value)}," for param, name in params], 3),
             "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
             "states": _Rust.block(self._states(), 1),
-            "sample": "sample" if made.reads_sample else "_",
+            "sample": "sample" if program_.reads_sample else "_",
             "step": step,
             "given": "sample" if give else "_",
             "give": _Rust.block(give or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
@@ -135,7 +135,7 @@ class _Source:
         return filled("monitor.rs.txt", places, present)
 
     def _title(self) -> list[str]:
-        """The first comment: what the spec is called, what it is for, its formula."""
+        """Return the first comment: the name of the spec, its documentation and its formula."""
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
         formula = ["```text", *remark(fspa.formula.ascii.replace("```", "'''")), "```"]
@@ -144,7 +144,7 @@ class _Source:
         return ["\n//!\n".join(parts)]
 
     def _needs(self, functions: frozenset[str]) -> list[str]:
-        """What the file needs beside the language."""
+        """Return a comment on what the file needs besides the language."""
         if not functions:
             return [f"//! {_CORE}"]
         names = [f"`{'pow' if function == 'power' else function}`" for function in sorted(functions)]
@@ -160,15 +160,15 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """A case for each signal, by its number."""
+        """Return code that sets a signal by its number: one case per signal."""
         if not self._fspa.signals:
             return []
         lines = ["match signal {"]
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 lines.append(f"{_INDENT}{place} if value != 0.0 && value != 1.0 => return false,")
-            given = "value == 1.0" if signal.type == "bool" else "value"
-            lines.append(f"{_INDENT}{place} => sample.{name} = {given},")
+            value = "value == 1.0" if signal.type == "bool" else "value"
+            lines.append(f"{_INDENT}{place} => sample.{name} = {value},")
         return [*lines, f"{_INDENT}_ => {{}}", "}", "true"]
 
     # --- a step -----------------------------------------------------------------------------------
@@ -177,7 +177,7 @@ class _Source:
         return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Signals in their range, and params, in variables of their own."""
+        """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -190,37 +190,37 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Bools as numbers, where atoms are computed from them."""
+        """Return code that converts to numbers the bools that atoms of this state read."""
         names = self._program.bools_read_in(state)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
-        made = self._program
-        used = read(statement for state in made.states for statement in state)
-        used |= {made.atoms[atom] for _, group in made.exclusive for atom in group}
-        places = made.computed_in(None)
+        """Return code for the atoms that every step computes."""
+        program_ = self._program
+        used = read(statement for state in program_.states for statement in state)
+        used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
+        places = program_.computed_in(None)
         lines = [line for place in places for line in self._value(place)]
         for place in places:
-            name = made.atoms[place]
+            name = program_.atoms[place]
             head = f"let {name} = " if name in used else ""
-            lines += [] if made.sure[place] else [f"{head}self.keep({place}, {name})?;"]
+            lines += [] if program_.sure[place] else [f"{head}self.keep({place}, {name})?;"]
         return lines
 
     def _value(self, place: int, depth: int = 0) -> list[str]:
-        """What gives an atom its value."""
-        made = self._program
+        """Return code for the value of one atom."""
+        program_ = self._program
         self._printer.atom = place
-        statements = defined(made.atoms[place], made.values[place], changes=False)
-        return self._printer.lines((Comment(made.remarks[place]), *statements), depth)
+        statements = defined(program_.atoms[place], program_.values[place], changes=False)
+        return self._printer.lines((Comment(program_.remarks[place]), *statements), depth)
 
-    def _alone(self, state: int) -> list[str]:
-        """The values of the atoms that nothing but this state needs, and the bools that they read."""
+    def _values_only_in(self, state: int) -> list[str]:
+        """Return code for the atoms that only this state reads, and for the bools that these read."""
         lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
         return [*lines, *(line for place in self._program.computed_in(state) for line in self._value(place, depth=2))]
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for place, group in self._program.exclusive:
             tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
@@ -229,32 +229,32 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state."""
+        """Return code for the transition: one case per state."""
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines.append("match self.state {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
-            lines += [f"{_INDENT}{state.id} => {{", *self._alone(state.id)]
+            lines += [f"{_INDENT}{state.id} => {{", *self._values_only_in(state.id)]
             lines += [*self._printer.lines(statements, depth=2), f"{_INDENT}}}"]
         return [*lines, f"{_INDENT}_ => {{}}", "}"]
 
     def _judge(self) -> list[str]:
-        """Progress, reward and the end of the episode."""
+        """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
         verdict = "entered.verdict"
         lines = [f"let entered = &STATES[{states.TARGET}];"]
         lines += [f"let mut {judge.BEST} = self.progress;", f"let mut {judge.DONE} = self.done;"]
-        # Penalties change it.
+        # The reward is mutable where penalties are subtracted from it.
         lines.append(f"let {'' if self._fspa.limit_steps is None else 'mut '}{judge.REWARD};")
-        given = {
+        declarations = {
             judge.STEPS_REAL: f"let {judge.STEPS_REAL} = {judge.STEPS} as f64;",
             judge.ENDS: f"let {judge.ENDS} = entered.ends;",
             judge.VIOLATED: f"let {judge.VIOLATED} = {verdict} == Verdict::Violated;",
             judge.SATISFIED: f"let {judge.SATISFIED} = {verdict} == Verdict::Satisfied;",
         }
-        lines += [line for name, line in given.items() if name in used]
+        lines += [line for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
 
 
@@ -266,17 +266,17 @@ def _type(signal: Signal) -> str:
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
-    """The fields of a struct, each under its name in the spec and what is said of it."""
+    """Return the fields of a struct, each with its documentation."""
     lines: list[str] = []
-    for name, type_, of in fields:
-        lines += [f"/// {line}" for line in _markdown(pieces.described(name, of))]
+    for name, type_, declared in fields:
+        lines += [f"/// {line}" for line in _markdown(pieces.described(name, declared))]
         lines.append(f"pub {name}: {type_},")
     return _Rust.block(lines, 1)
 
 
 def _markdown(text: str) -> list[str]:
-    """Lines of documentation: no code, which would be run as a test, no HTML and no links."""
-    escaped = re.sub(r"`{3,}|~{3,}|<|\](?=[(\[:])", lambda found: re.sub("(.)", r"\\\1", found[0]), text)
+    """Return lines of documentation, escaped so that they contain no code (doctests), HTML or links."""
+    escaped = re.sub(r"`{3,}|~{3,}|<|\](?=[(\[:])", lambda match: re.sub("(.)", r"\\\1", match[0]), text)
     return remark(escaped)
 
 
@@ -292,11 +292,11 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 
 def _string(text: str) -> str:
-    """A string literal in ASCII."""
+    """Return a string literal in ASCII."""
     return pieces.quoted(text, _escape, pieces.in_ascii)
 
 
 def _escape(character: str) -> str:
-    """Halves of pairs, which no text of Rust holds, are replaced."""
+    """Return an escape; half a surrogate pair, which Rust's strings cannot contain, becomes U+FFFD."""
     code = ord(character)
     return "\\u{fffd}" if 0xD800 <= code < 0xE000 else f"\\u{{{code:x}}}"

@@ -1,1 +1,1 @@
-"""What monitors written as source code share: safe names, safe comments, and the text of each state."""
+"""Code shared by monitors that are written as source code: the functions of the states."""

@@ -1,4 +1,4 @@
-"""The states of an automaton as Python functions: from the values of the atoms to the edge that is taken."""
+"""The states of an automaton as Python functions: they pick the edge taken from the values of the atoms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ INDENT = "    "
 class StateWriter:
     """Writes one function per state; ``atoms`` are the Python names of the values of the atoms.
 
-    With ``with_progress``, a function returns the progress of the step, too (lines 11 to 18 of Algorithm 1).
+    With ``with_progress``, a function also returns the progress of the step (lines 11 to 18 of
+    Algorithm 1).
     """
 
     def __init__(self, fspa: Fspa, atoms: Sequence[str], with_progress: bool) -> None:
@@ -25,17 +26,17 @@ class StateWriter:
 
     @property
     def result(self) -> str:
-        """The type that the functions return."""
+        """The return type of the functions."""
         return f"tuple[int, float, {'float, ' if self._with_progress else ''}str | None]"
 
     def function(self, state: int) -> str:
-        """The function of a state, named ``_from_STATE``."""
+        """Return the function of a state, named ``_from_STATE``."""
         arguments = [f"{atom}: float" for atom in self._atoms]
         lines = [
             *call(f"def _from_{state}", arguments, f" -> {self.result}:"),
             *(f"{INDENT}{line}" for line in comment(self._fspa.states[state].label.ascii)),
         ]
-        # One guard is true: the longest needs no test.
+        # Exactly one guard is true, so the longest needs no test.
         edges = sorted(self._edges[state], key=lambda edge: (_size(edge.guard), edge.target))
         if len(edges) == 1:
             return "\n".join([*lines, *self._taken(edges[0], INDENT)])
@@ -46,14 +47,14 @@ class StateWriter:
         return "\n".join([*lines, *self._taken(edges[-1], INDENT)])
 
     def _taken(self, edge: Edge, indent: str) -> list[str]:
-        """Lines that return what taking the edge means."""
-        improving = [other for other in self._edges[edge.source] if self._improves(other)]
+        """Return the lines that run when an edge is taken."""
+        improving = [candidate for candidate in self._edges[edge.source] if self._improves(candidate)]
         lines: list[str] = []
         progress, limiting = self._base_progress(edge.target), "None"
         if edge.source == edge.target and improving:
-            lines = self._nearest([prime for other in improving for prime in other.guard.primes])
+            lines = self._nearest([prime for candidate in improving for prime in candidate.guard.primes])
             base = "" if progress == "0.0" else f"{progress} + "
-            # A guard that is false has no robustness above 0, so there is nothing to cap.
+            # The improving guards are false, so their robustness is at most 0 and needs no cap.
             progress, limiting = f"{base}(1.0 + nearest) / {self._fspa.spec_size}", "limiting"
         values = [str(edge.target), self._robustness(edge.guard.primes)]
         values += [progress, limiting] if self._with_progress else [limiting]
@@ -79,9 +80,10 @@ class StateWriter:
         return " or ".join(tests)
 
     def _robustness(self, primes: Sequence[Implicant]) -> str:
-        """The greatest of the primes' least literals, or what is the same with fewer literals, but for -0.
+        """Return the maximum over primes of the least literal, or an equal expression with fewer
+        literals (except for -0).
 
-        Literals that all primes share are taken out.
+        Literals that all primes share are factored out.
         """
         shared = [literal_ for literal_ in primes[0] if all(literal_ in prime for prime in primes)]
         rest = [[literal_ for literal_ in prime if literal_ not in shared] for prime in primes]
@@ -94,21 +96,21 @@ class StateWriter:
         return _call("min", [*terms, *(self._fold("max", clause) for clause in clauses)])
 
     def _nearest(self, primes: Sequence[Implicant]) -> list[str]:
-        """Lines that find the most robust of the primes, the first of equals, and the first atom that bounds it."""
+        """Return lines that find the most robust prime (the first of equals) and the first atom that bounds it."""
         lines: list[str] = []
         for position, prime in enumerate(primes):
             value = "other" if position else "nearest"
             least = self._fold("min", prime)
-            found = self._bounding(prime, value)
+            bounding = self._bounding(prime, value)
             lines.append(f"{value} = {least}")
             if position:
-                lines += ["if other > nearest:", f"{INDENT}nearest = other", f"{INDENT}limiting = {found}"]
+                lines += ["if other > nearest:", f"{INDENT}nearest = other", f"{INDENT}limiting = {bounding}"]
             else:
-                lines.append(f"limiting = {found}")
+                lines.append(f"limiting = {bounding}")
         return lines
 
     def _bounding(self, prime: Implicant, value: str) -> str:
-        """The name of the first atom of the prime whose literal has that value."""
+        """Return the name of the first atom of the prime whose literal has the given value."""
         tests = [
             f"{literal(self._fspa.atoms[atom].name)} if {self._value(atom, polarity)} == {value} else "
             for atom, polarity in prime[:-1]
@@ -127,7 +129,7 @@ def _size(guard: Guard) -> int:
 
 
 def _call(function: str, terms: Sequence[str]) -> str:
-    """``max(a, b)``, ``a`` for one term and 1 for none (of no literals, ``min`` is 1)."""
+    """Return ``max(a, b)``; one term alone stays as it is, and no terms give 1 (the ``min`` of no literals)."""
     if not terms:
         return "1.0"
     return terms[0] if len(terms) == 1 else f"{function}({', '.join(terms)})"

@@ -1,1 +1,1 @@
-"""What monitors for Godot share, whatever the version of the engine."""
+"""Code shared by the monitors for all versions of Godot."""

@@ -1,4 +1,4 @@
-"""Names that GDScript, the engine or the template have taken, and names in the manner of GDScript."""
+"""Names that GDScript, the engine or the template reserve, and names in GDScript style."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ _OWN: Final = """
     sample clear given params values notices noticed which problem verdict accepting limiting limiting_atom label
     message step steps begin reset state progress done reward robustness reached ends best target
 """.split()
-"""What the template calls its own; names that begin with ``_`` are never given."""
+"""Names of the template's own variables; generated names never begin with ``_``."""
 
 RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 
 
 def snake_case(names: Iterable[str]) -> dict[str, str]:
-    """New names for some that are not in lower case, each once; capitals are for the engine's classes."""
+    """Return unique new names for those that are not in lower case; the engine's classes use capitals."""
     wanted = list(names)
     taken = Names({*RESERVED, *wanted})
     return {name: taken.give(_lower(name)) for name in wanted if name != name.lower()}

@@ -1,4 +1,4 @@
-"""Numbers that every version of the engine reads as the very same double."""
+"""Number literals that every version of the engine reads as exactly the same double."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Final
 
 _EXACT: Final = 2**53
 _LARGEST_POWER: Final = 22
-"""Ten to that is the largest power of ten that is a double."""
+"""The largest power of ten that is exactly a double is 10 to this power."""
 _MOST_DIGITS: Final = 18
-"""The engine leaves out what comes behind these, zeros at the front included."""
+"""The engine ignores further digits; leading zeros count."""
 _LARGEST_DIVISOR: Final = 10_000
 
 
 def number(value: float) -> str:
-    """A number that is not negative: a literal, else a quotient, else a whole number times a power of two.
+    """Return a nonnegative number as a literal, else as a quotient, else as an integer times a power of two.
 
-    The engine reads a literal as a whole number and a power of ten, which it multiplies or divides: that is exact
-    where both are doubles, as a rule up to 15 digits.
+    The engine reads a literal as an integer and a power of ten, which it multiplies or divides. The
+    result is exact if both are doubles, usually up to 15 digits.
     """
     literal = repr(value)
     _, digits, exponent = Decimal(literal).as_tuple()
@@ -35,7 +35,7 @@ def number(value: float) -> str:
 
 
 def _split(value: float) -> tuple[int, int]:
-    """An odd number and the power of two that it is to be multiplied with."""
+    """Return an odd factor and the exponent of the power of two to multiply it by."""
     factor, divisor = value.as_integer_ratio()
     power = 1 - divisor.bit_length()
     while factor % 2 == 0:

@@ -1,4 +1,4 @@
-"""The text of a program in GDScript."""
+"""Print a program in GDScript."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from tltlc.program.tree import Assign, Call, Declare, Expression, Negate, Real, 
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
-"""How tightly ``a if b else c`` binds: less than anything else."""
+"""The binding strength of ``a if b else c``: looser than anything else."""
 
 
 class Gd(Printer):
     """Prints GDScript.
 
-    ``names`` tells what stands for a variable of the program that has another name here, ``functions`` what the
-    engine calls functions that it has, and ``swapped`` which take their second argument first; the others are the
-    script's own.
+    ``names`` maps variables of the program to their names here. ``functions`` maps functions that
+    the engine has to their names there; ``swapped`` are those whose arguments are passed in reverse
+    order. The other functions belong to the script.
     """
 
     INDENT: ClassVar[str] = "\t"
@@ -33,53 +33,57 @@ class Gd(Printer):
         self._names, self._functions, self._swapped = names, functions, swapped
 
     def declaration(self, statement: Declare) -> str:
-        """A variable has a value from the start."""
+        """Return a declaration; every variable has an initial value."""
         value = self._START[statement.type] if statement.value is None else self.text(statement.value, _CHOICE)
         return f"var {self.name(statement.name)}: {self.TYPES[statement.type]} = {value}"
 
     def assignment(self, statement: Assign) -> str:
-        """An assignment."""
+        """Return an assignment."""
         return f"{self.name(statement.name)} = {self.text(statement.value, _CHOICE)}"
 
     def head(self, test: str, *, first: bool) -> str:
-        """Blocks are indented, and no brackets stand around tests."""
+        """Return the first line of a case; tests need no parentheses."""
         return f"if {test}:" if first else f"elif {test}:"
 
     def otherwise(self) -> str:
-        """The line before what is done where no test holds."""
+        """Return the line that begins the ``else``."""
         return "else:"
 
     def closing(self) -> list[str]:
-        """Nothing ends a branch."""
+        """Return no lines: indentation ends a branch."""
         return []
 
     def nothing(self, depth: int) -> list[str]:
-        """A body holds something."""
+        """Return ``pass``: a body cannot be empty."""
         return [f"{self.INDENT * depth}pass"]
 
     def name(self, name: str) -> str:
-        """What stands for a variable."""
+        """Return the name of a variable here."""
         return self._names.get(name, name)
 
     def real(self, value: float) -> str:
-        """A number that is read exactly."""
+        """Return a number that the engine reads exactly."""
         return number(value)
 
     def _written(self, node: Expression) -> tuple[str, int]:
-        """The less or greater of two names or numbers without a call, which would cost more than all the rest."""
+        """Return the text of an expression and its binding strength.
+
+        ``min`` and ``max`` of two names or numbers become a conditional expression: a call would
+        cost more than the rest.
+        """
         match node:
             case Call("min" | "max" as function, (first, second)) if function not in self._functions:
                 if _is_simple(first) and _is_simple(second):
-                    one, other = self.text(first), self.text(second)
-                    return f"{other} if {other} {_BETTER[function]} {one} else {one}", _CHOICE
+                    first_text, second_text = self.text(first), self.text(second)
+                    return f"{second_text} if {second_text} {_BETTER[function]} {first_text} else {first_text}", _CHOICE
         return super()._written(node)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """A function of the engine, or of the script."""
+        """Return a call of a function of the engine or of the script."""
         ordered = list(reversed(arguments)) if function in self._swapped else arguments
         return super().call(self._functions.get(function, f"_{function}"), ordered)
 
 
 def _is_simple(node: Expression) -> bool:
-    """Whether it may well be written twice."""
+    """Whether the expression is cheap enough to be written twice."""
     return isinstance(node.operand if isinstance(node, Negate) else node, (Variable, Real))

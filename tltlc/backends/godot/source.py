@@ -1,8 +1,9 @@
-"""The script of a monitor, and the one that makes a program of it, for every version of Godot.
+"""The script of a monitor, and a main script that runs it as a program, for every version of Godot.
 
-They compute what :class:`tltlc.monitor.Monitor` computes with its default reward, to the last bit where the engine's
-``pow``, ``exp`` and ``tanh`` are those that Python was built with.  The engine's own ``min``, ``max`` and ``clamp`` are
-not used: in Godot 3 they round to single precision, as does the reading of a number in a string.
+They give the same results as :class:`tltlc.monitor.Monitor` with its default reward, to the last
+bit if the engine's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. The engine's
+generic ``min``, ``max`` and ``clamp`` are not used: in Godot 3 they round to single precision, and
+so does parsing a number from a string.
 """
 
 from __future__ import annotations
@@ -41,17 +42,20 @@ _MEMBERS = {
     judge.VIOLATED: "verdict == Verdict.VIOLATED",
     judge.SATISFIED: "verdict == Verdict.SATISFIED",
 }
-"""What stands for the program's own variables: mostly members of the monitor, as steps that are refused end before."""
+"""What variables of the program are called here: mostly members of the monitor. A refused step
+returns before it assigns any of them.
+"""
 
 
 @record
 class Dialect:
-    """How a version of the engine differs from another.
+    """How a version of the engine differs from others.
 
-    ``version`` is what templates ask for, ``base`` the class of what is counted by references.  ``functions`` are
-    functions of the engine that are exact; of ``swapped`` ones the second argument stands first, so that of equal
-    values the first is taken.  ``typed`` says whether arrays and enums are types, and ``wide`` whether strings have
-    escapes for characters beyond U+FFFF.
+    ``version`` is the name that the templates test for, ``base`` the engine's class of
+    reference-counted objects. ``functions`` are exact functions of the engine. Those in ``swapped``
+    take their arguments in reverse order, so that the first of equal values is returned. ``typed``
+    says whether arrays and enums can be types, and ``wide`` whether strings have escapes for
+    characters beyond U+FFFF.
     """
 
     version: str
@@ -63,16 +67,16 @@ class Dialect:
     wide: bool
 
     def types(self) -> dict[str, str]:
-        """What stands in the templates' places for types."""
+        """Return the types that fill the templates' places."""
         arrays = {"strings": "String", "bools": "bool", "ints": "int", "floats": "float", "arrays": "Array"}
         arrays["verdict_array"] = "Verdict"
-        found = {name: f"Array[{of}]" if self.typed else "Array" for name, of in arrays.items()}
+        types = {name: f"Array[{element}]" if self.typed else "Array" for name, element in arrays.items()}
         enums = {"verdict": "Verdict", "problem": "Problem"}
-        return found | {name: enum if self.typed else "int" for name, enum in enums.items()}
+        return types | {name: enum if self.typed else "int" for name, enum in enums.items()}
 
 
 def files(fspa: Fspa, dialect: Dialect) -> Files:
-    """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    """Return ``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
     script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
     places = {"file": script, "main": main, "title": dialect.title, **dialect.types()}
     return {
@@ -87,21 +91,21 @@ class _Source:
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
         self._fspa, self._dialect = fspa, dialect
         self._program = program(fspa, RESERVED)
-        made = self._program
-        renamed = snake_case([*made.signals, *made.params, *made.atoms])
+        program_ = self._program
+        renamed = snake_case([*program_.signals, *program_.params, *program_.atoms])
         self._printer = Gd({**renamed, **_MEMBERS}, dialect.functions, dialect.swapped)
-        self._signals = [self._printer.name(name) for name in made.signals]
-        self._params = [self._printer.name(name) for name in made.params]
-        self._atoms = [self._printer.name(name) for name in made.atoms]
+        self._signals = [self._printer.name(name) for name in program_.signals]
+        self._params = [self._printer.name(name) for name in program_.params]
+        self._atoms = [self._printer.name(name) for name in program_.atoms]
 
     def text(self) -> str:
-        """The whole file."""
-        fspa, made = self._fspa, self._program
-        failing = made.functions & FAILING
+        """Return the whole file."""
+        fspa, program_ = self._fspa, self._program
+        failing = program_.functions & FAILING
         present = [*failing, *(["note"] if failing else [])]
-        present += [] if all(made.sure) else ["atom"]
+        present += [] if all(program_.sure) else ["atom"]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
-        present += ["exclusive"] if made.exclusive else []
+        present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
         with recursion_room():
             step = Gd.block(self._step())
@@ -121,7 +125,7 @@ class _Source:
             "first_verdict": f"Verdict.{first.verdict.upper()}",
             "first_accepting": pieces.boolean(first.accepting),
             "accepting": _list([pieces.boolean(state.accepting) for state in fspa.states]),
-            "ends": _list(map(pieces.boolean, made.ends)),
+            "ends": _list(map(pieces.boolean, program_.ends)),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
             "params": self._strings(param.name for param in fspa.params),
             "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
@@ -134,7 +138,7 @@ class _Source:
             "param_fields": self._param_fields(),
             "param_checks": Gd.block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
             "param_copies": Gd.block([f"_params.{name} = given.{name}" for name in self._params]),
-            "sample": "sample" if made.reads_sample else "_sample",
+            "sample": "sample" if program_.reads_sample else "_sample",
             "step": step,
         }
         return filled("monitor.gd.txt", places, present)
@@ -152,16 +156,16 @@ class _Source:
         return self._fields([(name, "float", _signed(param.value), param) for param, name in fields])
 
     def _fields(self, fields: Sequence[tuple[str, str, str, Signal | Param]]) -> str:
-        """The members of a class, each under its name in the spec and what is said of it."""
+        """Return the members of a class, each with its documentation."""
         lines: list[str] = []
-        for name, type_, value, of in fields:
-            # Godot 4 shows what stands behind two signs; a bracket would begin a tag, but for those around numbers.
-            said = pieces.described(name, of)
-            values = pieces.kind(of) if said.endswith(pieces.kind(of)) else ""
-            said = said.removesuffix(values).replace("[", "[lb]") + values
-            remarks = [f"#{line}" for line in self._printer.comment(said)]
+        for name, type_, value, declared in fields:
+            # Godot 4 shows `##` comments as documentation. An opening bracket would begin a tag, except before numbers.
+            description = pieces.described(name, declared)
+            values = pieces.kind(declared) if description.endswith(pieces.kind(declared)) else ""
+            description = description.removesuffix(values).replace("[", "[lb]") + values
+            remarks = [f"#{line}" for line in self._printer.comment(description)]
             field = f"var {name}: {type_} = {value}"
-            # A short remark stands behind its field.
+            # A short comment goes on the line of its field.
             if len(remarks) == 1 and len(field) + len(remarks[0]) < 90:
                 lines.append(f"{field}  {remarks[0]}")
             else:
@@ -179,7 +183,7 @@ class _Source:
         return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
-        """Signals in their range, and params, in variables of their own."""
+        """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
         checked = False
@@ -196,13 +200,13 @@ class _Source:
         lines += self._bools(None)
         lines += [
             f"var {name}: float = _params.{name}"
-            for name, own in zip(self._params, self._program.params, strict=True)
-            if own in used
+            for name, variable in zip(self._params, self._program.params, strict=True)
+            if variable in used
         ]
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Bools as numbers, where atoms are computed from them."""
+        """Return code that converts to numbers the bools that atoms of this state read."""
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
 
@@ -210,7 +214,7 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """The atoms' values, but for those that one state alone reads."""
+        """Return code for the atoms that every step computes."""
         lines = self._values(None)
         unsure = [(place, name) for place, name in enumerate(self._atoms) if not self._program.sure[place]]
         for place, name in unsure:
@@ -218,20 +222,20 @@ class _Source:
         return [*lines, *(self._stop() if unsure else [])]
 
     def _values(self, state: int | None) -> list[str]:
-        """The values of the atoms that are computed in a state alone, or at each step."""
+        """Return code for the atoms that only this state computes; for None, for those that every step computes."""
         return [line for place in self._program.computed_in(state) for line in self._value(place)]
 
     def _value(self, place: int) -> list[str]:
-        """The value of one atom."""
-        made, statements = self._program, self._program.values[place]
-        lines = self._printer.comment(made.remarks[place])
-        lines += self._printer.lines(defined(made.atoms[place], statements))
+        """Return code for the value of one atom."""
+        program_, statements = self._program, self._program.values[place]
+        lines = self._printer.comment(program_.remarks[place])
+        lines += self._printer.lines(defined(program_.atoms[place], statements))
         if called(statements) & FAILING:
             lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
         return lines
 
     def _check(self) -> list[str]:
-        """Exclusive atoms."""
+        """Return code that checks exclusive atoms."""
         lines: list[str] = []
         for place, group in self._program.exclusive:
             names = [self._atoms[atom] for atom in group]
@@ -241,7 +245,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state: tests one after the other, which is what a ``match`` does, more slowly."""
+        """Return code for the transition: a chain of tests, which is faster than ``match``."""
         lines = ["var reached: float = 0.0"] if self._fspa.judge == "goal" else []
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             lines.append(self._printer.head(f"state == {state.id}", first=state.id == 0))
@@ -251,7 +255,7 @@ class _Source:
         return lines
 
     def _judge(self) -> list[str]:
-        """Progress, reward and the end of the episode."""
+        """Return code for progress, reward and the end of the episode."""
         # Adding 0 turns -0 into 0.
         lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
         return [*lines, *self._printer.lines(self._program.judged)]
@@ -262,7 +266,9 @@ class _Source:
         return _list([self._string(text) for text in texts])
 
     def _string(self, text: str) -> str:
-        """A string literal, with escapes for whatever does not print; strings of the engine end at U+0000."""
+        """Return a string literal with escapes for characters that do not print; NUL would end a
+        string of the engine.
+        """
         return pieces.quoted(text.replace("\0", ""), self._escape)
 
     def _escape(self, character: str) -> str:
@@ -278,15 +284,17 @@ def _signed(value: float) -> str:
     return f"-{number(-value)}" if repr(value)[0] == "-" else number(float(value))
 
 
-def _ends(of: Signal | Param) -> tuple[str, str]:
-    """The range of a signal or a param."""
-    return "-INF" if of.low is None else _signed(of.low), "INF" if of.high is None else _signed(of.high)
+def _ends(field: Signal | Param) -> tuple[str, str]:
+    """Return the ends of the range of a signal or a param."""
+    return "-INF" if field.low is None else _signed(field.low), "INF" if field.high is None else _signed(field.high)
 
 
-def _within(value: str, of: Signal | Param) -> str:
-    """A test whether a value is finite and in the range."""
-    low, high = _ends(of)
-    return f"{value} {'>' if of.low is None else '>='} {low} and {value} {'<' if of.high is None else '<='} {high}"
+def _within(value: str, field: Signal | Param) -> str:
+    """Return a test whether a value is finite and in the range."""
+    low, high = _ends(field)
+    return (
+        f"{value} {'>' if field.low is None else '>='} {low} and {value} {'<' if field.high is None else '<='} {high}"
+    )
 
 
 def _start(signal: Signal) -> str:
