@@ -1,1 +1,1 @@
-"""A spec ready for episodes: its task, and wrappers that judge and reward by it."""
+"""A spec ready for episodes: its task, and wrappers that judge and reward episodes by it."""

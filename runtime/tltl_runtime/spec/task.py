@@ -1,4 +1,4 @@
-"""A task: the automaton of a spec, the values of its params, and how its steps are rewarded."""
+"""A task: the automaton of a spec, the values of its params, and the options of its reward."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
 
 @record
 class Task:
-    """What an episode is judged by: the automaton, values of its params (SI units) before its own, the reward.
+    """What judges an episode: the automaton, values that override its params' defaults (SI units), and the reward.
 
-    A task is plain data and can be pickled; a :class:`Monitor` is not and cannot.
+    A task is plain data that can be pickled; a :class:`Monitor` cannot.
     """
 
     fspa: Fspa
@@ -34,7 +34,7 @@ class Task:
     reward: RewardOptions = RewardOptions()
 
     def monitor(self) -> Monitor:
-        """A new monitor, before its first sample."""
+        """Return a new monitor, before its first sample."""
         return Monitor(self.fspa, self.params, self.reward)
 
 
@@ -45,35 +45,36 @@ def load_task(
     *,
     offered: Mapping[str, float] = EMPTY,
 ) -> Task:
-    """The task that a spec describes.
+    """Return the task that a spec describes.
 
-    ``spec`` is an automaton; the path ``FILE.tltl`` or ``FILE.fspa.json``, with ``:NAME`` behind it where the file
-    holds several specs; or a text: several lines, or one that has blanks and does not end like a path.  A file's
-    project (``tltl.toml``) gives it its libraries.  ``params`` are values in SI units; ``offered`` are others
-    that a level has at hand, of which those count that the spec has and ``params`` does not set.
+    ``spec`` is an automaton; a path ``FILE.tltl`` or ``FILE.fspa.json``, followed by ``:NAME`` if
+    the file has several specs; or a text, which has several lines, or has blanks and does not end
+    like a path. The file's project (``tltl.toml``) provides its libraries. ``params`` are values in
+    SI units. ``offered`` are values that a level provides; those that the spec has and ``params``
+    does not set are used.
 
     Raises:
-        TltlError: whatever reading and compiling finds; TLT0720 no spec of that name, TLT0721 not exactly one spec,
-            TLT0307 and TLT0308 for params that do not fit.
+        TltlError: errors of reading and compiling; TLT0720 no spec of that name, TLT0721 not
+            exactly one spec, TLT0307 and TLT0308 for params that do not fit.
         TypeError: ``spec``, ``params`` or ``reward`` is of another type.
     """
     if not isinstance(params, Mapping):
         raise TypeError(f"params map names to numbers, e.g. {{'top_speed': 0.06}}; {params!r:.60} does not")
     fspa, _ = read_spec(spec)
-    known = {param.name for param in fspa.params}
-    values = {name: value for name, value in offered.items() if name in known}
+    param_names = {param.name for param in fspa.params}
+    values = {name: value for name, value in offered.items() if name in param_names}
     task = Task(fspa, {**values, **params}, reward_options(reward))
     task.monitor()
     return task
 
 
 def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
-    """The automaton that ``spec`` describes, and its source where there is one; errors as of :func:`load_task`."""
+    """Return the automaton that ``spec`` describes, and its source if there is one; raises as :func:`load_task`."""
     if isinstance(spec, Fspa):
         return spec, None
     if not isinstance(spec, (str, os.PathLike)) or not str(spec).strip():
-        one = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
-        raise TypeError(f"a spec is a path, a text or an automaton, not {spec!r:.60}{one}")
+        advice = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
+        raise TypeError(f"a spec is a path, a text or an automaton, not {spec!r:.60}{advice}")
     if isinstance(spec, str) and _is_text(spec):
         source, path, name = SourceFile("<text>", spec), "<text>", None
         is_artefact = _is_artefact(spec)
@@ -88,11 +89,11 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
     libraries = () if path == "<text>" else project_for(path).libraries
     compiled = compile_source(source, CompileOptions(library_dirs=libraries, specs=(name,) if name else ()))
     fspa = _only(compiled.automata, path)
-    return fspa, next(each for each in compiled.program.specs if each.name == fspa.name)
+    return fspa, next(candidate for candidate in compiled.program.specs if candidate.name == fspa.name)
 
 
 def _is_text(spec: str) -> bool:
-    """Whether this is the text of a spec or of an artefact, and no path."""
+    """Whether this is the text of a spec or of an artefact, not a path."""
     if "\n" in spec or _is_artefact(spec):
         return True
     return " " in spec and not _FILE.match(spec)
@@ -108,9 +109,9 @@ def _only(automata: tuple[Fspa, ...], file: str) -> Fspa:
         return automata[0]
     names = [fspa.name for fspa in automata]
     if not names:
-        title, way_out = f"`{file}` holds no spec", "declare one: `spec NAME { … }`"
+        title, advice = f"`{file}` holds no spec", "declare one: `spec NAME { … }`"
     else:
         listed = ", ".join(f"`{name}`" for name in names[:10]) + (", …" if len(names) > 10 else "")
         title = f"`{file}` holds {len(names)} specs, and an environment takes one: {listed}"
-        way_out = f"name one of them, e.g. `{file}:{names[0]}`" if file != "<text>" else "give a text with one spec"
-    raise TltlError([Diagnostic("TLT0721", title, help=way_out)])
+        advice = f"name one of them, e.g. `{file}:{names[0]}`" if file != "<text>" else "give a text with one spec"
+    raise TltlError([Diagnostic("TLT0721", title, help=advice)])

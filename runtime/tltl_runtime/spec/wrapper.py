@@ -1,4 +1,4 @@
-"""A spec for anybody's Gymnasium environment: its automaton in the observation, its reward, its verdict."""
+"""Add a spec to any Gymnasium environment: its automaton in the observation, its reward, its verdict."""
 
 from __future__ import annotations
 
@@ -25,40 +25,45 @@ SignalsFunction = Callable[[gymnasium.Env[Any, Any]], Mapping[str, SupportsFloat
 Observation = dict[str, Any]
 
 _MOST_LISTED: Final = 12
-"""Of the signals that a function gave, as many are named in a message."""
+"""A message names at most this many of the signals that a function returned."""
 
 
 class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorArgs):
-    """An environment whose episodes are rewarded and ended by a spec.
+    """An environment whose episodes a spec rewards and ends.
 
-    ``spec`` is whatever :func:`tltl_runtime.spec.task.load_task` takes.  ``signals`` is given the wrapped environment
-    after
-    each step and returns the spec's signals by name, numbers in SI units or bools; without it, the environment's own
-    ``tltl_signals()`` does.  It is called after a reset, too, where the automaton takes no step, so that a signal that
-    it lacks is noticed at once.  ``params`` are values of the spec's params, in SI units, before those that the
-    environment's ``tltl_params()`` offers, where it has one.
+    ``spec`` is an argument of :func:`tltl_runtime.spec.task.load_task`. ``signals`` receives the
+    wrapped environment after each step and returns the spec's signals by name, as numbers in SI
+    units or bools; the default is the environment's own method ``tltl_signals()``. It is also
+    called after a reset, where the automaton takes no step, so that a missing signal is noticed at
+    once. ``params`` are values of the spec's params, in SI units; they take precedence over those
+    of the environment's ``tltl_params()``, if it has that method.
 
-    Observation: ``automaton``, the state as a one-hot vector, and ``progress``, the best so far, shape (1,), in
-    [0, 1], both float32, join the keys of a Dict space; what is in any other space becomes ``observation`` beside them.
+    Observation: the keys ``automaton``, the state as a one-hot vector, and ``progress``, the best
+    so far, shape (1,), in [0, 1], both float32, are added to a Dict space. An observation of any
+    other space becomes the key ``observation`` beside them.
 
-    Reward: that of its mode; the environment's own is ``info["env_reward"]``.  The episode is ``terminated`` by
-    success, by violation and by the environment, ``truncated`` at the spec's limit and by the environment.  Where the
-    environment ends it before the spec does, that is a success iff the trace so far is accepted and the spec is not
-    one to be outlived up to a limit; where there is a limit, a failure costs the step penalties that it left
-    unspent, as a violation does, so that every failed episode totals progress - 1.
+    Reward: the reward of the chosen mode; the environment's own reward is ``info["env_reward"]``.
+    The episode is ``terminated`` by success, by violation and by the environment, and ``truncated``
+    at the spec's limit and by the environment. If the environment ends it before the spec does, it
+    is a success iff the trace so far is accepted and the spec is not judged at a limit that is
+    still ahead. With a limit, a failure costs the step penalties that remained unspent, as a
+    violation does, so every failed episode has a total reward of progress - 1.
 
-    ``info`` gains ``verdict``, ``state``, ``label``, ``progress``, ``success`` (the episode ended here, in success),
-    ``limiting``, ``atoms`` (their values by name, none after a reset) and ``env_reward`` (0 after a reset); what the
-    environment says under these names is lost.
+    ``info`` gains ``verdict``, ``state``, ``unmet`` (the state whose label names what was not met:
+    on a violation the state before the step, else the current one), ``label``, ``progress``,
+    ``success`` (the episode ended here, in success), ``limiting``, ``atoms`` (their values by name,
+    empty after a reset) and ``env_reward`` (0 after a reset). They replace entries of the
+    environment with the same names.
 
-    ``sample`` is what ``signals`` gave last, and ``taken`` the monitor's :class:`~tltlc.monitor.Step` on it, None after
-    a reset: with ``task`` all that a recording of the episode needs.
+    ``sample`` is the last result of ``signals``, and ``taken`` the monitor's
+    :class:`~tltlc.monitor.Step` for it, None after a reset. Together with ``task`` they are all
+    that a recording of the episode needs.
 
     Raises:
-        TltlError: what :func:`load_task` raises; TLT0617 where the environment has a ``tltl_clock_s``, in seconds a
-            step, and the spec's clock is another.
+        TltlError: the errors of :func:`load_task`; TLT0617 if the environment has a
+            ``tltl_clock_s`` (seconds per step) that differs from the spec's clock.
         TypeError: an argument is of another type, or there are no ``signals``.
-        ValueError: the observation space has a key ``automaton`` or ``progress``.
+        ValueError: the observation space already has a key ``automaton`` or ``progress``.
     """
 
     def __init__(
@@ -70,7 +75,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         reward: RewardOptions | None = None,
         params: Mapping[str, float] | None = None,
     ) -> None:
-        # Not copied deeply: `signals` may be a method of something that cannot be, such as a running game.
+        # No deep copy: `signals` may be a method of an object that cannot be copied, such as a running game.
         RecordConstructorArgs.__init__(
             self, _disable_deepcopy=True, spec=spec, signals=signals, reward=reward, params=params
         )
@@ -98,8 +103,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         """Begin an episode in the automaton's initial state.
 
         Raises:
-            MonitorError: TLT0611 and TLT0612, where the signals are not those of the spec.
-            TypeError: ``signals`` returned no mapping.
+            MonitorError: TLT0611 and TLT0612 if the signals are not those of the spec.
+            TypeError: ``signals`` did not return a mapping.
         """
         observation, info = self.env.reset(seed=seed, options=options)
         self._monitor.reset()
@@ -126,8 +131,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         """Take a step in the environment, then one in the automaton.
 
         Raises:
-            MonitorError: what :meth:`tltlc.monitor.Monitor.step` raises.
-            TypeError: ``signals`` returned no mapping.
+            MonitorError: the errors of :meth:`tltlc.monitor.Monitor.step`.
+            TypeError: ``signals`` did not return a mapping.
         """
         observation, env_reward, terminated, truncated, info = self.env.step(action)
         sample = self._sample(f"step {self._monitor.steps + 1}")
@@ -139,11 +144,13 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         settled = step.done and (self._monitor.success or step.verdict == "violated")
         terminated = terminated or settled
         truncated = truncated or (step.done and not terminated)
-        info = {**info, **self._said(step, before), "env_reward": env_reward}
+        info = {**info, **self._step_info(step, before), "env_reward": env_reward}
         return self._observed(observation), step.reward, terminated, truncated, info
 
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
-        """What ``signals`` gives, with all that the spec needs; ``when`` is for messages."""
+        """Return the result of ``signals`` after checking that it has every signal of the spec;
+        ``when`` is for messages.
+        """
         given = self._signals(self.env)
         if not isinstance(given, Mapping):
             raise TypeError(f"{when}: `signals` must return a mapping from names to numbers, not {given!r:.80}")
@@ -153,8 +160,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         self.sample = given
         return given
 
-    def _said(self, step: Step, before: int) -> dict[str, Any]:
-        """What ``info`` has of a step from the state ``before``."""
+    def _step_info(self, step: Step, before: int) -> dict[str, Any]:
+        """Return the entries of ``info`` for a step from the state ``before``."""
         return {
             "verdict": step.verdict,
             "state": step.state,
@@ -167,11 +174,11 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         }
 
     def _observed(self, observation: Any) -> Observation:
-        own = {
+        added = {
             "automaton": self._one_hot[self._monitor.state].copy(),
             "progress": np.array([self._monitor.progress], dtype=np.float32),
         }
-        return {"observation": observation, **own} if self._flat else {**observation, **own}
+        return {"observation": observation, **added} if self._flat else {**observation, **added}
 
 
 def _own_signals(env: gymnasium.Env[Any, Any]) -> Mapping[str, SupportsFloat]:
@@ -180,18 +187,18 @@ def _own_signals(env: gymnasium.Env[Any, Any]) -> Mapping[str, SupportsFloat]:
 
 
 def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
-    """The space with the automaton's keys behind its own."""
+    """Return the space with the automaton's keys added."""
     inner = dict(space.spaces) if isinstance(space, spaces.Dict) else {"observation": space}
-    taken = {"automaton", "progress"} & inner.keys()
-    if taken:
-        raise ValueError(f"the environment's observation already has the key {min(taken)!r}")
+    conflicts = {"automaton", "progress"} & inner.keys()
+    if conflicts:
+        raise ValueError(f"the environment's observation already has the key {min(conflicts)!r}")
     inner["automaton"] = spaces.Box(0.0, 1.0, (states,), np.float32)
     inner["progress"] = spaces.Box(0.0, 1.0, (1,), np.float32)
     return spaces.Dict(inner)
 
 
 def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
-    """TLT0617 where the spec counts its seconds in other steps than the environment takes."""
+    """Raise TLT0617 if the spec's clock differs from the environment's time per step."""
     if fspa.clock_s is None or not env.has_wrapper_attr("tltl_clock_s"):
         return
     clock_s = env.get_wrapper_attr("tltl_clock_s")
@@ -201,11 +208,11 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
 
 
 def _missing(missing: list[str], given: list[str], when: str) -> Diagnostic:
-    """TLT0611, with what there is instead."""
+    """Return TLT0611, with a list of the signals that were given."""
     names = ", ".join(f"`{name}`" for name in missing)
     listed = ", ".join(f"`{name}`" for name in given[:_MOST_LISTED]) + (", …" if len(given) > _MOST_LISTED else "")
     close = get_close_matches(missing[0], given, n=1)
-    way_out = "supply every signal that the atoms use"
+    advice = "supply every signal that the atoms use"
     if close:
-        way_out = f"is `{close[0]}` what the spec calls `{missing[0]}`?"
-    return Diagnostic("TLT0611", f"{when}: no value for {names}; `signals` gave {listed or 'none'}", help=way_out)
+        advice = f"is `{close[0]}` what the spec calls `{missing[0]}`?"
+    return Diagnostic("TLT0611", f"{when}: no value for {names}; `signals` gave {listed or 'none'}", help=advice)

@@ -1,1 +1,1 @@
-"""Helpers that are not about games: formats, processes, hashes."""
+"""Helpers that are independent of games: formats, processes, hashes."""

@@ -1,4 +1,4 @@
-"""Processes that are started so that Ctrl-C, which a terminal sends to all of them, is heard by the first one alone."""
+"""Start child processes with SIGINT blocked, so that only the parent handles Ctrl-C."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from contextlib import contextmanager
 
 @contextmanager
 def interrupts_withheld() -> Iterator[None]:
-    """What is started within never hears of Ctrl-C, not even while it imports; this process does, a moment later.
+    """Block SIGINT in processes started within this context, even while they import; this process
+    receives it afterwards.
 
-    On Windows it hears of it until it ignores it.
+    Windows has no signal masks: there, a child receives Ctrl-C until it ignores it itself.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    # A process begins with the mask of the thread that started it.
+    # A child process inherits the signal mask of the thread that starts it.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

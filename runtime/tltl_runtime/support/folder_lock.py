@@ -1,4 +1,4 @@
-"""Folders that belong to one process at a time."""
+"""Lock a folder for one process at a time."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ _LOCK: Final = ".lock"
 
 @contextmanager
 def held(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
-    """Within, no other process holds the folder, which is made where it is missing.
+    """Lock the folder within this context; it is created if it is missing.
 
-    The system lets go of it when the process ends, however it does.
+    The operating system releases the lock when the process ends, even after a crash.
 
     Raises:
-        TltlError: TLT0005, with ``advice``, where nothing can be written there; ``busy`` where another process has it.
+        TltlError: TLT0005, with ``advice``, if the folder is not writable; ``busy`` if another
+            process has the lock.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""What is said of a file that cannot be taken for what it should hold: nobody vouches for it."""
+"""Errors for files that are damaged, of another version, or inconsistent."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 @record
 class Refusals:
-    """The errors of files that hold ``what``, such as "a policy".
+    """The errors of files that contain ``what``, such as "a policy".
 
-    Their codes are those of a file that is something else or is damaged, of one of another version, and of one in which
-    something is not as it must be; ``again`` says how to make another, such as "train the policy again".
+    There is a code for a file that is something else or damaged, one for another version, and one
+    for invalid content. ``again`` says how to make the file anew, such as "train the policy again".
     """
 
     what: str
@@ -21,15 +21,15 @@ class Refusals:
     again: str
 
     def unreadable(self, name: str, why: str) -> TltlError:
-        """The file called ``name`` is something else, or is damaged."""
+        """Return the error that the file ``name`` is something else or damaged."""
         return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.what}: {why}")
 
     def broken(self, name: str, why: str) -> TltlError:
-        """Something in the file called ``name`` is not as it must be."""
+        """Return the error that something in the file ``name`` is invalid."""
         return self._error(self.broken_code, f"`{name}` is a broken {self.what.partition(' ')[2]}: {why}")
 
     def check_version(self, name: str, found: object, known: int) -> None:
-        """Raise TltlError where the version that a file says it has is not the ``known`` one."""
+        """Raise TltlError if the version ``found`` in a file is not the ``known`` one."""
         if type(found) is int and found == known:
             return
         help_ = "use a newer tltlc" if type(found) is int and found > known else self.again

@@ -1,4 +1,4 @@
-"""Numbers and lines for people."""
+"""Format numbers and lines for people."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from textwrap import wrap
 from typing import Final
 
 WIDTH: Final = 80
-"""Of a terminal for which lines are broken, in characters."""
+"""The width of a terminal, in characters, at which lines are broken."""
 
 _FEW: Final = 25
-"""Of so many things at most it is said how many, and no share."""
+"""Up to this total, counts are shown without a percentage."""
 
 
 def share(value: float, places: int = 2) -> str:
-    """A number in [0, 1] with so many places; 0 and 1 are written for nothing but themselves."""
+    """Return a number in [0, 1] with ``places`` decimals; only exactly 0 and 1 are shown as 0 and 1."""
     text, least = f"{value:.{places}f}", 10.0**-places
     if value < 1.0 <= float(text):
         return f"{1.0 - least:.{places}f}"
@@ -23,35 +23,35 @@ def share(value: float, places: int = 2) -> str:
 
 
 def percent(value: float) -> str:
-    """A number in [0, 1] in percent; 0% and 100% are written for nothing but themselves."""
+    """Return a number in [0, 1] in percent; only exactly 0 and 1 are shown as 0% and 100%."""
     return f"{100.0 * float(share(value)):.0f}%"
 
 
 def percent_exactly(value: float) -> str:
-    """A number in [0, 1] that somebody chose, in percent with the places that it has: ``85%``, ``99.9%``."""
+    """Return a number in [0, 1] that a user chose, in percent with all its decimals: ``85%``, ``99.9%``."""
     return f"{100.0 * value:g}%"
 
 
 def counted(count: int, total: int, what: str = "") -> str:
-    """How many of a number of things, with the share where it takes working out: ``121 of 300 episodes (40%)``."""
-    told = f"{count} of {total}{' ' * bool(what)}{what}"
-    return f"{told} ({percent(count / total)})" if total > _FEW and 0 < count < total else told
+    """Return a count out of a total, with the percentage if the total is large: ``121 of 300 episodes (40%)``."""
+    text = f"{count} of {total}{' ' * bool(what)}{what}"
+    return f"{text} ({percent(count / total)})" if total > _FEW and 0 < count < total else text
 
 
 def between(interval: tuple[float, float]) -> str:
-    """An interval of shares in percent, rounded outwards: what is certain of the one is certain of the other."""
+    """Return an interval of shares in percent, rounded outwards so that the shown interval contains the exact one."""
     low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)
     return f"{low}% to {high}%"
 
 
 def number(value: float, places: int) -> str:
-    """A number with so many places, none of them ``-0``."""
+    """Return a number with ``places`` decimals, never ``-0``."""
     text = f"{value:.{places}f}"
     return text.lstrip("-") if float(text) == 0.0 else text
 
 
 def duration(seconds: float) -> str:
-    """A span of time for people: ``45 s``, ``12 min 5 s``, ``3 h 20 min``."""
+    """Return a span of time for people: ``45 s``, ``12 min 5 s``, ``3 h 20 min``."""
     minutes, rest = divmod(round(seconds), 60)
     if not minutes:
         return f"{rest} s"
@@ -60,15 +60,15 @@ def duration(seconds: float) -> str:
 
 
 def listed(names: Sequence[str], most: int) -> str:
-    """The first ``most`` of some names, with commas between them, and how many more there are."""
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+    """Return the first ``most`` names, separated by commas, and the number of the others."""
+    left_out = len(names) - most
+    return ", ".join(names[:most]) + (f" and {left_out} more" if left_out > 0 else "")
 
 
 def column(head: str, text: str, *, width: int = WIDTH) -> str:
-    """``text`` behind ``head``, broken at words where a line is full, the others below its beginning.
+    """Return ``text`` after ``head``, wrapped at words, with the following lines aligned below its beginning.
 
-    A word that is longer than the room for it stays whole, since it may be copied.
+    A word that is longer than the column stays whole, since it may be copied.
     """
     lines = wrap(text, max(20, width - len(head)), break_long_words=False, break_on_hyphens=False) or [""]
     return f"\n{' ' * len(head)}".join((head + lines[0], *lines[1:]))

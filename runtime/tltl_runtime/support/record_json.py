@@ -1,7 +1,8 @@
-"""Records as JSON and back: the annotations of a record's fields say what its JSON looks like.
+"""Convert records to JSON and back; the annotations of a record's fields determine its JSON.
 
-A record is an object with a key for each field, a mapping from texts an object, a tuple a list; what is a text, a
-number, a bool or None stays what it is, and so does what is annotated as ``Any``, which is JSON data already.
+A record becomes an object with a key per field, a mapping with text keys an object, and a tuple a
+list. A text, number, bool or None stays the same, and so does a field annotated as ``Any``, which
+already contains JSON data.
 """
 
 from __future__ import annotations
@@ -18,29 +19,28 @@ _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a
 
 
 class RecordJsonError(ValueError):
-    """JSON that does not fit a record; the message says where and what was expected."""
+    """JSON that does not fit a record; the message says where, and what was expected."""
 
 
 def to_json(value: object) -> Any:
-    """What ``json.dumps`` takes for a record, a tuple of such or a plain value."""
+    """Return an argument for ``json.dumps`` for a record, a tuple of records or a plain value."""
     names = getattr(type(value), "__match_args__", None)
     if names is not None:
         return {name: to_json(getattr(value, name)) for name in names}
     if isinstance(value, Mapping):
-        return {name: to_json(each) for name, each in value.items()}
-    return [to_json(each) for each in value] if isinstance(value, (tuple, list)) else value
+        return {name: to_json(item) for name, item in value.items()}
+    return [to_json(item) for item in value] if isinstance(value, (tuple, list)) else value
 
 
 def from_json(kind: type[T], data: object, where: str, **known: object) -> T:
-    """The value of type ``kind`` that parsed JSON stands for; ``where`` names it in messages.
+    """Return the value of type ``kind`` that parsed JSON represents; ``where`` names it in messages.
 
-    ``kind`` is a record whose fields are records, tuples, mappings from texts, ``Literal`` texts, plain types, ``Any``
-    or unions of these with None.
-    A key may be missing where its field has a default; numbers are finite.  ``known`` are fields of the record that
-    the JSON does not hold.
+    ``kind`` is a record whose fields are records, tuples, mappings with text keys, ``Literal``
+    texts, plain types, ``Any`` or unions of these with None. A key may be missing if its field has
+    a default. Numbers must be finite. ``known`` are fields of the record that are not in the JSON.
 
     Raises:
-        RecordJsonError: anything else than that.
+        RecordJsonError: the JSON does not fit.
     """
     return cast(T, _record(kind, data, where, known) if known else _value(kind, data, where))
 
@@ -52,14 +52,12 @@ def _value(kind: Any, data: object, where: str) -> object:
             return data
         raise _wrong(where, "one of " + ", ".join(map(repr, get_args(kind))), data)
     if origin is UnionType:
-        return (
-            None if data is None else _value(next(each for each in get_args(kind) if each is not NoneType), data, where)
-        )
+        return None if data is None else _value(next(arg for arg in get_args(kind) if arg is not NoneType), data, where)
     if origin is tuple:
         return _tuple(get_args(kind), data, where)
     if origin is Mapping:
         inner = get_args(kind)[1]
-        return {name: _value(inner, each, f"{where}.{name}") for name, each in _object(data, where).items()}
+        return {name: _value(inner, item, f"{where}.{name}") for name, item in _object(data, where).items()}
     if kind is Any:
         return _any(data, where)
     if kind in _PLAIN:
@@ -76,18 +74,18 @@ def _plain(kind: type, data: object, where: str) -> object:
 
 
 def _fits(data: object) -> bool:
-    """Whether a plain value is finite and, if it is whole, has 64 bits at most."""
+    """Whether a plain value is finite and, if it is an integer, has at most 64 bits."""
     if isinstance(data, int):
         return -(2**63) <= data < 2**63
     return not isinstance(data, float) or isfinite(data)
 
 
 def _any(data: object, where: str) -> object:
-    """JSON data of any kind; what ``json.loads`` reads beyond JSON are numbers that are not finite."""
+    """Return JSON data of any kind. ``json.loads`` also accepts numbers that are not finite; these are errors."""
     if isinstance(data, dict):
-        return {name: _any(each, f"{where}.{name}") for name, each in data.items()}
+        return {name: _any(item, f"{where}.{name}") for name, item in data.items()}
     if isinstance(data, list):
-        return [_any(each, f"{where}[{index}]") for index, each in enumerate(data)]
+        return [_any(item, f"{where}[{index}]") for index, item in enumerate(data)]
     return _plain(float, data, where) if isinstance(data, float) else data
 
 
@@ -99,22 +97,22 @@ def _tuple(kinds: tuple[Any, ...], data: object, where: str) -> tuple[object, ..
     if len(data) != len(kinds):
         raise RecordJsonError(f"`{where}` has {len(data)} values, {len(kinds)} were expected")
     pairs = enumerate(zip(kinds, data, strict=True))
-    return tuple(_value(kind, each, f"{where}[{index}]") for index, (kind, each) in pairs)
+    return tuple(_value(kind, item, f"{where}[{index}]") for index, (kind, item) in pairs)
 
 
 def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) -> object:
-    kinds = {name: each for name, each in _fields(kind).items() if name not in known}
+    kinds = {name: field_kind for name, field_kind in _fields(kind).items() if name not in known}
     unknown = _object(data, where).keys() - kinds.keys()
     if unknown:
         raise RecordJsonError(f"`{where}` has a key `{min(unknown)}`, which nothing is known of")
-    values = {name: _value(kinds[name], each, f"{where}.{name}") for name, each in _object(data, where).items()}
+    values = {name: _value(kinds[name], item, f"{where}.{name}") for name, item in _object(data, where).items()}
     try:
-        made: object = kind(**values, **known)
-        return made
+        instance: object = kind(**values, **known)
+        return instance
     except ValueError as error:
         raise RecordJsonError(f"`{where}`: {error}") from None
     except TypeError as error:
-        # Records name in their message those of the fields that have no default.
+        # The message of a record's constructor lists the missing fields that have no default.
         missing = str(error).partition(" lacks ")[2]
         raise RecordJsonError(f"`{where}` lacks one of the keys {missing}") from None
 
@@ -127,7 +125,7 @@ def _object(data: object, where: str) -> dict[str, object]:
 
 @cache
 def _fields(kind: Any) -> Mapping[str, Any]:
-    """The types of a record's fields, by name, in order."""
+    """Return the types of a record's fields, by name, in order."""
     hints = get_type_hints(kind)
     return {name: hints[name] for name in kind.__match_args__}
 

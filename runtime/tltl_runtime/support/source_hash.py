@@ -1,4 +1,4 @@
-"""What stands for the code of compiler and runtime, which versions alone do not: in a clone they stay the same."""
+"""Hash of all source modules; identifies the code where the version string does not, as in a clone."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _PACKAGES: Final = ("tltlc", "tltl_runtime")
 
 @lru_cache(maxsize=1)
 def sources_hash() -> str:
-    """SHA-256, in hexadecimal, of all modules of compiler and runtime and of their names; line ends do not count.
+    """Return the SHA-256 (hexadecimal) of the names and contents of all modules; line endings do not matter.
 
-    It is computed once, so that it speaks of the code that this process may have loaded.
+    It is computed once, so that it describes the code that this process may have loaded.
     """
     digest = hashlib.sha256()
     for package in _PACKAGES:
-        found = find_spec(package)
-        assert found is not None and found.origin is not None
-        folder = Path(found.origin).parent
+        spec = find_spec(package)
+        assert spec is not None and spec.origin is not None
+        folder = Path(spec.origin).parent
         for path in sorted(folder.rglob("*.py")):
             name = f"{package}/{path.relative_to(folder).as_posix()}"
             content = path.read_bytes().replace(b"\r\n", b"\n")

@@ -1,4 +1,4 @@
-"""Many copies of one automaton at once, as torch tensors; tested equal to :mod:`tltlc.monitor`."""
+"""Run many copies of one automaton at once, as torch tensors; tests check equality with :mod:`tltlc.monitor`."""
 
 from __future__ import annotations
 

@@ -1,10 +1,12 @@
-"""Expressions over columns of samples: straight-line torch code, each subexpression computed once.
+"""Expressions over columns of samples: straight-line torch code that computes each subexpression once.
 
-The code computes what :func:`tltlc.expression.evaluate.evaluate` does, for all environments.  Where that raises an
-error, the value here is arbitrary and the environment is marked as failed; a case that an environment does not
-take cannot fail there.  On a CPU in float64 the values are equal to the last bit, the sign of zeros aside, but for
-``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3, which torch rounds otherwise than the C library (by less than
-1e-12, relatively).
+The code computes what :func:`tltlc.expression.evaluate.evaluate` does, for all environments. Where
+that function raises an error, the value here is arbitrary and the environment is marked as failed;
+a case that an environment does not take cannot fail there.
+
+On a CPU in float64 the values are equal to the last bit, except for the sign of zeros and for
+``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3. Torch rounds these differently from the C
+library, by a relative difference of less than 1e-12.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from tltlc.expression.tree import Expression
 
 
 class Program:
-    """The expressions as one function of columns: shape [signals, N] to values [expressions, N] and failures.
+    """The expressions as one function of columns: from shape [signals, N] to values [expressions, N] and failures.
 
     ``source`` is the Python text of the function.
     """
@@ -53,20 +55,24 @@ class Program:
         self._function: Callable[[Tensor], tuple[tuple[Tensor, ...], tuple[Tensor | None, ...]]] = space["values"]
 
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
-        """The values, shape [expressions, N], and per expression the mask [N] of where it fails, None for nowhere."""
+        """Return the values, shape [expressions, N], and per expression the mask [N] of failures
+        (None for no failures).
+        """
         values, failures = self._function(columns)
         if not values:
             return columns.new_empty((0, columns.shape[1])), ()
         return torch.stack(values), failures
 
 
-def _released(lines: Sequence[str], kept: Collection[str]) -> list[str]:
-    """The lines with each tensor deleted after its last use: its memory is in the cache when the next takes it."""
+def _released(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
+    """Return the lines with each tensor deleted after its last use, so that the next one can reuse
+    its cached memory.
+    """
     seen: set[str] = set()
-    result: list[str] = []
+    released: list[str] = []
     for line in reversed(lines):
-        names = {name for name in re.findall(r"\bt\d+\b", line) if name not in kept} - seen
-        result += [f"del {', '.join(sorted(names))}"] if names else []
-        result.append(line)
+        names = {name for name in re.findall(r"\bt\d+\b", line) if name not in outputs} - seen
+        released += [f"del {', '.join(sorted(names))}"] if names else []
+        released.append(line)
         seen |= names
-    return result[::-1]
+    return released[::-1]

@@ -1,4 +1,4 @@
-"""Formats of floating point numbers: what fits into one, and how a value keeps its sign in a smaller one."""
+"""Floating-point formats: which numbers fit into one, and how values keep their sign in a smaller one."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
 
 
 def narrowed(values: Tensor, dtype: torch.dtype) -> Tensor:
-    """The values in a format; one that would round to 0 becomes the smallest normal number of its sign."""
+    """Return the values in a format; a value that would round to 0 becomes the smallest normal number of its sign."""
     if values.dtype == dtype:
         return values
-    result = values.to(dtype)
+    converted = values.to(dtype)
     least = torch.full_like(values, torch.finfo(dtype).tiny).copysign(values).to(dtype)
-    return torch.where((result == 0.0) & (values != 0.0), least, result)
+    return torch.where((converted == 0.0) & (values != 0.0), least, converted)

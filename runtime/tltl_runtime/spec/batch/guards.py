@@ -1,4 +1,4 @@
-"""Robustness of guards and transitions by truth, for N environments in different states."""
+"""Robustness of guards, and transitions by truth, for N environments in different states."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ Primes = tuple[Implicant, ...]
 
 _LETTER_ATOMS: Final = 12
 _LETTER_CELLS: Final = 1 << 22
-"""A table of edges by state and letter is made for at most so many atoms, and of at most so many cells."""
+"""The lookup table of edges by state and letter is built only up to these numbers of atoms and cells."""
 
 
 class PrimeSets:
-    """K sets of prime implicants; the robustness of a set is the greatest of its primes', ``empty`` where it has none.
+    """K sets of prime implicants. A set's robustness is the greatest one of its primes, ``empty`` if it has none.
 
-    ``values`` are those of the atoms, shape [atoms, N]; a choice is an int64 tensor [N] of numbers of sets.
+    ``values`` are the atoms' values, shape [atoms, N]. A choice is an int64 tensor [N] of set
+    numbers.
     """
 
     def __init__(self, sets: Sequence[Primes], atoms: int, device: torch.device, empty: float) -> None:
@@ -33,26 +34,28 @@ class PrimeSets:
         self._depth = max((len(chosen) for chosen in self._distinct), default=1) or 1
         self._width = max((len(prime) for prime in primes), default=1) or 1
         self._negates = any(not polarity for prime in primes for _, polarity in prime)
-        # A gather costs about as much as four passes over a column.
+        # A gather costs about as much as four passes over a column, so few operations are cheaper without one.
         operations = sum(map(len, primes)) + sum(map(len, self._distinct))
         self._dense = operations <= 4 * self._depth * self._width + 8
         self._literals = self._table(self._literal_rows).to(device)
         self._limiting = self._table(self._limiting_atoms).to(device)
 
     def all(self, values: Tensor) -> Tensor:
-        """The robustness of every set, shape [K, N]."""
-        return self._each(values).index_select(0, self._rows)
+        """Return the robustness of every set, shape [K, N]."""
+        return self._distinct_robustness(values).index_select(0, self._rows)
 
     def of(self, choice: Tensor, values: Tensor) -> Tensor:
-        """The robustness of the chosen sets, shape [N]."""
+        """Return the robustness of the chosen sets, shape [N]."""
         rows = self._rows.index_select(0, choice)
         if self._dense:
-            each = self._each(values)
-            return each[0] if len(self._distinct) == 1 else each.gather(0, rows[None])[0]
+            robustness = self._distinct_robustness(values)
+            return robustness[0] if len(self._distinct) == 1 else robustness.gather(0, rows[None])[0]
         return self._gathered(rows, values).amin(1).amax(0)
 
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
-        """The atom of the first least literal of the first best prime of the chosen sets, int64 [N]; -1 for none."""
+        """Return the atom of the first least literal of the first best prime of the chosen sets,
+        int64 [N]; -1 for none.
+        """
         rows = self._rows.index_select(0, choice)
         literals = self._gathered(rows, values)
         best = literals.amin(1).argmax(0)
@@ -60,41 +63,46 @@ class PrimeSets:
         atoms = self._limiting.index_select(1, rows)
         return atoms.gather(0, (best * self._width + least)[None])[0]
 
-    def _each(self, values: Tensor) -> Tensor:
-        """The robustness of each distinct set, [distinct, N]; primes that sets share are computed once."""
+    def _distinct_robustness(self, values: Tensor) -> Tensor:
+        """Return the robustness of each distinct set, [distinct, N]; primes that sets share are computed once."""
         negated = -values if self._negates else values
-        known: dict[Implicant, Tensor] = {}
+        robustness_of: dict[Implicant, Tensor] = {}
         results = []
         for primes in self._distinct:
             best: Tensor | None = None
             for prime in primes:
-                if prime not in known:
-                    known[prime] = _least([(values if polarity else negated)[atom] for atom, polarity in prime], values)
-                best = known[prime] if best is None else torch.maximum(best, known[prime])
+                if prime not in robustness_of:
+                    robustness_of[prime] = _least(
+                        [(values if polarity else negated)[atom] for atom, polarity in prime], values
+                    )
+                best = robustness_of[prime] if best is None else torch.maximum(best, robustness_of[prime])
             results.append(values.new_full((values.shape[1],), self._empty) if best is None else best)
         return torch.stack(results) if results else values.new_empty((0, values.shape[1]))
 
     def _gathered(self, rows: Tensor, values: Tensor) -> Tensor:
-        """The literals of the chosen sets, shape [primes, literals, N]."""
-        one, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
-        signed = torch.cat([values, -values, one, empty])
-        found = signed.gather(0, self._literals.index_select(1, rows))
-        return found.view(self._depth, self._width, values.shape[1])
+        """Return the literals of the chosen sets, shape [primes, literals, N]."""
+        ones, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
+        signed = torch.cat([values, -values, ones, empty])
+        literals = signed.gather(0, self._literals.index_select(1, rows))
+        return literals.view(self._depth, self._width, values.shape[1])
 
     def _table(self, cells: Callable[[Primes], list[int]]) -> Tensor:
-        """Per distinct set its padded cells: int64 [primes * literals, distinct]."""
+        """Return the padded cells of each distinct set: int64 [primes * literals, distinct]."""
         rows = [cells(primes) for primes in self._distinct]
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
 
     def _literal_rows(self, primes: Primes) -> list[int]:
-        """Rows of (values, negated values, 1, empty); what is missing repeats the first, which changes no extreme."""
+        """Return rows of (values, negated values, 1, empty).
+
+        Padding repeats the first literal or prime, which changes no minimum or maximum.
+        """
         if not primes:
             return [2 * self._atoms + 1] * (self._depth * self._width)
-        result: list[int] = []
+        rows: list[int] = []
         for prime in (*primes, *[primes[0]] * (self._depth - len(primes))):
             row = [atom if polarity else self._atoms + atom for atom, polarity in prime] or [2 * self._atoms]
-            result += row + row[:1] * (self._width - len(row))
-        return result
+            rows += row + row[:1] * (self._width - len(row))
+        return rows
 
     def _limiting_atoms(self, primes: Primes) -> list[int]:
         rows = self._literal_rows(primes)
@@ -102,9 +110,9 @@ class PrimeSets:
 
 
 class Transitions:
-    """The number of the edge that is taken: of those that leave a state exactly one has a true guard.
+    """Finds the number of the edge taken: exactly one edge that leaves a state has a true guard.
 
-    Unless truth is ``checked``, some edge of the state is taken where exclusive atoms hold at once.
+    If truth is not ``checked`` and exclusive atoms hold at once, some edge of the state is taken.
     """
 
     def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:
@@ -118,7 +126,7 @@ class Transitions:
         self._guards = None if fits else PrimeSets([e.guard.primes for e in fspa.edges], self._atoms, device, -1.0)
 
     def edge(self, state: Tensor, truth: Tensor) -> Tensor:
-        """The edges taken from states [N] where the atoms are true or not (bool [atoms, N]), int64 [N].
+        """Return the edges taken from states [N], int64 [N]; ``truth`` of the atoms is bool [atoms, N].
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once.
@@ -127,7 +135,7 @@ class Transitions:
             if self._checked:
                 check_exclusive(self._fspa, truth)
             return self._by_primes(state, truth)
-        # Bytes are added four times as fast as wide integers.
+        # Adding bytes is four times as fast as adding wide integers.
         bits = truth.view(torch.uint8) if self._atoms <= 8 else truth.to(torch.int16)
         letter = bits[0] if self._atoms else torch.zeros_like(state)
         for atom in range(1, self._atoms):
@@ -148,7 +156,7 @@ class Transitions:
         return taken
 
     def _leaving_table(self) -> Tensor:
-        """Per state the edges that leave it, padded with the first: int64 [most edges, states]."""
+        """Return the edges that leave each state, padded with the first one: int64 [most edges, states]."""
         leaving: list[list[int]] = [[] for _ in self._fspa.states]
         for number, edge in enumerate(self._fspa.edges):
             leaving[edge.source].append(number)
@@ -156,9 +164,9 @@ class Transitions:
         return torch.tensor([row + row[:1] * (most - len(row)) for row in leaving], dtype=torch.int64).t().contiguous()
 
     def _edge_table(self) -> Tensor:
-        """int64 [states * letters]; a letter has the bit 2^i iff atom i is true.
+        """Return the edge for each state and letter, int64 [states * letters]; bit 2^i of a letter is atom i.
 
-        -1 stands where exclusive atoms are true at once, if that is checked.
+        If truth is checked, letters in which exclusive atoms hold at once have -1.
         """
         letters = torch.arange(self._letters)
         table = torch.zeros((len(self._fspa.states), self._letters), dtype=torch.int64)
@@ -178,7 +186,7 @@ class Transitions:
 def _least(literals: Sequence[Tensor], values: Tensor) -> Tensor:
     if not literals:
         return values.new_ones((values.shape[1],))
-    result = literals[0]
+    least = literals[0]
     for literal in literals[1:]:
-        result = torch.minimum(result, literal)
-    return result
+        least = torch.minimum(least, literal)
+    return least

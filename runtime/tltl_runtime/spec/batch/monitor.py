@@ -20,12 +20,17 @@ _VIOLATED = VERDICTS.index("violated")
 
 
 class BatchStep:
-    """What one sample did in each of N environments; every tensor has shape [N] and is never changed later.
+    """The result of one sample in each of N environments; every tensor has shape [N] and is never modified.
 
-    ``state`` int64; ``done`` bool: an episode ends here, or ended before; ``success`` bool: it ended in success,
-    now or before; ``progress`` the best so far, in [0, 1]; ``reward`` of the step, 0 past the end of the episode;
-    ``edge`` int64: the number of the edge taken; ``values`` [atoms, N]: those of the atoms, in [-1, 1].
-    What else there is to know is computed when it is asked for.
+    - ``state``: int64.
+    - ``done``: bool, the episode has ended, with this step or before.
+    - ``success``: bool, the episode has ended in success.
+    - ``progress``: the best so far, in [0, 1].
+    - ``reward``: the reward of this step, 0 after the end of the episode.
+    - ``edge``: int64, the number of the edge taken.
+    - ``values``: the values of the atoms, [atoms, N], in [-1, 1].
+
+    The properties are computed on first use.
     """
 
     def __init__(
@@ -50,7 +55,7 @@ class BatchStep:
 
     @cached_property
     def truncated(self) -> Tensor:
-        """Whether an episode ends here by the spec's limit, neither in success nor in a violation, bool."""
+        """Whether an episode has ended at the spec's limit, neither in success nor in a violation, bool."""
         return self.done & ~self.success & (self.verdict != _VIOLATED)
 
     @cached_property
@@ -65,30 +70,36 @@ class BatchStep:
 
     @cached_property
     def limiting(self) -> Tensor:
-        """The atom that bounds the nearest edge that would have improved, int64; -1 as None in the scalar monitor."""
+        """The atom that bounds the nearest edge that would have improved, int64; -1 where the
+        scalar monitor has None.
+        """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 
 
 class BatchMonitor:
     """Runs ``count`` copies of an automaton; the environments may be in different states and episodes.
 
-    Equal to as many :class:`tltlc.monitor.Monitor`: on a CPU in float64 to the last bit (the sign of zeros aside)
-    where torch computes an operation as C does, else to within 1e-12 (``exp``, ``tanh``, ``sqrt``, powers other
-    than 2 and 3, the discounted penalty).  An atom so near to 0, or to a border between cases, may be true in one and
-    false in the other; in float32 that is within 1e-6.  Atoms are computed in float64 where a number of the spec, such
-    as the end of a range, is too large or too small for ``dtype``.
-    As there, an environment that has finished goes on with its automaton, with reward 0, until it is reset.
+    It equals ``count`` :class:`tltlc.monitor.Monitor` objects. On a CPU in float64 it is equal to
+    the last bit (except for the sign of zeros) where torch computes an operation as C does, else
+    within 1e-12 (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty).
+    An atom whose value is that close to 0, or to a border between cases, may be true in one monitor
+    and false in the other. In float32 all of this holds within 1e-6. If a number of the spec, such
+    as the end of a range, is too large or too small for ``dtype``, atoms are computed in float64.
+    As in the scalar monitor, an environment whose episode has ended continues with its automaton,
+    with reward 0, until it is reset.
 
-    ``state`` int64 [N], ``steps`` and ``progress`` [N] speak of the last step; ``clamped`` counts values out of range,
-    by the names of signals and atoms.  ``signal_names`` is the order of signals in a tensor.
+    ``state`` int64 [N], ``steps`` and ``progress`` [N] describe the last step. ``clamped`` counts
+    values out of range, by the names of signals and atoms. ``signal_names`` is the order of signals
+    in a tensor.
 
-    To check samples is to wait for the device a few times a step.  With ``checked=False`` a step waits for nothing:
-    values out of range are clamped and not counted, what is not a number makes its atoms false and may come out in
-    progress and reward, and where exclusive atoms hold at once some edge of the state is taken.
+    Checking samples waits for the device a few times per step. With ``checked=False`` a step never
+    waits: values out of range are clamped and not counted, a NaN makes its atoms false and may
+    appear in progress and reward, and if exclusive atoms hold at once, some edge of the state is
+    taken.
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
-        TypeError: ``fspa`` is no automaton, or ``reward`` no options.
+        TypeError: ``fspa`` is not an automaton, or ``reward`` is not RewardOptions.
         ValueError: ``count`` is below 1.
     """
 
@@ -124,7 +135,7 @@ class BatchMonitor:
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
-        """Take the environments of a mask (bool [N], None: all) back to the state before the first sample."""
+        """Return the environments of a mask (bool [N]; None for all) to the state before the first sample."""
         fresh = self._start()
         if mask is not None:
             chosen = torch.as_tensor(mask, device=self.device)
@@ -135,24 +146,24 @@ class BatchMonitor:
         self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
 
     def step(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> BatchStep:
-        """Take one sample of each environment: an array [N] per name of a signal, or one [N, signals].
+        """Take one sample of each environment: a mapping of signal names to arrays [N], or one array [N, signals].
 
-        Tensors, NumPy arrays and lists will do; numbers are in SI units, bools count as 0 and 1.  The order in one
-        array is ``signal_names``; names that no atom uses are ignored.
+        Tensors, NumPy arrays and lists are accepted. Numbers are in SI units; bools count as 0 and
+        1. The order in a single array is ``signal_names``. Names that no atom uses are ignored.
 
         Raises:
-            MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
-                TLT0614 exclusive atoms that hold at once.  No environment moves.
-            ValueError: an array of another shape.
+            MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
+                a value, TLT0614 exclusive atoms that hold at once. No environment changes.
+            ValueError: an array has another shape.
         """
         return self._take(self._samples.atom_values(signals))
 
     def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
-        """Take one sample that is given as the values of the atoms, shape [N, atoms], each in [-1, 1].
+        """Take one sample given as the values of the atoms, shape [N, atoms], each in [-1, 1].
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms that hold at once.  No environment moves.
-            ValueError: a value is not in [-1, 1], or another shape.
+            MonitorError: TLT0614 exclusive atoms that hold at once. No environment changes.
+            ValueError: a value is not in [-1, 1], or the shape is different.
         """
         given = torch.as_tensor(values)
         fits = given.shape == (self.count, len(self.fspa.atoms))
@@ -161,7 +172,7 @@ class BatchMonitor:
         return self._take(given.to(self.device, self.dtype).t().contiguous())
 
     def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
-        """The states as rows with a single 1, shape [N, states]."""
+        """Return the states as one-hot rows, shape [N, states]."""
         rows = torch.zeros((self.count, len(self.fspa.states)), dtype=dtype, device=self.device)
         return rows.scatter_(1, self.state[:, None], 1.0)
 
@@ -194,7 +205,7 @@ class BatchMonitor:
         return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
 
     def _start(self) -> tuple[Tensor, ...]:
-        """State, steps, progress, done, success and the mode's memory before the first sample."""
+        """Return state, steps, progress, done, success and the mode's memory before the first sample."""
         numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
         flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)
         if self._potential is not None:

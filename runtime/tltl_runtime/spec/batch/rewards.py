@@ -1,7 +1,8 @@
 """Algorithm 1 and the other reward modes for N environments (semantics, section 4).
 
-The order of operations is that of :mod:`tltlc.monitor.reward` and :mod:`tltlc.monitor.reward_modes`, where each
-deviation from the paper is named.  What depends on states alone is in tables by edge.
+The order of operations is the same as in :mod:`tltlc.monitor.reward` and
+:mod:`tltlc.monitor.reward_modes`, which list the deviations from the paper. Lookup tables by edge
+store what depends only on states.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 
 
 class Outcomes:
-    """Progress, ends and rewards of Algorithm 1; all tensors that it takes and gives have shape [N]."""
+    """Progress, ends and rewards of Algorithm 1; all argument and result tensors have shape [N]."""
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._options, self._limit = options, fspa.limit_steps
@@ -38,19 +39,19 @@ class Outcomes:
         verdicts = [states[e.target].verdict for e in edges]
         self._violated = numbers([float(verdict == "violated") for verdict in verdicts])
         self._base = numbers([scalar.base_progress[e.target] for e in edges])
-        # Of a spec that is judged at its limit: 1 where it is settled well, else the share of T where it may yet be.
+        # The progress of a spec judged at its limit: 1 if satisfied, the share of T if undecided, else 0.
         self._settled = numbers([float(verdict == "satisfied") for verdict in verdicts])
         self._open = numbers([float(verdict in ("holding", "pending")) for verdict in verdicts])
         staying = [scalar.improving[e.source] if e.source == e.target else () for e in edges]
         primes = [tuple(prime for edge in chosen for prime in edge.guard.primes) for chosen in staying]
         self.nearest = PrimeSets(primes, len(fspa.atoms), device, -1.0)
-        """Per edge the primes of the edges that would have improved where the automaton stayed."""
+        """Per edge on which the automaton stays, the primes of the edges that would have improved."""
         self._approaches = any(primes) and not self._by_share
         self._size = numbers([float(fspa.spec_size or 1)])
         self._limit_number = numbers([float(self._limit or 1)])
 
     def progress(self, edge: Tensor, values: Tensor, steps: Tensor) -> Tensor:
-        """The progress of this step alone, in [0, 1]: lines 11 to 18 of Algorithm 1."""
+        """Return the progress of this step alone, in [0, 1]: lines 11 to 18 of Algorithm 1."""
         if self._by_share:
             settled = self._settled.index_select(0, edge)
             if self._limit is None:
@@ -60,20 +61,20 @@ class Outcomes:
         base = self._base.index_select(0, edge)
         if not self._approaches:
             return base
-        # Where nothing improves the nearest is -1, which adds 0.
+        # Without improving edges, the nearest robustness is -1, which adds 0.
         return base.add_(approach(self.nearest.of(edge, values), self._size))
 
     def done(self, edge: Tensor, steps: Tensor) -> Tensor:
-        """Whether an episode ends with this step."""
+        """Return whether an episode ends with this step."""
         ends = self._ends.index_select(0, edge)
         return ends if self._limit is None else ends.logical_or_(steps >= self._limit)
 
     def accepting(self, edge: Tensor) -> Tensor:
-        """Whether the target of the edge is accepting."""
+        """Return whether the target of the edge is accepting."""
         return self._accepting.index_select(0, edge)
 
     def reward(self, edge: Tensor, rise: Tensor, steps: Tensor) -> Tensor:
-        """The rise of progress less the step penalty and, on a violation, the terminal penalty."""
+        """Return the rise of progress less the step penalty and, on a violation, the terminal penalty."""
         if self._limit is None:
             return rise
         reward = rise - 1 / self._limit
@@ -84,17 +85,17 @@ class Outcomes:
         return reward.sub_(self._penalty(steps).mul_(violated))
 
     def _penalty(self, steps: Tensor) -> Tensor:
-        """The step penalties that a violation saves: ``(T - t) / T``, or what they are worth discounted."""
+        """Return the step penalties that a violation saves: ``(T - t) / T``, or their discounted sum."""
         assert self._limit is not None
-        left = self._limit - steps
+        remaining = self._limit - steps
         gamma = self._options.gamma
         if self._options.terminal_penalty == "undiscounted" or gamma == 1.0:
-            return left.div_(self._limit_number)
-        return torch.pow(gamma, left).neg_().add_(1.0).div_((1 - gamma) * self._limit_number)
+            return remaining.div_(self._limit_number)
+        return torch.pow(gamma, remaining).neg_().add_(1.0).div_((1 - gamma) * self._limit_number)
 
 
 class EdgeMode:
-    """The robustness of leaving the state, but not into a trap; 0 where no edge leaves it."""
+    """The robustness of leaving the state, except into a trap; 0 if no edge leaves it."""
 
     def __init__(self, fspa: Fspa, device: torch.device) -> None:
         leaving: list[list[Implicant]] = [[] for _ in fspa.states]
@@ -104,12 +105,12 @@ class EdgeMode:
         self._leaving = PrimeSets([tuple(primes) for primes in leaving], len(fspa.atoms), device, 0.0)
 
     def reward(self, source: Tensor, values: Tensor) -> Tensor:
-        """In [-1, 1]; ``source``: the states before the step."""
+        """Return the reward, in [-1, 1]; ``source`` are the states before the step."""
         return self._leaving.of(source, values) + 0.0
 
 
 class PotentialMode:
-    """Success, shaped by progress as a potential."""
+    """Success, shaped with progress as the potential."""
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         scalar = tables(fspa)
@@ -120,13 +121,13 @@ class PotentialMode:
         self._gamma = options.gamma
 
     def start(self, count: int) -> Tensor:
-        """The potential before the first sample."""
+        """Return the potential before the first sample."""
         return self._base[:1].repeat(count)
 
     def reward(
         self, before: Tensor, target: Tensor, values: Tensor, done: Tensor, success: Tensor
     ) -> tuple[Tensor, Tensor]:
-        """The reward and the potential after the step."""
+        """Return the reward and the potential after the step."""
         potential = self._base.index_select(0, target) + approach(self._improving.of(target, values), self._size)
         after = potential.masked_fill_(done, 0.0)
         return (success + self._gamma * after).sub_(before), after
@@ -146,31 +147,34 @@ class SparseMode:
         self._dtype = dtype
 
     def start(self, count: int) -> Tensor:
-        """The width of the run to each state, [states, N]: the greatest least edge robustness; -2 for no run."""
+        """Return the initial width of the run to each state, [states, N].
+
+        The width is the maximum over runs of the least edge robustness; -2 stands for no run.
+        """
         widths = torch.full((len(self._incoming), count), -2.0, dtype=self._dtype, device=self._sources.device)
         widths[0] = 1.0
         return widths
 
     def reward(self, widths: Tensor, target: Tensor, values: Tensor, done: Tensor) -> tuple[Tensor, Tensor]:
-        """The reward, in [-1, 1], and the widths after the step."""
-        through = torch.minimum(widths.index_select(0, self._sources), self._guards.all(values))
+        """Return the reward, in [-1, 1], and the widths after the step."""
+        widths_through_edges = torch.minimum(widths.index_select(0, self._sources), self._guards.all(values))
         after = torch.full_like(widths, -2.0)
         for state, edges in enumerate(self._incoming):
             if len(edges):
-                after[state] = through.index_select(0, edges).amax(0)
+                after[state] = widths_through_edges.index_select(0, edges).amax(0)
         accepted = self._accepting.index_select(0, target)
-        others = after.masked_fill(self._accepting[:, None] == accepted, -1.0).amax(0)
-        distance = -others.clamp_(-1.0, 0.0)
+        opposite_width = after.masked_fill(self._accepting[:, None] == accepted, -1.0).amax(0)
+        distance = -opposite_width.clamp_(-1.0, 0.0)
         return torch.where(accepted, distance, -distance).masked_fill_(~done, 0.0) + 0.0, after
 
 
 def approach(nearest: Tensor, size: Tensor) -> Tensor:
-    """What line 14 adds, ``(1 + min(0, nearest)) / S``; changes ``nearest``."""
+    """Return what line 14 adds, ``(1 + min(0, nearest)) / S``; modifies ``nearest`` in place."""
     return nearest.clamp_(max=0.0).add_(1.0).div_(size)
 
 
 def _ends(scalar: Tables, source: int, target: int, options: RewardOptions) -> bool:
-    """Whether an edge ends an episode, its limit aside."""
+    """Whether an edge ends an episode, apart from the limit."""
     reached = scalar.fspa.states[target]
     if options.termination == "paper":
         return source == target and not scalar.improving[target]

@@ -1,4 +1,4 @@
-"""From the signals of N environments to the values of the atoms: checks, clamping, predicates."""
+"""Compute the values of the atoms from the signals of N environments: checks, clamping, predicates."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ from tltlc.expression.tree import Const, nodes
 from tltlc.monitor.samples import ROUNDING, WAYS_OUT, MonitorError, Samples, listed, param_values, shown
 
 _NAMED = 5
-"""An error names at most so many environments."""
+"""An error message names at most this many environments."""
 
 
 class BatchSamples:
     """Computes the values of the atoms, shape [atoms, N], from the signals of N environments.
 
-    ``clamped`` counts, per name of a signal or atom, the values that had to be clamped, as the notices of the
-    scalar monitor report (an atom's only where it is more than 1e-9 outside [-1, 1]).  Unless they are ``checked``,
-    values are clamped and nothing is counted or refused.
+    ``clamped`` counts the clamped values per name of a signal or atom, as the notices of the scalar
+    monitor report them (an atom's only if it is more than 1e-9 outside [-1, 1]). If values are not
+    ``checked``, they are clamped without counts or errors.
 
-    Where a number of the automaton is too large or too small for ``dtype``, atoms are computed in float64.
+    If a number of the automaton is too large or too small for ``dtype``, atoms are computed in
+    float64.
     """
 
     def __init__(
@@ -46,7 +47,7 @@ class BatchSamples:
         self._given = dtype
         self._dtype = dtype = dtype if fits(_numbers(fspa, values), dtype) else torch.float64
         self._program = Program([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
-        # An open end is the greatest finite number: what is clamped to that one is infinite.
+        # An open end is the greatest finite number: only infinite values are clamped to it.
         most = torch.finfo(dtype).max
         low = [0.0 if s.type == "bool" else -most if s.low is None else s.low for s in fspa.signals]
         high = [1.0 if s.type == "bool" else most if s.high is None else s.high for s in fspa.signals]
@@ -56,14 +57,15 @@ class BatchSamples:
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
 
     def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
-        """The values of the atoms, each in [-1, 1], shape [atoms, N], with the signs that they are computed with.
+        """Return the values of the atoms, each in [-1, 1], shape [atoms, N], with the signs that
+        they were computed with.
 
-        ``signals``: an array [N] for each name (names that no atom uses are ignored), or one of shape
-        [N, signals] in the order of ``names``.
+        ``signals`` is an array [N] for each name (names that no atom uses are ignored), or one
+        array [N, signals] in the order of ``names``.
 
         Raises:
-            MonitorError: TLT0611 signals are missing, TLT0612 one has no finite value or is no truth value, TLT0613
-                an atom has no value; the message names the environments.
+            MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value or is
+                not a truth value, TLT0613 an atom has no value. The message names the environments.
             ValueError: an array has another shape.
         """
         columns = self._columns(signals)
@@ -85,7 +87,7 @@ class BatchSamples:
         return narrowed(values, self._given)
 
     def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
-        """The signals that the atoms use, shape [signals, N], a contiguous row each."""
+        """Return the signals that the atoms use, shape [signals, N], with contiguous rows."""
         if not isinstance(signals, Mapping):
             given = torch.as_tensor(signals)
             if given.shape != (self._count, len(self.names)):
@@ -93,10 +95,10 @@ class BatchSamples:
             columns = given.t()
             if columns.is_contiguous():
                 return columns.to(self._device, self._dtype)
-            # Twice as fast as `contiguous`.
-            result = torch.empty(columns.shape, dtype=self._dtype, device=self._device)
-            result.t().copy_(given)
-            return result
+            # This is twice as fast as `contiguous`.
+            contiguous = torch.empty(columns.shape, dtype=self._dtype, device=self._device)
+            contiguous.t().copy_(given)
+            return contiguous
         missing = [name for name in self.names if name not in signals]
         if missing:
             raise _error("TLT0611", f"no value for {listed(missing)}")
@@ -109,7 +111,9 @@ class BatchSamples:
         return torch.stack(rows)
 
     def _in_range(self, columns: Tensor) -> bool:
-        """Whether no signal has to be clamped; the extremes of numbers are NaN where one of them is."""
+        """Whether no signal has to be clamped. A NaN makes both extremes of its row NaN, which
+        fails the comparison.
+        """
         extremes = zip(columns.amin(1).tolist(), columns.amax(1).tolist(), self._ranges, strict=True)
         return all(least >= low and greatest <= high for least, greatest, (low, high) in extremes)
 
@@ -117,9 +121,11 @@ class BatchSamples:
         finite = torch.isfinite(given)
         for row, name in enumerate(self.names):
             if not bool(finite[row].all()):
-                where = _where(~finite[row])
-                value = float(given[row, where[0]])
-                raise _error("TLT0612", f"{_named(where)}: the signal `{name}` is {value}, not a finite number")
+                indices = _indices(~finite[row])
+                value = float(given[row, indices[0]])
+                raise _error(
+                    "TLT0612", f"{_environments(indices)}: the signal `{name}` is {value}, not a finite number"
+                )
         for row in self._bools:
             self._check_truth(row, given[row])
         for row, changed in enumerate((given != columns).sum(1).tolist()):
@@ -129,34 +135,36 @@ class BatchSamples:
     def _check_truth(self, row: int, column: Tensor) -> None:
         wrong = (column != 0.0) & (column != 1.0)
         if bool(wrong.any()):
-            where = _where(wrong)
-            value = shown(float(column[where[0]]))
-            raise _error("TLT0612", f"{_named(where)}: the signal `{self.names[row]}` is {value}, not true or false")
+            indices = _indices(wrong)
+            value = shown(float(column[indices[0]]))
+            raise _error(
+                "TLT0612", f"{_environments(indices)}: the signal `{self.names[row]}` is {value}, not true or false"
+            )
 
     def _check_atoms(self, columns: Tensor, raw: Tensor, values: Tensor, failures: Sequence[Tensor | None]) -> None:
         unusable = ~torch.isfinite(raw)
         for row, failed in enumerate(failures):
             wrong = unusable[row] if failed is None else unusable[row] | failed
             if bool(wrong.any()):
-                raise self._atom_error(row, _where(wrong), columns)
+                raise self._atom_error(row, _indices(wrong), columns)
         for row, outside in enumerate(((raw - values).abs() > ROUNDING).sum(1).tolist()):
             if outside:
                 name = self._fspa.atoms[row].name
                 self.clamped[name] = self.clamped.get(name, 0) + int(outside)
 
-    def _atom_error(self, row: int, where: Sequence[int], columns: Tensor) -> MonitorError:
-        """The scalar monitor says what is wrong at the sample of the first environment."""
-        sample = dict(zip(self.names, columns[:, where[0]].tolist(), strict=True))
+    def _atom_error(self, row: int, indices: Sequence[int], columns: Tensor) -> MonitorError:
+        """Return the error of an atom; the scalar monitor finds the reason at the sample of the first environment."""
+        sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
         title = f"the atom `{self._fspa.atoms[row].name}` is too large to compute"
         try:
             Samples(self._fspa, self._params, []).atom_values(sample, 1)
         except MonitorError as error:
             title = error.diagnostics[0].title.removeprefix("step 1: ")
-        return _error("TLT0613", f"{_named(where)}: {title}")
+        return _error("TLT0613", f"{_environments(indices)}: {title}")
 
 
 def _numbers(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """All numbers that the values of the atoms are computed from, but for those of the samples."""
+    """Yield all numbers that the values of the atoms are computed from, except those of the samples."""
     for atom in fspa.atoms:
         yield from (node.value for node in nodes(atom.expression) if isinstance(node, Const))
     for signal in fspa.signals:
@@ -165,31 +173,31 @@ def _numbers(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
 
 
 def check_exclusive(fspa: Fspa, truth: Tensor) -> None:
-    """Raises MonitorError (TLT0614) where two atoms that a declaration calls exclusive hold at once.
+    """Raise MonitorError (TLT0614) if two atoms that a declaration calls exclusive hold at once.
 
-    ``truth``: bool [atoms, N].
+    ``truth`` is bool [atoms, N].
     """
     for group in fspa.exclusive:
         held = truth[list(group)]
         wrong = held.sum(0) > 1
         if bool(wrong.any()):
-            where = _where(wrong)
+            indices = _indices(wrong)
             names = [fspa.atoms[atom].name for atom in group]
-            holding = [name for name, holds in zip(names, held[:, where[0]].tolist(), strict=True) if holds]
-            text = f"{_named(where)}: {listed(holding)} hold at once, against `exclusive {', '.join(names)}`"
+            holding = [name for name, holds in zip(names, held[:, indices[0]].tolist(), strict=True) if holds]
+            text = f"{_environments(indices)}: {listed(holding)} hold at once, against `exclusive {', '.join(names)}`"
             raise _error("TLT0614", text)
 
 
-def _where(mask: Tensor) -> list[int]:
+def _indices(mask: Tensor) -> list[int]:
     return [int(index) for index in mask.nonzero()[:, 0].tolist()]
 
 
-def _named(where: Sequence[int]) -> str:
+def _environments(indices: Sequence[int]) -> str:
     """``environment 3``, ``environments 3 and 7``, ``environments 0, 1, 2, 3, 4 and 12 more``."""
-    if len(where) == 1:
-        return f"environment {where[0]}"
-    more = len(where) - _NAMED
-    first, last = (where[:_NAMED], f"{more} more") if more > 0 else (where[:-1], str(where[-1]))
+    if len(indices) == 1:
+        return f"environment {indices[0]}"
+    left_out = len(indices) - _NAMED
+    first, last = (indices[:_NAMED], f"{left_out} more") if left_out > 0 else (indices[:-1], str(indices[-1]))
     return f"environments {', '.join(map(str, first))} and {last}"
 
 

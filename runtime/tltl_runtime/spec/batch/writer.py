@@ -1,4 +1,4 @@
-"""Straight-line torch code for expressions over columns of samples, line by line."""
+"""Write straight-line torch code for expressions over columns of samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
 
 @record
 class Term:
-    """The name of a tensor, or a constant (a number, or a truth value), and the name of the mask where it fails."""
+    """The name of a tensor, or a constant (number or truth value), and the name of the mask where it fails."""
 
     name: str
     constant: float | None = None
@@ -25,10 +25,10 @@ class Term:
 
 
 class Writer:
-    """Writes lines that assign to new names, each from ``columns``, ``constants`` and names before it.
+    """Writes lines that assign to new names, each from ``columns``, ``constants`` and earlier names.
 
-    ``columns[i]`` is that of the i-th signal.  Equal right-hand sides are written once.  ``constants`` are numbers by
-    the names of the tensors without dimensions that hold them.
+    ``columns[i]`` is the column of the i-th signal. Equal right-hand sides are written once.
+    ``constants`` are numbers, by the names of the zero-dimensional tensors for them.
     """
 
     def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
@@ -39,11 +39,11 @@ class Writer:
         self.constants: dict[str, float] = {}
 
     def filled(self, constant: float) -> str:
-        """The name of a column that holds a constant."""
+        """Return the name of a column filled with a constant."""
         return self._line(f"columns.new_full((columns.shape[1],), {self._held(constant)}.item())")
 
     def number(self, node: Expression) -> Term:
-        """The term of an expression."""
+        """Return the term of an expression."""
         if isinstance(node, Const):
             return self._constant(node.value)
         if isinstance(node, Param):
@@ -83,10 +83,10 @@ class Writer:
         if node.op == "/":
             top, bottom = (self._operand(term) for term in args)
             if args[1].constant is None:
-                own: str | None = self._line(f"{bottom} == 0.0")
+                own_failure: str | None = self._line(f"{bottom} == 0.0")
             else:
-                own = self._everywhere() if args[1].constant == 0.0 else None
-            return Term(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own]))
+                own_failure = self._everywhere() if args[1].constant == 0.0 else None
+            return Term(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own_failure]))
         if node.op == "-":
             return Term(self._line(f"{self._operand(args[0])} - {self._operand(args[1])}"), None, fails)
         inner = args[0].name
@@ -107,18 +107,18 @@ class Writer:
             return Term(square if factors == 2 else self._line(f"{square} * {base.name}"), None, fails)
         left, right = self._operand(base), self._operand(exponent)
         result = self._line(f"pow({left}, {right})")
-        own = self._line(f"isfinite({left}) & isfinite({right}) & ~isfinite({result})")
-        return Term(result, None, self._any_of([fails, own]))
+        own_failure = self._line(f"isfinite({left}) & isfinite({right}) & ~isfinite({result})")
+        return Term(result, None, self._any_of([fails, own_failure]))
 
     def _extreme(self, op: str, first: Term, second: Term) -> Term:
-        """As Python's ``min`` and ``max``: the second one only where it is strictly beyond the first."""
+        """Return ``min`` or ``max`` as in Python: the second term only if it is strictly beyond the first."""
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
             return Term(self._line(f"clamp({first.name}, {'max' if op == 'min' else 'min'}={second.name})"))
-        one, other = self._operand(first), self._operand(second)
-        beyond = self._line(f"{other} {'<' if op == 'min' else '>'} {one}")
-        return Term(self._line(f"where({beyond}, {other}, {one})"))
+        first_name, second_name = self._operand(first), self._operand(second)
+        is_beyond = self._line(f"{second_name} {'<' if op == 'min' else '>'} {first_name}")
+        return Term(self._line(f"where({is_beyond}, {second_name}, {first_name})"))
 
     def _when(self, node: When) -> Term:
         result = self.number(node.otherwise)
@@ -129,8 +129,8 @@ class Writer:
                 continue
             case = self.number(value)
             taken = self._truth(test)
-            other = self._both(self._line(f"~{taken}"), result.fails) if result.fails else None
-            fails = self._any_of([test.fails, self._both(taken, case.fails), other])
+            otherwise_fails = self._both(self._line(f"~{taken}"), result.fails) if result.fails else None
+            fails = self._any_of([test.fails, self._both(taken, case.fails), otherwise_fails])
             values = f"{self._operand(case)}, {self._operand(result)}"
             result = Term(self._line(f"where({taken}, {values})"), None, fails)
         return result
@@ -151,20 +151,25 @@ class Writer:
         return Term(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
 
     def _connective(self, node: Condition) -> Term:
-        """From the last part to the first: a part behind one that decides is not computed and cannot fail."""
+        """Return ``and`` or ``or``, built from the last part to the first.
+
+        A part after one that decides the result cannot fail: its failure counts only where the
+        parts before it are undecided.
+        """
         sign = "&" if node.op == "and" else "|"
         result = self._condition(node.args[-1])
         for part in reversed(node.args[:-1]):
             first = self._condition(part)
             truth, rest = self._truth(first), self._truth(result)
-            goes_on = truth if node.op == "and" else self._line(f"~{truth}")
-            fails = self._any_of([first.fails, self._both(goes_on, result.fails)])
+            undecided = truth if node.op == "and" else self._line(f"~{truth}")
+            fails = self._any_of([first.fails, self._both(undecided, result.fails)])
             result = Term(self._line(f"{truth} {sign} {rest}"), None, fails)
         return result
 
     def _folded(self, node: Op, args: list[Term], fails: str | None) -> Term:
-        """The value of an operation on constants."""
-        # The exponent's own node tells a product from a power, so a constant one stays as it is written.
+        """Return the value of an operation on constants."""
+        # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
+        # stay a power, so it is not passed on as a literal.
         parts = tuple(Const(term.constant if term.constant is not None else math.nan) for term in args)
         if node.op == "^" and not isinstance(node.args[1], Const) and parts[1].value in MULTIPLIED_EXPONENTS:
             try:
@@ -186,7 +191,9 @@ class Writer:
         return (f"({text})" if text.startswith("-") else text), value
 
     def _operand(self, term: Term) -> str:
-        """The term as a tensor, which torch takes faster than a number; and with numbers it divides less exactly."""
+        """Return the term as a tensor. Torch handles tensors faster than numbers, and divides by
+        numbers less exactly.
+        """
         return term.name if term.constant is None else self._held(term.constant)
 
     def _held(self, constant: float) -> str:
