@@ -16,7 +16,7 @@ __all__ = ["Playing", "WorkerError", "WorkerVectorEnv", "make_vec"]
 def __getattr__(name: str) -> object:
     if name != "make_vec":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    # The game needs pybullet, and anybody's environments do not.
+    # Importing the game needs pybullet, which other environments do not need.
     from tltl_runtime.vector.game import make_vec
 
     return make_vec

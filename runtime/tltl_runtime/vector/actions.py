@@ -1,4 +1,4 @@
-"""Whether a batch of actions has one for each environment, before any of it is sent."""
+"""Check that a batch of actions has one for each environment, before any action is sent."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 
 def check_batch(space: Space[Any], batch: Any, count: int) -> None:
-    """Raise ValueError where ``batch`` has not ``count`` values of a space; the range of a Box is left to its owner."""
+    """Raise ValueError if ``batch`` does not have ``count`` values of a space; the environment
+    checks the range of a Box.
+    """
     if isinstance(space, spaces.Dict):
         if not isinstance(batch, Mapping) or batch.keys() != space.keys():
             raise ValueError(f"a batch of actions has the keys {', '.join(space)}")
@@ -37,7 +39,7 @@ def check_batch(space: Space[Any], batch: Any, count: int) -> None:
 
 
 def _outside(space: Space[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
-    """Which numbers are in no action of the space."""
+    """Return a mask of the numbers that are not in the space."""
     if isinstance(space, (spaces.Discrete, spaces.MultiDiscrete)):
         size = space.n if isinstance(space, spaces.Discrete) else space.nvec
         return np.asarray((values < space.start) | (values >= space.start + size))

@@ -1,4 +1,4 @@
-"""What a vector environment may be given, checked before there are workers."""
+"""Check the arguments of a vector environment before any worker starts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def check_arguments(
     autoreset: AutoresetMode,
     on_death: str,
 ) -> None:
-    """Raise ValueError, or TypeError, for what does not fit."""
+    """Raise ValueError or TypeError for invalid arguments."""
     if not functions:
         raise ValueError("there is no function that makes an environment")
     if not all(map(callable, functions)):
@@ -37,9 +37,10 @@ def check_arguments(
 
 
 def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.bool_], dict[str, Any] | None]:
-    """Which environments ``options["reset_mask"]`` chooses, by default all, and the other options.
+    """Return the mask ``options["reset_mask"]``, by default all environments, and the other options.
 
-    Raises ValueError where the mask is not a bool for each environment, one of them true.
+    Raises ValueError if the mask is not an array of one bool per environment with at least one of
+    them true.
     """
     if options is None or "reset_mask" not in options:
         return np.ones(count, dtype=np.bool_), options

@@ -18,19 +18,20 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 _TO_ANSWER_S: Final = 10.0
 """How long a cluster may take to answer."""
 _AFTER_THE_FIRST_S: Final = 30.0
-"""How long other actors may take to start once one has."""
+"""How long other actors may take to start after the first one."""
 _TOLD_EVERY_S: Final = 10.0
 
 
 @contextmanager
 def cluster() -> Iterator[Any]:
-    """The module ``ray``, connected: as it is already, else to the cluster that runs, else to one of this machine.
+    """Connect to a Ray cluster and yield the module ``ray``.
 
-    A running cluster is the one of the environment variable ``RAY_ADDRESS``, or one that ``ray start`` began here.
-    What was connected here is disconnected at the end.
+    An existing connection is used as it is. Otherwise this connects to a running cluster: that of
+    the environment variable ``RAY_ADDRESS``, or one that ``ray start`` began here. If none is
+    running, it starts one on this machine. A connection made here is closed at the end.
 
     Raises:
-        TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster at ``RAY_ADDRESS``.
+        TltlError: TLT0730 Ray is not installed; TLT0852 there is no cluster at ``RAY_ADDRESS``.
     """
     try:
         import ray
@@ -42,15 +43,15 @@ def cluster() -> Iterator[Any]:
     if ray.is_initialized():
         yield ray
         return
-    # A cluster of this machine's own tells nobody that there is one.
+    # A cluster that this process starts must not send usage statistics.
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     try:
         _call(os.environ.get("RAY_ADDRESS", ""))
         with sigterm_handler_kept():
             ray.init(include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     except (OSError, ValueError, RuntimeError) as error:
-        place = os.environ.get("RAY_ADDRESS", "this machine")
-        title, help_ = f"there is no Ray cluster at `{place}`: {_first_line(error)}", "set RAY_ADDRESS, or unset it"
+        address = os.environ.get("RAY_ADDRESS", "this machine")
+        title, help_ = f"there is no Ray cluster at `{address}`: {_first_line(error)}", "set RAY_ADDRESS, or unset it"
         raise TltlError([Diagnostic("TLT0852", title, help=help_)]) from None
     try:
         yield ray
@@ -60,48 +61,50 @@ def cluster() -> Iterator[Any]:
 
 @contextmanager
 def sigterm_handler_kept() -> Iterator[None]:
-    """Undo what Ray does to the handler of SIGTERM: the command would end with another status, and clean up nothing."""
+    """Restore the handler of SIGTERM, which Ray replaces: the command would end with another status
+    and without cleanup.
+    """
     before = signal.getsignal(signal.SIGTERM)
     try:
         yield
     finally:
-        # Only the main thread may set handlers, which is why Ray leaves them alone in others.
+        # Only the main thread may set handlers; in other threads Ray does not change them.
         if before is not None and threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, before)
 
 
 def free_cores(ray: Any) -> int:
-    """How many cores of the cluster nobody uses, at least one; where torchrun started several processes, for each."""
+    """Return how many cores of the cluster are free, at least 1; processes of torchrun share them equally."""
     return max(1, int(ray.available_resources().get("CPU", 1)) // started("WORLD_SIZE", 1))
 
 
 def there(
     ray: Any, actors: Sequence[Any], patience: float, waiting: Callable[[float], None] = lambda left: None
 ) -> list[int]:
-    """The places, in order, of those actors that have started: all of them unless others use some of the cores.
+    """Return the indices, in order, of the actors that have started; some may be missing if others use the cores.
 
-    The first may take ``patience`` seconds, of which ``waiting`` is told now and then how many are left; the others may
-    take a while more.  Raises TltlError, TLT0852, where none starts.
+    The first actor may take ``patience`` seconds. Meanwhile ``waiting`` is called now and then with
+    the seconds left. Then the others get some more time. Raises TltlError (TLT0852) if none starts.
     """
     deadline = time.monotonic() + patience
-    asked = [actor.__ray_ready__.remote() for actor in actors]
-    found: list[Any] = []
-    while len(found) < len(asked) and (left := deadline - time.monotonic()) > 0:
-        now, _ = ray.wait(asked, num_returns=len(found) + 1, timeout=min(left, _TOLD_EVERY_S))
-        if now and not found:
+    references = [actor.__ray_ready__.remote() for actor in actors]
+    ready: list[Any] = []
+    while len(ready) < len(references) and (left := deadline - time.monotonic()) > 0:
+        newly_ready, _ = ray.wait(references, num_returns=len(ready) + 1, timeout=min(left, _TOLD_EVERY_S))
+        if newly_ready and not ready:
             deadline = min(deadline, time.monotonic() + _AFTER_THE_FIRST_S)
-        elif not now:
+        elif not newly_ready:
             waiting(left)
-        found = now
-    if not found:
+        ready = newly_ready
+    if not ready:
         raise not_started(ray, patience)
-    return [place for place, reference in enumerate(asked) if reference in found]
+    return [index for index, reference in enumerate(references) if reference in ready]
 
 
 def not_started(ray: Any, waited_s: float) -> TltlError:
-    """TLT0852: no worker started within so many seconds.
+    """Return TLT0852: no worker started within ``waited_s`` seconds.
 
-    Ray does not say why: others may use all cores, or the process of a worker may be slow to start on its core.
+    Ray does not give a reason: others may use all cores, or a worker's process may start slowly.
     """
     cores = int(ray.cluster_resources().get("CPU", 0))
     size = "1 core" if cores == 1 else f"{cores} cores"
@@ -111,7 +114,7 @@ def not_started(ray: Any, waited_s: float) -> TltlError:
 
 
 def _call(address: str) -> None:
-    """Raise OSError where nobody answers at HOST:PORT: Ray would try for minutes."""
+    """Raise OSError if nothing answers at HOST:PORT; Ray itself would try for minutes."""
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdecimal():
         socket.create_connection((host, int(port)), _TO_ANSWER_S).close()

@@ -1,4 +1,4 @@
-"""The cores of this machine, and what torchrun says of the processes that it starts."""
+"""The cores of this machine, and the variables that torchrun sets for its processes."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def cores() -> int:
-    """How many cores this process may use."""
+    """Return how many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def started(variable: str, default: int) -> int:
-    """The whole number, at least ``default``, in a variable of the environment that torchrun sets.
+    """Return the integer, at least ``default``, in an environment variable that torchrun sets.
 
     Raises:
-        TltlError: TLT0862, it holds anything else.
+        TltlError: TLT0862 the variable has another value.
     """
     text = os.environ.get(variable, str(default))
     if len(text) <= 9 and text.isascii() and text.isdecimal() and int(text) >= default:

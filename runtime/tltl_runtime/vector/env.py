@@ -33,7 +33,9 @@ TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
     "progress": np.float64,
     "success": np.bool_,
 }
-"""What ``info`` has of a TltlEnv at each step; the rest of it comes with the end of an episode."""
+"""The keys of a TltlEnv's ``info`` that are returned at each step; the others are returned at the
+end of an episode.
+"""
 
 _ALL: Final = slice(None)
 _SEEDS: Final = 2**31
@@ -42,37 +44,40 @@ _log = logging.getLogger(__name__)
 
 
 class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
-    """The environments that ``functions`` make, of equal spaces, in ``workers`` processes.
+    """A vector environment of the environments that ``functions`` make, with equal spaces, in ``workers`` processes.
 
-    A worker steps its share one after the other; observations, actions and numbers are in memory that all share.
-    ``workers`` is by default as many as there are cores, and never more than environments.  Same seeds and actions
-    give the same episodes, bit for bit, for any number of workers and in this process.  With ``workers="ray"`` they are
-    actors of a Ray cluster, one on each of its free cores (:func:`~tltl_runtime.vector.cluster.cluster` says which),
-    which processes of torchrun share.
+    A worker steps its share of the environments one after the other. Observations, actions and
+    numbers are in shared memory. By default there are as many ``workers`` as cores, but never more
+    than environments. The same seeds and actions give the same episodes, bit for bit, for any
+    number of workers and in this process. With ``workers="ray"`` the workers are actors of a Ray
+    cluster (see :func:`~tltl_runtime.vector.cluster.cluster`), one on each free core; processes of
+    torchrun share these cores.
 
-    ``autoreset`` is ``SAME_STEP`` (the observation is the new episode's, ``final_obs`` and ``final_info`` are the
-    old one's) or ``NEXT_STEP``, as Gymnasium defines them.  ``infos`` has the keys ``info`` at every step, an array
-    each; by default those of a :class:`~tltl_runtime.spec.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``,
-    ``success``.  All else that an environment says comes with a reset and with the end of an episode, which has
-    ``episode``, too: the sum of its rewards ``r`` and its length ``l``.
+    ``autoreset`` is ``SAME_STEP`` (the observation is that of the new episode; ``final_obs`` and
+    ``final_info`` describe the old one) or ``NEXT_STEP``, as Gymnasium defines them. ``infos`` has
+    the keys ``info`` at every step, with an array each; by default those of a
+    :class:`~tltl_runtime.spec.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``, ``success``.
+    Other entries of an environment's info are returned with a reset and with the end of an episode.
+    The latter also has ``episode``: the sum of rewards ``r`` and the length ``l``.
 
-    A worker that ends, raises or is silent for ``timeout`` seconds is reported: what happened, and name (``names``,
-    one for each environment), seed, episode and step of all that it was playing.  With ``on_death="stop"`` this is
-    a :class:`WorkerError`, and this environment is closed.  With ``"replace"`` another worker takes its place,
-    the report goes to this module's logger, and its environments begin episodes of new seeds: their step is
-    ``truncated``, of reward 0, its ``final_obs`` the last observation, and ``infos["lost"]`` is True there.
+    If a worker ends, raises or is silent for ``timeout`` seconds, this is reported: what happened,
+    and the name (``names``, one for each environment), seed, episode and step of each of its
+    environments. With ``on_death="stop"``, a :class:`WorkerError` is raised and this environment is
+    closed. With ``"replace"``, another worker takes over, the report goes to this module's logger,
+    and the affected environments begin episodes with new seeds: their step is ``truncated`` with
+    reward 0, its ``final_obs`` is the last observation, and ``infos["lost"]`` is True for them.
 
-    Where an environment has a method ``prepare``, its worker calls it while it is asked for nothing else, as long as
-    that returns True: so it does a little of what can be done before the next reset.
+    If an environment has a method ``prepare``, its worker calls it while idle, as long as it
+    returns True. The environment can use it to prepare the next reset in small steps.
 
-    Functions that are not importable, such as lambdas, are pickled by value.  A process starts by importing the main
-    module, so a script's own work stands under ``if __name__ == "__main__"``.
+    Functions that cannot be imported, such as lambdas, are pickled by value. A process starts by
+    importing the main module, so a script needs ``if __name__ == "__main__"`` around its own work.
 
     Raises:
-        ValueError: spaces of no fixed size, or other arguments that do not fit.
-        TypeError: arguments of another type.
-        WorkerError: an environment cannot be made, or has other spaces than the first.
-        TltlError: TLT0730 and TLT0852, there is no Ray or no cluster.
+        ValueError: a space has no fixed size, or another argument is invalid.
+        TypeError: an argument is of another type.
+        WorkerError: an environment cannot be made, or its spaces differ from those of the first.
+        TltlError: TLT0730 Ray is not installed, TLT0852 there is no cluster.
     """
 
     def __init__(
@@ -126,10 +131,14 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode in each environment: with ``seed + i`` in the i-th, with the seeds of a sequence, or, as
-        without a seed, where its generator stands.  The first reset without a seed draws one for each.
+        """Begin an episode in each environment.
 
-        ``options["reset_mask"]``, a bool for each, leaves the others where they are; it is not passed on.
+        The i-th environment gets the seed ``seed + i``, or the i-th seed of a sequence. Without a
+        seed, or with None, it continues with its random generator; the first reset without a seed
+        draws one for each.
+
+        ``options["reset_mask"]``, one bool per environment, leaves the others unchanged; it is not
+        passed on.
         """
         self._check_open()
         if self._workers.is_waiting:
@@ -145,8 +154,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         infos: dict[str, Any] = {}
         for answer in self._workers.ask("reset", arguments):
             if isinstance(answer, Loss):
-                began = self._replace(answer)
-                answer = [(row, info if chosen[row] else {**info, "lost": True}) for row, info in began]
+                resets = self._replace(answer)
+                answer = [(row, info if chosen[row] else {**info, "lost": True}) for row, info in resets]
             for row, info in answer:
                 infos = self._add_info(infos, info, row)
         return self._observed(), self._with_numbers(infos)
@@ -157,7 +166,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """Take a step in each environment.
 
         Raises:
-            ValueError: there is not one action of the space for each; no step is taken.
+            ValueError: ``actions`` does not have one action of the space for each; no step is
+                taken.
             ResetNeeded: there was no reset.
             WorkerError: a worker was lost, and ``on_death`` is ``stop``.
         """
@@ -179,22 +189,22 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return self._observed(), *ends, self._with_numbers(infos)
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """An attribute of each environment, or what it gives when it is called."""
-        return self._asked("call", [(name, args, kwargs)] * len(self._workers.shares))
+        """Return an attribute of each environment; if it is callable, the result of calling it."""
+        return self._ask_all("call", [(name, args, kwargs)] * len(self._workers.shares))
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """An attribute of each environment."""
+        """Return an attribute of each environment."""
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Set an attribute of each environment: a list or a tuple has a value for each, all else is one for all."""
-        each = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
-        if len(each) != self.num_envs:
-            raise ValueError(f"{self.num_envs} values are needed, not {len(each)}")
-        self._asked("set_attr", [(name, each[share]) for share in self._workers.shares])
+        """Set an attribute of each environment: to the items of a list or tuple, or to one value for all."""
+        env_values = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
+        if len(env_values) != self.num_envs:
+            raise ValueError(f"{self.num_envs} values are needed, not {len(env_values)}")
+        self._ask_all("set_attr", [(name, env_values[share]) for share in self._workers.shares])
 
     def render(self) -> tuple[Any, ...] | None:
-        """What each environment renders."""
+        """Return what each environment renders."""
         return self.call("render")
 
     def close_extras(self, **_: Any) -> None:
@@ -203,11 +213,11 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     @property
     def worker_pids(self) -> tuple[int | None, ...]:
-        """The process ids of the workers; None for those of a Ray cluster."""
+        """The process ids of the workers; None for workers of a Ray cluster."""
         return tuple(self._workers.pid(worker) for worker in range(len(self._workers.shares)))
 
-    def _asked(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
-        """What the environments give, in order; a worker that is lost meanwhile is not replaced."""
+    def _ask_all(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
+        """Return the results of all environments, in order; a worker that is lost meanwhile is not replaced."""
         self._check_ready()
         answers = self._workers.ask(command, arguments)
         for answer in answers:
@@ -231,8 +241,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if seed is not None:
             if len(seed) != self.num_envs:
                 raise ValueError(f"{self.num_envs} seeds are needed, not {len(seed)}")
-            return [None if each is None else int(each) for each in seed]
-        return [self._new_seed() if known is None else None for known in self._seeds]
+            return [None if env_seed is None else int(env_seed) for env_seed in seed]
+        return [self._new_seed() if current is None else None for current in self._seeds]
 
     def _new_seed(self) -> int:
         return int(self.np_random.integers(_SEEDS))
@@ -242,27 +252,27 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return self._observations
 
     def _with_numbers(self, infos: dict[str, Any]) -> dict[str, Any]:
-        """``infos`` with what stands in the rows, for all environments."""
+        """Add the info columns of the shared rows to ``infos``, for all environments."""
         for key, column in self._rows.info.items():
             infos[key] = column.copy()
             infos[f"_{key}"] = np.ones(self.num_envs, dtype=np.bool_)
         return infos
 
-    # Losses
+    # --- lost workers -----------------------------------------------------------------------------
 
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a worker in the middle of a step: what there is to say of its environments, by row."""
+        """Replace a worker in the middle of a step; return the infos of its environments, by row."""
         share = self._workers.shares[loss.worker]
-        began = self._replace(loss)
+        resets = self._replace(loss)
         self._rows.truncated[share] = True
-        said = []
-        for row, info in began:
+        infos = []
+        for row, info in resets:
             last = read(self._observations, row)
-            said.append((row, {"final_obs": last, "final_info": {"lost": True}, "lost": True, **info}))
-        return said
+            infos.append((row, {"final_obs": last, "final_info": {"lost": True}, "lost": True, **info}))
+        return infos
 
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Put another worker in the place of the lost one, and begin episodes there; their infos, by row."""
+        """Replace the lost worker and begin episodes in its environments; return their infos, by row."""
         if not self._replaces or loss.worker in self._untried:
             self._stop(loss)
         share = self._workers.shares[loss.worker]
@@ -279,8 +289,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         (answer,) = self._workers.answers()
         if isinstance(answer, Loss):
             self._stop(answer)
-        began: list[tuple[int, dict[str, Any]]] = answer
-        return began
+        infos: list[tuple[int, dict[str, Any]]] = answer
+        return infos
 
     def _stop(self, loss: Loss) -> NoReturn:
         playing = self._playing(self._workers.shares[loss.worker])

@@ -1,4 +1,4 @@
-"""What is said of a worker that is lost."""
+"""Errors and reports about lost workers."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ _UNGUARDED: Final = (
     "it ended before it made them: a worker begins by importing the program, so what the program does stands under",
     '`if __name__ == "__main__":`, and the program in a file (python program.py, not python < program.py)',
 )
-"""The two ways in which a main module cannot be imported."""
+"""The two causes for a main module that a worker cannot import."""
 
 
 @record
 class Playing:
     """What an environment was playing when its worker was lost.
 
-    The same episode: reset the environment with ``seed`` (None: it was not reset yet), then ``episode`` - 1 times
-    without one.  ``step`` is the step of the episode that was being taken, or the last that was.  ``busy``: it was at
-    work.
+    To get the same episode, reset the environment with ``seed``, then ``episode`` - 1 times without
+    a seed. A seed of None means that it was not reset yet. ``step`` is the step of the episode that
+    was in progress, or the last one taken. ``busy`` means that the environment was at work.
     """
 
     env: int
@@ -37,9 +37,11 @@ class Playing:
 
 @record
 class Loss:
-    """How a worker was lost: it ended with ``status`` (negative: that signal), or was ``silent`` for so many seconds.
+    """How a worker was lost: it ended with ``status`` (negative: by that signal), or was ``silent``
+    for so many seconds.
 
-    ``traceback`` is that of the exception which ended it, if one did; ``starting``: its environments were not made yet.
+    ``traceback`` is that of the exception that ended it, if any. ``starting`` means that its
+    environments were not made yet.
     """
 
     worker: int
@@ -59,7 +61,7 @@ class Loss:
 
 
 class WorkerError(RuntimeError):
-    """A worker was lost: how (``loss``), and what its environments were playing (``playing``)."""
+    """A worker was lost: the ``loss``, and what its environments were ``playing``."""
 
     def __init__(self, loss: Loss, playing: tuple[Playing, ...]) -> None:
         super().__init__(report(loss, playing))
@@ -67,8 +69,8 @@ class WorkerError(RuntimeError):
 
 
 def report(loss: Loss, playing: tuple[Playing, ...]) -> str:
-    """The loss in words: a line for it, one for each environment, and the traceback, or what may be the matter."""
-    lines = [f"{loss}; it had", *(f"  {each}" for each in playing), *loss.traceback.splitlines()]
+    """Return the loss as text: a line for it, one for each environment, and the traceback or a likely cause."""
+    lines = [f"{loss}; it had", *(f"  {env}" for env in playing), *loss.traceback.splitlines()]
     if loss.starting and loss.status and not loss.traceback:
         lines += _UNGUARDED
     return "\n".join(lines)

@@ -33,19 +33,20 @@ def make_vec(
     wrapper: Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]] | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
-    """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, stepped by ``workers``.
+    """Return ``num_envs`` environments of :func:`~tltl_runtime.stealth.env.make_env`, stepped by ``workers``.
 
-    Where a ``wrapper`` is given, each is what it makes of the function that makes one; it must be importable.
-    ``options`` and errors are those of :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises
-    ValueError for the render mode ``human`` of several environments, each of which would open a window.
+    ``wrapper`` receives the function that makes an environment, and returns the environment to use;
+    it must be importable. ``options`` and errors are those of
+    :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``. Raises ValueError for the
+    render mode ``human`` with several environments, each of which would open a window.
     """
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
-    place = load_level(level, variant)
-    wanted = spec_of(place) if spec is None else spec
-    # Compiled once, and not by each worker for each of its environments.
-    fspa, _ = read_spec(wanted)
-    check_fit(place, fspa, wanted)
+    loaded_level = load_level(level, variant)
+    chosen_spec = spec_of(loaded_level) if spec is None else spec
+    # Compile once here, not in each worker for each of its environments.
+    fspa, _ = read_spec(chosen_spec)
+    check_fit(loaded_level, fspa, chosen_spec)
     make = partial(
         make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
     )

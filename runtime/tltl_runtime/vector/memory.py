@@ -1,7 +1,7 @@
 """Memory that processes share: one row for each environment.
 
-A row holds an observation, an action, what a step returned and what is being played.  It is a structured NumPy array
-over one anonymous block, which no process can leave behind.
+A row stores an observation, an action, the results of a step and the episode being played. The rows
+are a structured NumPy array over one anonymous block, which no process can leave behind.
 """
 
 from __future__ import annotations
@@ -15,21 +15,24 @@ from gymnasium import Space, spaces
 from numpy.typing import DTypeLike, NDArray
 
 Columns = Any
-"""The values of all rows for a space: an array, or a dict or tuple of columns for a Dict or Tuple space."""
+"""The values of all rows for a space: an array, or for a Dict or Tuple space a dict or tuple of columns."""
 
 
 class Rows:
-    """``count`` rows for environments of the same ``spaces``, by the names of these.
+    """``count`` rows for environments of the same ``spaces``, which are stored by name.
 
-    An instance can be handed to a process that is being started, and to no other.
+    An instance can only be passed to a process while that process is being started.
 
-    ``observation`` and ``action`` are the columns of those spaces, ``reward terminated truncated`` those of a step.
-    ``episode`` counts the episodes since the last reset with a seed, from 1; ``step`` the steps of the episode, the
-    one that is being taken included; ``total`` its rewards; ``busy`` says that the environment is at work now.
-    ``info`` are further columns, by name; ``table`` has all columns of all rows.
+    - ``observation`` and ``action`` are the columns of the two spaces.
+    - ``reward``, ``terminated`` and ``truncated`` are the results of a step.
+    - ``episode`` counts the episodes since the last reset with a seed, from 1.
+    - ``step`` counts the steps of the episode, including the one in progress; ``total`` sums its
+      rewards.
+    - ``busy`` says whether the environment is at work.
+    - ``info`` are further columns, by name; ``table`` has all columns of all rows.
 
     Raises:
-        ValueError: a space that has no fixed size.
+        ValueError: a space has no fixed size.
     """
 
     def __init__(
@@ -78,7 +81,7 @@ class Rows:
 
 
 def write(columns: Columns, row: int, value: Any) -> None:
-    """Put a value of the space into a row."""
+    """Write a value of the space into a row."""
     if isinstance(columns, dict):
         for key, column in columns.items():
             write(column, row, value[key])
@@ -90,7 +93,9 @@ def write(columns: Columns, row: int, value: Any) -> None:
 
 
 def write_batch(columns: Columns, batch: Any) -> None:
-    """Put a value into each row; there is one for each, see :func:`tltl_runtime.vector.actions.check_batch`."""
+    """Write a value into each row; :func:`tltl_runtime.vector.actions.check_batch` has checked that
+    there is one for each.
+    """
     if isinstance(columns, dict):
         for key, column in columns.items():
             write_batch(column, batch[key])
@@ -102,7 +107,7 @@ def write_batch(columns: Columns, batch: Any) -> None:
 
 
 def read(columns: Columns, rows: int | slice) -> Any:
-    """A copy of what is in a row, or of a slice of rows as a batch."""
+    """Return a copy of a row, or of a slice of rows as a batch."""
     if isinstance(columns, dict):
         return {key: read(column, rows) for key, column in columns.items()}
     if isinstance(columns, tuple):

@@ -1,4 +1,6 @@
-"""Workers of a Ray cluster that step environments: what :class:`~tltl_runtime.vector.workers.Workers` is here."""
+"""Workers of a Ray cluster that step environments; the counterpart of
+:class:`~tltl_runtime.vector.workers.Workers`.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +22,14 @@ from tltlc.core.record import replace
 
 
 class RayWorkers:
-    """Actors that step environments, one on each free core; actor w has those of the w-th slice of ``shares``.
+    """Actors that step environments, one on each free core; actor w has the w-th slice of ``shares``.
 
-    They share no memory: actions go with what is asked, and the answer brings the rows back to ``rows``.  All else is
-    as with processes; ``info`` are the further columns of ``rows``.
+    They share no memory: actions are sent with each command, and the answer brings the rows back to
+    ``rows``. Everything else is the same as with processes. ``info`` are the further columns of
+    ``rows``.
 
-    Raises TltlError: TLT0730 and TLT0852, there is no Ray, no cluster, or no worker starts.
+    Raises TltlError: TLT0730 Ray is not installed; TLT0852 there is no cluster, or no worker
+    starts.
     """
 
     def __init__(
@@ -40,12 +44,12 @@ class RayWorkers:
         self._autoreset, self._timeout = autoreset, timeout
         self._actors: dict[int, Any] = {}
         self._asked: dict[Any, int] = {}
-        """Workers by references to their answers."""
+        """The worker of each reference to a pending answer."""
         self._stack = ExitStack()
         self._ray = self._stack.enter_context(cluster())
         try:
             self._idle = self._placed(min(free_cores(self._ray), len(functions)))
-            """Actors that have a core and nothing to do yet."""
+            """Actors that have a core and no environments yet."""
         except BaseException:
             self._stack.close()
             raise
@@ -53,17 +57,17 @@ class RayWorkers:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether an answer was not waited for, as after a Ctrl-C."""
+        """Whether an answer is still pending, as after a Ctrl-C."""
         return bool(self._asked)
 
     def pid(self, worker: int) -> int | None:
-        """None: the process of an actor may be that of another machine."""
+        """Return None: an actor's process may be on another machine."""
         return None
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these, wait until their environments are made, and tell which did not come so far.
+        """Start these workers, wait until they have made their environments, and return those that failed.
 
-        Raises TltlError: TLT0852, a new actor for one of them does not start in time.
+        Raises TltlError: TLT0852 a new actor does not start in time.
         """
         for worker in workers:
             actor = self._actors[worker] = self._idle.pop() if self._idle else self._placed(1)[0]
@@ -74,36 +78,38 @@ class RayWorkers:
         return [replace(answer, starting=True) for answer in answers if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Tell all workers to do something, each with its own arguments, and wait for the answers."""
+        """Send a command to all workers, each with its own arguments, and return their answers."""
         for worker, given in enumerate(arguments):
             self.tell(worker, command, given)
         return self.answers()
 
     def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
-        """Tell one worker to do something; ``answers`` has its answer."""
+        """Send a command to one worker; :meth:`answers` returns its answer."""
         actions = self._rows.table["action"][self.shares[worker]]
         self._asked[self._actors[worker].do.remote(command, arguments, actions)] = worker
 
     def answers(self, patience: float | None = None) -> list[Any]:
-        """Wait for what was asked, for ``timeout`` or ``patience`` seconds."""
+        """Wait for the pending answers, for at most ``timeout`` or ``patience`` seconds, and return
+        them in order of workers.
+        """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
-        found: dict[int, Any] = {}
+        answers: dict[int, Any] = {}
         while self._asked:
             left = max(0.0, deadline - time.monotonic())
             ready, late = self._ray.wait(list(self._asked), timeout=left)
             for reference in ready:
                 worker = self._asked.pop(reference)
-                found[worker] = self._answer(worker, reference)
+                answers[worker] = self._answer(worker, reference)
             if not ready:
                 for reference in late:
                     worker = self._asked.pop(reference)
                     self._ray.kill(self._actors.pop(worker))
-                    found[worker] = Loss(worker, silent=patience)
-        return [found[worker] for worker in sorted(found)]
+                    answers[worker] = Loss(worker, silent=patience)
+        return [answers[worker] for worker in sorted(answers)]
 
     def close(self) -> None:
-        """End all."""
+        """End all workers."""
         for actor in (*self._actors.values(), *self._idle):
             self._ray.kill(actor)
         self._actors.clear()
@@ -111,12 +117,12 @@ class RayWorkers:
         self._stack.close()
 
     def _placed(self, most: int) -> list[Any]:
-        """Up to ``most`` new actors, as many as find a core; the others are ended."""
-        # Ray would restart an actor and go on, silently, with environments at their beginning.
+        """Return up to ``most`` new actors, as many as get a core; the others are ended."""
+        # Ray would restart a lost actor and continue silently, with its environments back at their beginning.
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote() for _ in range(most)]
         placed: list[Any] = []
         try:
-            placed = [actors[place] for place in there(self._ray, actors, max(self._timeout, TO_START_S))]
+            placed = [actors[index] for index in there(self._ray, actors, max(self._timeout, TO_START_S))]
         finally:
             for actor in actors:
                 if actor not in placed:
@@ -154,6 +160,6 @@ class _Actor:
         return None, None
 
     def do(self, command: str, arguments: tuple[Any, ...], actions: NDArray[Any]) -> tuple[Any, NDArray[Any]]:
-        """What the share gives, and its rows after that."""
+        """Return the result of a command, and the rows of the share after it."""
         self._table["action"] = actions
         return getattr(self._share, command)(*arguments), self._table

@@ -1,4 +1,4 @@
-"""A worker process: it makes its environments, and resets and steps them as it is told."""
+"""A worker process: makes its environments, and resets and steps them on command."""
 
 from __future__ import annotations
 
@@ -22,13 +22,14 @@ CLOSE: Final = "close"
 
 
 def work(connection: Connection, functions: Any, rows: Rows, first: int, autoreset: AutoresetMode) -> None:
-    """Serve until ``close`` comes or the other end is gone.
+    """Serve commands until ``close`` arrives or the other end is gone.
 
-    ``functions`` is a ``CloudpickleWrapper`` of those that make the environments, whose rows begin at ``first``.
-    Commands are pairs of a name and its arguments; each is answered by a pair: ``done`` and what it gave, or
-    ``failed`` and a traceback, after which the worker ends.  The first answer, unasked, says that all is made.
+    ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments, whose
+    rows begin at ``first``. A command is a pair of a name and its arguments. The answer is a pair:
+    ``done`` and the result, or ``failed`` and a traceback, after which the worker ends. The first
+    answer comes without a command: it says that all environments are made.
     """
-    # Whoever started this one decides what Ctrl-C means.
+    # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         share = Share(functions.fn, rows, first, autoreset)
@@ -60,31 +61,31 @@ class Share:
         self._over = [False] * len(self._envs)
         for row, env in enumerate(self._envs, first):
             for name, space in rows.spaces.items():
-                own = getattr(env, name)
-                if own != space:
-                    raise ValueError(f"the {name} of env {row} is another than that of env 0: {own}, not {space}")
+                env_space = getattr(env, name)
+                if env_space != space:
+                    raise ValueError(f"the {name} of env {row} is another than that of env 0: {env_space}, not {space}")
 
     def reset(
         self, seeds: Sequence[int | None], options: dict[str, Any] | None, chosen: Sequence[bool]
     ) -> list[tuple[int, Info]]:
-        """Begin an episode in each environment that is chosen; their infos, by row."""
-        said = []
+        """Begin an episode in each chosen environment; return their infos, by row."""
+        infos = []
         for index in range(len(self._envs)):
             if chosen[index]:
                 observation, info = self._begin(index, seeds[index], options)
-                self._tell(index, observation, 0.0, False, False, info)
-                said.append((self._first + index, info))
-        return said
+                self._write_row(index, observation, 0.0, False, False, info)
+                infos.append((self._first + index, info))
+        return infos
 
     def step(self) -> list[tuple[int, Info]]:
-        """Take the actions that stand in the rows; what there is to say of episodes that ended or began, by row."""
+        """Take the actions in the rows; return the infos of episodes that ended or began, by row."""
         actions = read(self._rows.action, slice(self._first, self._first + len(self._envs)))
-        said = []
+        infos = []
         for index, env in enumerate(self._envs):
             if self._over[index]:
                 observation, info = self._begin(index)
-                self._tell(index, observation, 0.0, False, False, info)
-                said.append((self._first + index, info))
+                self._write_row(index, observation, 0.0, False, False, info)
+                infos.append((self._first + index, info))
                 continue
             row = self._first + index
             self._rows.step[row] += 1
@@ -97,21 +98,21 @@ class Share:
                 if self._same_step:
                     last, info = {"final_obs": observation, "final_info": info}, {}
                     observation, info = self._begin(index)
-                    said.append((row, {**last, **info}))
+                    infos.append((row, {**last, **info}))
                 else:
                     self._over[index] = True
-                    said.append((row, info))
-            self._tell(index, observation, float(reward), terminated, truncated, info)
-        return said
+                    infos.append((row, info))
+            self._write_row(index, observation, float(reward), terminated, truncated, info)
+        return infos
 
     def prepare(self) -> bool:
-        """Do a little of what environments can do ahead of time, those that have a ``prepare``; whether one did."""
+        """Let the environments that have a ``prepare`` do a little work ahead of time; return whether one did."""
         return any(prepare() for prepare in self._preparing)
 
     def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
-        """An attribute of each environment, or what its call gives."""
-        found = [env.get_wrapper_attr(name) for env in self._envs]
-        return [each(*args, **kwargs) if callable(each) else each for each in found]
+        """Return an attribute of each environment; if it is callable, the result of calling it."""
+        attributes = [env.get_wrapper_attr(name) for env in self._envs]
+        return [attribute(*args, **kwargs) if callable(attribute) else attribute for attribute in attributes]
 
     def set_attr(self, name: str, values: Sequence[Any]) -> tuple[()]:
         """Set an attribute of each environment."""
@@ -136,10 +137,14 @@ class Share:
         return observation, info
 
     def _statistics(self, row: int) -> dict[str, Any]:
-        """The sum of rewards and the length of the episode, as Gymnasium's RecordEpisodeStatistics calls them."""
+        """Return the sum of rewards and the length of the episode, with the keys of Gymnasium's
+        RecordEpisodeStatistics.
+        """
         return {"r": float(self._rows.total[row]), "l": int(self._rows.step[row])}
 
-    def _tell(self, index: int, observation: Any, reward: float, terminated: bool, truncated: bool, info: Info) -> None:
+    def _write_row(
+        self, index: int, observation: Any, reward: float, terminated: bool, truncated: bool, info: Info
+    ) -> None:
         rows, row = self._rows, self._first + index
         write(rows.observation, row, observation)
         rows.reward[row] = reward

@@ -1,4 +1,4 @@
-"""The workers as their owner sees them: started, asked, watched, and stopped."""
+"""Start, command, watch and stop worker processes, from the side of their owner."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 from tltlc.core.record import replace
 
 TO_START_S: Final = 120.0
-"""How long a worker may take to import what it needs and to make its environments, at the least."""
+"""The least time that a worker gets to import its modules and make its environments."""
 _TO_END_S: Final = 5.0
-"""How long a worker that is told to end, or was killed, may take."""
+"""How long a worker may take to end after a command to close, or after it was killed."""
 
 
 class Workers:
-    """Processes that step environments; worker w has those of the w-th slice of ``shares``.
+    """Processes that step environments; worker w has the w-th slice of ``shares``.
 
-    A process is spawned, not forked: forking with threads of torch or OpenBLAS about would be a gamble.  What
-    is asked of all is answered in order of the workers, by what each gave or by a :class:`Loss`: it ended, raised,
-    or was silent for ``timeout`` seconds.  After a loss, ``start`` puts a new process in its place.
+    Processes are spawned, not forked: forking while threads of torch or OpenBLAS exist is unsafe. A
+    command to all workers returns their answers in order of the workers; the answer of a lost
+    worker is a :class:`Loss`: it ended, raised, or was silent for ``timeout`` seconds. After a
+    loss, ``start`` starts a new process in its place.
     """
 
     def __init__(
@@ -48,20 +49,20 @@ class Workers:
         self._processes: dict[int, SpawnProcess] = {}
         self._connections: dict[int, Connection] = {}
         self._asked: set[int] = set()
-        """Workers whose answers are waited for; no other is watched by the selector."""
+        """Workers whose answers are pending; the selector watches only these."""
         self._selector = selectors.DefaultSelector()
 
     @property
     def is_waiting(self) -> bool:
-        """Whether an answer was not waited for, as after a Ctrl-C."""
+        """Whether an answer is still pending, as after a Ctrl-C."""
         return bool(self._asked)
 
     def pid(self, worker: int) -> int | None:
-        """The process id of a worker."""
+        """Return the process id of a worker."""
         return self._processes[worker].pid
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these, wait until their environments are made, and tell which did not come so far."""
+        """Start these workers, wait until they have made their environments, and return those that failed."""
         for worker in workers:
             ours, theirs = self._context.Pipe()
             share = self.shares[worker]
@@ -81,31 +82,33 @@ class Workers:
         return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Tell all workers to do something, each with its own arguments, and wait for the answers."""
+        """Send a command to all workers, each with its own arguments, and return their answers."""
         for worker, given in enumerate(arguments):
             self.tell(worker, command, given)
         return self.answers()
 
     def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
-        """Tell one worker to do something; ``answers`` has its answer."""
+        """Send a command to one worker; :meth:`answers` returns its answer."""
         self._watch(worker)
-        # Where the other end is gone, the answer is the loss.
+        # If the other end is gone, the answer will be the loss.
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
             self._connections[worker].send((command, arguments))
 
     def answers(self, patience: float | None = None) -> list[Any]:
-        """Wait for what was asked, for ``timeout`` or ``patience`` seconds."""
+        """Wait for the pending answers, for at most ``timeout`` or ``patience`` seconds, and return
+        them in order of workers.
+        """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
-        found: dict[int, Any] = {}
+        answers: dict[int, Any] = {}
         while self._asked:
             ready = self._ready(deadline)
             for worker in ready or tuple(self._asked):
-                found[worker] = self._answer(worker) if ready else self._lost(worker, silent=patience)
-        return [found[worker] for worker in sorted(found)]
+                answers[worker] = self._answer(worker) if ready else self._lost(worker, silent=patience)
+        return [answers[worker] for worker in sorted(answers)]
 
     def close(self) -> None:
-        """End all: those that do not in time are killed."""
+        """End all workers; those that do not end in time are killed."""
         for connection in self._connections.values():
             with contextlib.suppress(OSError):
                 connection.send((CLOSE, ()))
@@ -117,27 +120,27 @@ class Workers:
         self._selector.close()
 
     def _watch(self, worker: int) -> None:
-        """Wait for an answer of this one, or for its end."""
+        """Watch for an answer of this worker, or for its end."""
         self._asked.add(worker)
         for file in (self._connections[worker].fileno(), self._processes[worker].sentinel):
             self._selector.register(file, selectors.EVENT_READ, worker)
 
     def _unwatch(self, worker: int) -> None:
         for file in (self._connections[worker].fileno(), self._processes[worker].sentinel):
-            # It is watched by one of them alone where a Ctrl-C came between the two, and by none where it is idle.
+            # Only one file is registered if a Ctrl-C came between the registrations, and none if the worker is idle.
             with contextlib.suppress(KeyError):
                 self._selector.unregister(file)
         self._asked.discard(worker)
 
     def _ready(self, deadline: float) -> set[int]:
-        """Of those that were asked, who answered or ended; none once the deadline is over."""
+        """Return the workers with pending answers that answered or ended; empty once the deadline has passed."""
         left = max(0.0, deadline - time.monotonic())
         return {key.data for key, _ in self._selector.select(left)}
 
     def _answer(self, worker: int) -> Any:
         connection = self._connections[worker]
         try:
-            # Of one that ended the last words count, where there are any.
+            # A worker that has ended may have sent a last answer.
             if connection.poll():
                 outcome, answer = connection.recv()
                 self._unwatch(worker)
@@ -167,6 +170,6 @@ class Workers:
 
 
 def shared_out(count: int, workers: int) -> Iterator[slice]:
-    """``count`` environments for so many workers: slices whose lengths differ by one at most."""
+    """Yield the slices of ``count`` environments for so many workers; their lengths differ by at most one."""
     for worker in range(workers):
         yield slice(worker * count // workers, (worker + 1) * count // workers)
