@@ -98,8 +98,8 @@ def _module(name: str) -> ModuleType:
 def _unknown(name: str) -> Diagnostic:
     from difflib import get_close_matches
 
-    known = targets()
-    matches = [candidate for candidate in known if name.lower() in (candidate, *target(candidate).known_as)]
-    matches = matches or get_close_matches(name, known, n=1)
-    advice = f"did you mean `{matches[0]}`?" if matches else f"there are: {', '.join(known)}"
+    names = targets()
+    matches = [candidate for candidate in names if name.lower() in (candidate, *target(candidate).known_as)]
+    matches = matches or get_close_matches(name, names, n=1)
+    advice = f"did you mean `{matches[0]}`?" if matches else f"there are: {', '.join(names)}"
     return Diagnostic("TLT0710", f"there is no target `{name}`", help=advice)

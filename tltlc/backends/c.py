@@ -132,8 +132,8 @@ class _C(Printer):
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; the limiting atom is assigned by its name."""
         match statement:
-            case Assign(states.LIMITING, Int(place)):
-                return f"{states.LIMITING} = {_string(self._atoms[place].name) if place >= 0 else 'NULL'};"
+            case Assign(states.LIMITING, Int(index)):
+                return f"{states.LIMITING} = {_string(self._atoms[index].name) if index >= 0 else 'NULL'};"
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
@@ -186,7 +186,7 @@ class _Source:
             "param_defaults": _C.block(
                 [f"params.{name} = {pieces.number(param.value)};" for param, name in params] or ["params.none = false;"]
             ),
-            "param_checks": _C.block([line for place in range(len(params)) for line in self._param_check(place)]),
+            "param_checks": _C.block([line for index in range(len(params)) for line in self._param_check(index)]),
             "param_names": _list([_string(param.name) for param in fspa.params], '""'),
             "param_ranges": _list([_string(range_text(param.low, param.high)) for param in fspa.params], '""'),
             "members": _list(
@@ -225,21 +225,21 @@ class _Source:
                 lines += [*remarks, field]
         return _C.block(lines or ["bool none;"])
 
-    def _param_check(self, place: int) -> list[str]:
-        param, name = self._fspa.params[place], f"params->{self._program.params[place]}"
+    def _param_check(self, index: int) -> list[str]:
+        param, name = self._fspa.params[index], f"params->{self._program.params[index]}"
         tests = [f"isfinite({name})"]
         tests += [] if param.low is None else [f"{name} >= {pieces.number(param.low)}"]
         tests += [] if param.high is None else [f"{name} <= {pieces.number(param.high)}"]
-        lines = self._refused(f"{self._prefix}_wrong_param", place)
+        lines = self._refused(f"{self._prefix}_wrong_param", index)
         # The message shows the value.
         lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
         return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
 
-    def _refused(self, problem: str, place: int) -> list[str]:
+    def _refused(self, problem: str, index: int) -> list[str]:
         """Return the body of a branch that refuses the sample. The ``return`` is inlined so that
         compilers can see which values callers may rely on.
         """
-        call = f"{self._prefix}_refuse_(monitor, {problem}, {place});"
+        call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
 
     def _states(self) -> list[str]:
@@ -254,8 +254,8 @@ class _Source:
         if not self._fspa.signals:
             return ["(void)sample, (void)signal, (void)value;"]
         lines = ["switch (signal) {"]
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
-            lines.append(f"{_INDENT}case {place}:")
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            lines.append(f"{_INDENT}case {index}:")
             if signal.type == "bool":
                 lines.append(f"{_INDENT * 2}sample->{name} = value != 0.0;")
                 lines.append(f"{_INDENT * 2}return value == 0.0 || value == 1.0;")
@@ -272,7 +272,7 @@ class _Source:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
         program_ = self._program
         signals = enumerate(zip(self._fspa.signals, program_.signals, strict=True))
-        numbers = [(place, signal, name) for place, (signal, name) in signals if signal.type != "bool"]
+        numbers = [(index, signal, name) for index, (signal, name) in signals if signal.type != "bool"]
         lines = [f"double {name} = sample->{name};" for _, _, name in numbers]
         lines += self._checked_reads(numbers) if numbers else []
         lines += self._bools(None)
@@ -288,9 +288,9 @@ class _Source:
         """Return code that checks the signals one by one if their common test fails."""
         tests = self._range_tests([(signal, name) for _, signal, name in numbers])
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
-        for place, signal, name in numbers:
+        for index, signal, name in numbers:
             low, high = pieces.number(signal.low, "-HUGE_VAL"), pieces.number(signal.high, "HUGE_VAL")
-            lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {place}, {low}, {high}, {name});")
+            lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {index}, {low}, {high}, {name});")
             lines.append(f"{_INDENT}if (monitor->problem) return false;")
         return [*lines, "}"]
 
@@ -326,32 +326,32 @@ class _Source:
         """Return code for the atoms that every step computes."""
         program_ = self._program
         places = program_.computed_in(None)
-        lines = [line for place in places for line in self._value(place)]
-        for place in places:
-            name = program_.atoms[place]
-            if not program_.sure[place]:
+        lines = [line for index in places for line in self._value(index)]
+        for index in places:
+            name = program_.atoms[index]
+            if not program_.sure[index]:
                 lines.append(f"if (!(fabs({name}) <= 1.0)) {{")
-                lines.append(f"{_INDENT}{name} = {self._prefix}_value_(monitor, {place}, {name});")
+                lines.append(f"{_INDENT}{name} = {self._prefix}_value_(monitor, {index}, {name});")
                 lines += [f"{_INDENT}if (monitor->problem) return false;", "}"]
         return lines
 
-    def _value(self, place: int) -> list[str]:
+    def _value(self, index: int) -> list[str]:
         """Return code for the value of an atom."""
-        statements = self._program.values[place]
-        lines = self._printer.comment(self._program.remarks[place])
-        lines += self._printer.lines(defined(self._program.atoms[place], statements))
+        statements = self._program.values[index]
+        lines = self._printer.comment(self._program.remarks[index])
+        lines += self._printer.lines(defined(self._program.atoms[index], statements))
         if called(statements) & FAILING:
-            lines += ["if (monitor->problem) {", *self._refused("monitor->problem", place), "}"]
+            lines += ["if (monitor->problem) {", *self._refused("monitor->problem", index), "}"]
         return lines
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for place, group in self._program.exclusive:
+        for index, group in self._program.exclusive:
             tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
             lines.append(f"if ({' + '.join(f'({test})' for test in tests.values())} > 1) {{")
             lines += [f"{_INDENT}monitor->holding[{atom}] = {test};" for atom, test in tests.items()]
-            lines += [*self._refused(f"{self._prefix}_together", place), "}"]
+            lines += [*self._refused(f"{self._prefix}_together", index), "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -364,7 +364,7 @@ class _Source:
             # The case needs braces because it may contain declarations.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"{_INDENT}case {state.id}: {{")
-            values = [line for place in self._program.computed_in(state.id) for line in self._value(place)]
+            values = [line for index in self._program.computed_in(state.id) for line in self._value(index)]
             lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(state.id), *values)]
             lines += self._printer.lines(statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]

@@ -74,8 +74,8 @@ class _CSharp(Printer):
         """Return the lines of a branch: its cases and its ``else``."""
         indent = self.INDENT * depth
         lines: list[str] = []
-        for place, (test, body) in enumerate(statement.cases):
-            lines += [f"{indent}{'else ' if place else ''}if ({self.text(test)})", f"{indent}{{"]
+        for index, (test, body) in enumerate(statement.cases):
+            lines += [f"{indent}{'else ' if index else ''}if ({self.text(test)})", f"{indent}{{"]
             lines += [*self.lines(body, depth + 1), f"{indent}}}"]
         if statement.otherwise:
             lines += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
@@ -151,8 +151,8 @@ class _Source:
         if not self._fspa.signals:
             return []
         lines = ["switch (signal)", "{"]
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
-            lines.append(f"{_INDENT}case {place}:")
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            lines.append(f"{_INDENT}case {index}:")
             if signal.type == "bool":
                 lines.append(f"{_INDENT * 2}if (number != 0.0 && number != 1.0) return false;")
                 lines.append(f"{_INDENT * 2}sample.{name} = number == 1.0;")
@@ -170,7 +170,7 @@ class _Source:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 continue
             low, high = (
@@ -181,7 +181,7 @@ class _Source:
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
             lines.append(f"double {name} = sample.{name};")
             lines += _checked(
-                f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({place}, {name}, {low}, {high});"
+                f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({index}, {name}, {low}, {high});"
             )
         lines += self._bools(None)
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
@@ -193,30 +193,30 @@ class _Source:
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         lines: list[str] = []
-        kept: list[str] = []
-        for place in self._program.computed_in(None):
-            name = self._program.atoms[place]
-            lines += self._printer.lines(self._value(place))
-            if self._program.sure[place]:
+        range_checks: list[str] = []
+        for index in self._program.computed_in(None):
+            name = self._program.atoms[index]
+            lines += self._printer.lines(self._value(index))
+            if self._program.sure[index]:
                 continue
-            if called(self._program.values[place]) & FAILING:
-                lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place}, out result);")
-            kept += _checked(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({place}, {name});")
-        return [*lines, *kept]
+            if called(self._program.values[index]) & FAILING:
+                lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {index}, out result);")
+            range_checks += _checked(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
+        return [*lines, *range_checks]
 
-    def _value(self, place: int) -> tuple[Statement, ...]:
+    def _value(self, index: int) -> tuple[Statement, ...]:
         """Return the statements that declare and compute an atom's value."""
         program_ = self._program
-        return (Comment(program_.remarks[place]), *defined(program_.atoms[place], program_.values[place]))
+        return (Comment(program_.remarks[index]), *defined(program_.atoms[index], program_.values[index]))
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for place, group in self._program.exclusive:
+        for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
             lines += [f"if ({' + '.join(f'({name} > 0.0 ? 1 : 0)' for name in names)} > 1)", "{"]
             lines += [f"{_INDENT}_holding[{number}] = {name} > 0.0;" for number, name in enumerate(names)]
-            lines += [f"{_INDENT}return Refuse(Problem.Together, {place}, out result);", "}"]
+            lines += [f"{_INDENT}return Refuse(Problem.Together, {index}, out result);", "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -236,7 +236,7 @@ class _Source:
 
     def _values_only_in(self, state: int) -> list[Statement]:
         """Return the statements for the atoms that only this state reads."""
-        return [statement for place in self._program.computed_in(state) for statement in self._value(place)]
+        return [statement for index in self._program.computed_in(state) for statement in self._value(index)]
 
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""

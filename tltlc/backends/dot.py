@@ -114,7 +114,7 @@ def _title(fspa: Fspa, drawing: Drawing) -> str:
     if fspa.doc.strip():
         lines += map(escaped, wrapped(fspa.doc, TITLE_WIDTH, 3))
     lines += (f'<FONT COLOR="#64748b" POINT-SIZE="11">{escaped(line)}</FONT>' for line in legend)
-    lines.append('<FONT POINT-SIZE="6">&#160;</FONT>')  # away from the states
+    lines.append('<FONT POINT-SIZE="6">&#160;</FONT>')  # space above the states
     return f"<{table(lines, LEFT, spacing=2)}>"
 
 

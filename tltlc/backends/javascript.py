@@ -74,8 +74,8 @@ class _JavaScript(Printer):
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; the limiting atom is assigned by its name."""
         match statement:
-            case Assign(states.LIMITING, Int(place)):
-                return f"{states.LIMITING} = {_string(self._atoms[place]) if place >= 0 else 'null'};"
+            case Assign(states.LIMITING, Int(index)):
+                return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'null'};"
         return super().assignment(statement)
 
     def name(self, name: str) -> str:
@@ -177,8 +177,8 @@ class _Source:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
-            checked = f"this.#signal({place}, signals)"
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            checked = f"this.#signal({index}, signals)"
             if name not in used:
                 # An unused signal is checked, too.
                 lines.append(f"{checked};")
@@ -189,39 +189,39 @@ class _Source:
             else:
                 lines.append(f"let {name} = {given};")
                 lines += _branch([f"!({_in_range(name, signal.low, signal.high)})"], f"{name} = {checked};")
-        for place, name in enumerate(self._program.params):
-            lines += [f"const {name} = this.#params[{place}];"] if name in used else []
+        for index, name in enumerate(self._program.params):
+            lines += [f"const {name} = this.#params[{index}];"] if name in used else []
         return lines
 
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         lines = self._values(None)
-        for place, (name, sure) in enumerate(zip(self._program.atoms, self._program.sure, strict=True)):
+        for index, (name, sure) in enumerate(zip(self._program.atoms, self._program.sure, strict=True)):
             if not sure:
-                lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({place}, {name});")
+                lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({index}, {name});")
         return lines
 
     def _values(self, state: int | None) -> list[str]:
         """Return code for the atoms that only this state computes; for None, for those that every step computes."""
-        return [line for place in self._program.computed_in(state) for line in self._value(place)]
+        return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
-    def _value(self, place: int) -> list[str]:
+    def _value(self, index: int) -> list[str]:
         """Return code for the value of one atom."""
-        program_, statements = self._program, self._program.values[place]
-        lines = self._printer.comment(program_.remarks[place])
+        program_, statements = self._program, self._program.values[index]
+        lines = self._printer.comment(program_.remarks[index])
         if called(statements) & FAILING:
-            lines.append(f"this.#atom = {place};")
+            lines.append(f"this.#atom = {index};")
         return [
             *lines,
-            *self._printer.lines(defined(program_.atoms[place], statements, changes=not program_.sure[place])),
+            *self._printer.lines(defined(program_.atoms[index], statements, changes=not program_.sure[index])),
         ]
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for place, group in self._program.exclusive:
+        for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
-            refusal = f"throw this.#together({place}, [{', '.join(names)}]);"
+            refusal = f"throw this.#together({index}, [{', '.join(names)}]);"
             if len(names) <= _FEW:
                 pairs = [f"{first} > 0 && {second} > 0" for first, second in combinations(names, 2)]
                 tests = pairs if len(pairs) == 1 else [f"({pair})" for pair in pairs]

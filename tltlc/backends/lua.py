@@ -101,8 +101,8 @@ class _Lua(Printer):
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; the limiting atom is assigned by its name."""
         match statement:
-            case Assign(states.LIMITING, Int(place)):
-                return f"{states.LIMITING} = {_string(self._atoms[place]) if place >= 0 else 'nil'}"
+            case Assign(states.LIMITING, Int(index)):
+                return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'nil'}"
         return super().assignment(statement)
 
     def branches(self, statement: If, depth: int) -> list[str]:
@@ -247,9 +247,9 @@ class _Source:
     def _branch(self, state: int) -> list[str]:
         """Return the code of a state: the values of the atoms that only it reads, and the transition."""
         lines: list[str] = []
-        for place in self._program.computed_in(state):
+        for index in self._program.computed_in(state):
             # An empty line separates the comments.
-            lines += ["", *(f"  {line}" for line in self._value(place))]
+            lines += ["", *(f"  {line}" for line in self._value(index))]
         statements = shallow(self._program.states[state], self._program.atoms)
         return [*lines, *self._printer.lines(statements, depth=1)]
 
@@ -271,13 +271,13 @@ class _Source:
         lines: list[str] = []
         if any(signal.type != "bool" for signal in self._fspa.signals):
             lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True), start=1):
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True), start=1):
             variable = self._printer.name(name)
             lines.append(f"{'' if self._many else 'local '}{variable} = signals{_index(signal.name)}")
             lines += _accepted_first(signal, variable)
             lines += [
                 "else",
-                f"  {variable}, problem = read(self, {place}, signals)",
+                f"  {variable}, problem = read(self, {index}, signals)",
                 "  if problem then return nil, problem end",
                 "end",
             ]
@@ -290,39 +290,39 @@ class _Source:
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         lines: list[str] = []
-        kept: list[str] = []
+        range_checks: list[str] = []
         failing = False
-        for place in self._program.computed_in(None):
-            atom, name = self._fspa.atoms[place], self._program.atoms[place]
-            lines += self._value(place)
-            if self._program.sure[place]:
+        for index in self._program.computed_in(None):
+            atom, name = self._fspa.atoms[index], self._program.atoms[index]
+            lines += self._value(index)
+            if self._program.sure[index]:
                 continue
-            if called(self._program.values[place]) & FAILING:
+            if called(self._program.values[index]) & FAILING:
                 failing = True
                 text = _string(f"the atom `{atom.name}` ")
                 lines.append(f"if failure then return nil, at_step(self, {text} .. failure) end")
             variable = self._printer.name(name)
-            kept += [
+            range_checks += [
                 f"if not ({variable} >= -1.0 and {variable} <= 1.0) then",
                 f"  {variable}, problem = kept(self, {_string(atom.name)}, {variable})",
                 "  if problem then return nil, problem end",
                 "end",
             ]
-        return [*(["failure = nil"] if failing else []), *lines, *kept]
+        return [*(["failure = nil"] if failing else []), *lines, *range_checks]
 
-    def _value(self, place: int) -> list[str]:
+    def _value(self, index: int) -> list[str]:
         """Return code for the value of one atom."""
         program_ = self._program
-        lines = self._printer.comment(program_.remarks[place])
-        return [*lines, *self._printer.lines(defined(program_.atoms[place], program_.values[place]))]
+        lines = self._printer.comment(program_.remarks[index])
+        return [*lines, *self._printer.lines(defined(program_.atoms[index], program_.values[index]))]
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for place, group in self._program.exclusive:
+        for index, group in self._program.exclusive:
             atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
             holding = " + ".join(f"({atom} > 0.0 and 1 or 0)" for atom in atoms)
-            refusal = f"return nil, together(self, {place + 1}, {{ {', '.join(atoms)} }})"
+            refusal = f"return nil, together(self, {index + 1}, {{ {', '.join(atoms)} }})"
             lines += [f"if {holding} > 1 then", f"  {refusal}", "end"]
         return lines
 

@@ -105,7 +105,7 @@ class _Source:
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
             step = _Rust.block(self._step(), 2)
-        give = self._give()
+        give_code = self._give()
         places = {
             "p": fspa.name,
             "title": "\n".join(self._title()),
@@ -129,8 +129,8 @@ class _Source:
             "states": _Rust.block(self._states(), 1),
             "sample": "sample" if program_.reads_sample else "_",
             "step": step,
-            "given": "sample" if give else "_",
-            "give": _Rust.block(give or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
+            "given": "sample" if give_code else "_",
+            "give": _Rust.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
         }
         return filled("monitor.rs.txt", places, present)
 
@@ -164,11 +164,11 @@ class _Source:
         if not self._fspa.signals:
             return []
         lines = ["match signal {"]
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
-                lines.append(f"{_INDENT}{place} if value != 0.0 && value != 1.0 => return false,")
+                lines.append(f"{_INDENT}{index} if value != 0.0 && value != 1.0 => return false,")
             value = "value == 1.0" if signal.type == "bool" else "value"
-            lines.append(f"{_INDENT}{place} => sample.{name} = {value},")
+            lines.append(f"{_INDENT}{index} => sample.{name} = {value},")
         return [*lines, f"{_INDENT}_ => {{}}", "}", "true"]
 
     # --- a step -----------------------------------------------------------------------------------
@@ -180,12 +180,12 @@ class _Source:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.used
         lines: list[str] = []
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 continue
             low, high = pieces.number(signal.low, "f64::NEG_INFINITY"), pieces.number(signal.high, "f64::INFINITY")
             head = f"let {name} = " if name in used else ""
-            lines.append(f"{head}self.read({place}, sample.{name}, {low}, {high})?;")
+            lines.append(f"{head}self.read({index}, sample.{name}, {low}, {high})?;")
         lines += self._bools(None)
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
@@ -200,32 +200,32 @@ class _Source:
         used = read(statement for state in program_.states for statement in state)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
         places = program_.computed_in(None)
-        lines = [line for place in places for line in self._value(place)]
-        for place in places:
-            name = program_.atoms[place]
+        lines = [line for index in places for line in self._value(index)]
+        for index in places:
+            name = program_.atoms[index]
             head = f"let {name} = " if name in used else ""
-            lines += [] if program_.sure[place] else [f"{head}self.keep({place}, {name})?;"]
+            lines += [] if program_.sure[index] else [f"{head}self.keep({index}, {name})?;"]
         return lines
 
-    def _value(self, place: int, depth: int = 0) -> list[str]:
+    def _value(self, index: int, depth: int = 0) -> list[str]:
         """Return code for the value of one atom."""
         program_ = self._program
-        self._printer.atom = place
-        statements = defined(program_.atoms[place], program_.values[place], changes=False)
-        return self._printer.lines((Comment(program_.remarks[place]), *statements), depth)
+        self._printer.atom = index
+        statements = defined(program_.atoms[index], program_.values[index], changes=False)
+        return self._printer.lines((Comment(program_.remarks[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
         """Return code for the atoms that only this state reads, and for the bools that these read."""
         lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
-        return [*lines, *(line for place in self._program.computed_in(state) for line in self._value(place, depth=2))]
+        return [*lines, *(line for index in self._program.computed_in(state) for line in self._value(index, depth=2))]
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for place, group in self._program.exclusive:
+        for index, group in self._program.exclusive:
             tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
             lines.append(f"if {' + '.join(f'u32::from({test})' for test in tests)} > 1 {{")
-            lines += [f"{_INDENT}return Err(self.together({place}, &[{', '.join(tests)}]));", "}"]
+            lines += [f"{_INDENT}return Err(self.together({index}, &[{', '.join(tests)}]));", "}"]
         return lines
 
     def _move(self) -> list[str]:

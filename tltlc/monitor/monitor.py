@@ -98,8 +98,8 @@ class Monitor:
     def _take(self, values: Sequence[float], last: bool) -> Step:
         check_exclusive(self.fspa, values, self.steps + 1)
         source = self.state
-        taken = next(edge for edge in self._tables.edges[source] if holds(edge.guard, values))
-        target = self.fspa.states[taken.target]
+        edge_taken = next(edge for edge in self._tables.edges[source] if holds(edge.guard, values))
+        target = self.fspa.states[edge_taken.target]
         outcome = reward_step(
             self._tables, source, target.id, values, self.progress, self.steps + 1, self._options, last
         )
@@ -119,7 +119,7 @@ class Monitor:
             progress=self.progress,
             reward=reward,
             # Adding 0 turns -0 into 0, so that all monitors print the same number.
-            robustness=robustness(taken.guard, values) + 0.0,
+            robustness=robustness(edge_taken.guard, values) + 0.0,
             limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
         )
 

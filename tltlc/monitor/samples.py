@@ -100,20 +100,22 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
         MonitorError: TLT0308 there is no param of that name, or the value is not a finite number;
             TLT0307 the value is outside its range.
     """
-    known = {param.name: param for param in params}
+    param_by_name = {param.name: param for param in params}
     for name, value in given.items():
-        if name not in known:
-            advice = f"there are: {listed(list(known))}" if known else "its atoms use none: leave it out"
+        if name not in param_by_name:
+            advice = (
+                f"there are: {listed(list(param_by_name))}" if param_by_name else "its atoms use none: leave it out"
+            )
             raise _wrong_param("TLT0308", f"there is no param `{name}` to set", advice)
         if isinstance(value, str) or not hasattr(value, "__float__"):
             raise _wrong_param("TLT0308", f"the value given for the param `{name}` is no number")
-        low, high = known[name].low, known[name].high
+        low, high = param_by_name[name].low, param_by_name[name].high
         if not isfinite(value):
             raise _wrong_param("TLT0308", f"the param `{name}` cannot be {shown(value)}")
         if (low is not None and value < low) or (high is not None and value > high):
             title = f"the param `{name}` cannot be {shown(value)}: its range is {range_text(low, high)}"
             raise _wrong_param("TLT0307", title)
-    return {name: float(given.get(name, param.value)) for name, param in known.items()}
+    return {name: float(given.get(name, param.value)) for name, param in param_by_name.items()}
 
 
 def _wrong_param(code: str, title: str, advice: str = "give a number in its range, in SI units") -> MonitorError:
@@ -183,5 +185,5 @@ WAYS_OUT: Final = {
 
 
 def _error(code: str, when: int | str, text: str) -> MonitorError:
-    place = when if isinstance(when, str) else f"step {when}"
-    return MonitorError([Diagnostic(code, f"{place}: {text}", help=WAYS_OUT[code])])
+    location = when if isinstance(when, str) else f"step {when}"
+    return MonitorError([Diagnostic(code, f"{location}: {text}", help=WAYS_OUT[code])])

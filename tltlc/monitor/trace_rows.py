@@ -168,15 +168,15 @@ def _cells(line: str, lines: Lines) -> list[str]:
         line = line.removesuffix("\r")
         _check_returns(line, lines)
         return [cell.strip(_BLANKS) for cell in line.split(",")]
-    cells, place = [], -1
-    while place < len(line):
-        start = _after_blanks(line, place + 1)
+    cells, position = [], -1
+    while position < len(line):
+        start = _after_blanks(line, position + 1)
         if line.startswith('"', start):
-            cell, line, place = _quoted(line, start + 1, lines)
+            cell, line, position = _quoted(line, start + 1, lines)
         else:
             comma = line.find(",", start)
-            place = len(line) if comma < 0 else comma
-            cell = line[start:].removesuffix("\r") if comma < 0 else line[start:place]
+            position = len(line) if comma < 0 else comma
+            cell = line[start:].removesuffix("\r") if comma < 0 else line[start:position]
             _check_returns(cell, lines)
             cell = cell.strip(_BLANKS)
         cells.append(cell)
@@ -200,11 +200,11 @@ def _quoted(line: str, start: int, lines: Lines) -> tuple[str, str, int]:
             raise lines.error("a quote is not closed", help="close each quote; write those inside as two")
         line, start = following, 0
     pieces.append(line[start:end])
-    place = _after_blanks(line, end + 1)
-    place = len(line) if line.endswith("\r") and place == len(line) - 1 else place
-    if place < len(line) and line[place] != ",":
+    position = _after_blanks(line, end + 1)
+    position = len(line) if line.endswith("\r") and position == len(line) - 1 else position
+    if position < len(line) and line[position] != ",":
         raise lines.error("a cell goes on after its quotes", help="write quotes inside a cell as two")
-    return "\n".join(pieces).replace('""', '"'), line, place
+    return "\n".join(pieces).replace('""', '"'), line, position
 
 
 def _closing_quote(line: str, start: int) -> int:

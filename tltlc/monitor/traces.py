@@ -46,9 +46,9 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
 
 def _columns(header: Sequence[str], at: Lines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
     """Return the signals and the positions of their columns."""
-    places: dict[str, int] = {}
-    twice = {name for place, name in enumerate(header) if places.setdefault(name, place) != place}
-    missing = [signal.name for signal in signals if signal.name not in places]
+    positions: dict[str, int] = {}
+    twice = {name for position, name in enumerate(header) if positions.setdefault(name, position) != position}
+    missing = [signal.name for signal in signals if signal.name not in positions]
     if missing:
         title = f"the trace has no column for {listed(missing)}"
         listing = f"its columns are {listed(header[:10])}" + (", …" if len(header) > 10 else "")
@@ -57,7 +57,7 @@ def _columns(header: Sequence[str], at: Lines, signals: Sequence[Signal]) -> lis
     for signal in signals:
         if signal.name in twice:
             raise at.error(f"two columns are called `{signal.name}`", help="keep one of them")
-    return [(signal, places[signal.name]) for signal in signals]
+    return [(signal, positions[signal.name]) for signal in signals]
 
 
 def _other_form(line: str) -> str | None:
@@ -67,10 +67,10 @@ def _other_form(line: str) -> str | None:
     return "separate the columns by commas" if ";" in line or "\t" in line else None
 
 
-def _suggestion(name: str, known: Sequence[str]) -> str | None:
+def _suggestion(name: str, columns: Sequence[str]) -> str | None:
     from difflib import get_close_matches
 
-    squeezed = {"".join(other.split()): other for other in known}
+    squeezed = {"".join(column.split()): column for column in columns}
     close = get_close_matches("".join(name.split()), list(squeezed), n=1)
     return f"is the column `{squeezed[close[0]]}` meant?" if close else None
 

@@ -203,11 +203,11 @@ class _Facts:
         if node in self._computed_before:
             return self._computed_before[node]
         computed = self._computed(node)
-        known = self._ranges.get(node)
-        if computed is not None and known is not None:
-            known = Range(max(computed.low, known.low), min(computed.high, known.high))
-        self._computed_before[node] = known = known or computed
-        return known
+        recorded = self._ranges.get(node)
+        if computed is not None and recorded is not None:
+            recorded = Range(max(computed.low, recorded.low), min(computed.high, recorded.high))
+        self._computed_before[node] = recorded = recorded or computed
+        return recorded
 
     def _computed(self, node: Expression) -> Range | None:
         match node:
@@ -288,7 +288,7 @@ def _square(range_: Range) -> Range:
 
 
 def _hull(ranges: Sequence[Range | None]) -> Range | None:
-    known = [range_ for range_ in ranges if range_ is not None]
-    if len(known) < len(ranges):
+    known_ranges = [range_ for range_ in ranges if range_ is not None]
+    if len(known_ranges) < len(ranges):
         return None
-    return Range(min(range_.low for range_ in known), max(range_.high for range_ in known))
+    return Range(min(range_.low for range_ in known_ranges), max(range_.high for range_ in known_ranges))

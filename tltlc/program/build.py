@@ -62,7 +62,7 @@ class Program:
 
     def computed_in(self, state: int | None) -> list[int]:
         """Return the indices of the atoms that only this state computes; for None, those that every step computes."""
-        return [place for place, only in enumerate(self.only_in) if only == state]
+        return [index for index, only in enumerate(self.only_in) if only == state]
 
     def bools_read_in(self, state: int | None) -> list[str]:
         """Return the variables of the bool signals that only this state reads; for None, those read at every step."""
@@ -82,14 +82,16 @@ class Program:
 
     @property
     def functions(self) -> frozenset[Function]:
-        """The functions that the values of atoms are computed by."""
+        """The functions that the values of the atoms call."""
         return called(statement for value in self.values for statement in value)
 
 
 def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
-    """The program, in which no variable has a name that is ``reserved``: words of a language, names of a template."""
+    """Return the program of an automaton's monitor; no variable has a ``reserved`` name (of a
+    language or a template).
+    """
     names = Names([*reserved, *_OWN])
-    # Room for predicates that nest deeply.
+    # Deeply nested predicates need a higher recursion limit.
     with recursion_room():
         return _program(fspa, names)
 
@@ -114,7 +116,7 @@ def _program(fspa: Fspa, names: Names) -> Program:
     moves = tuple(states.of_state(looked_up, state.id, atoms) for state in fspa.states)
     exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
     compared = {atom for _, group in exclusive for atom in group}
-    only_in = _only_in(atoms, [is_sure and place not in compared for place, is_sure in enumerate(sure)], moves)
+    only_in = _only_in(atoms, [is_sure and index not in compared for index, is_sure in enumerate(sure)], moves)
     written = tuple(() if only == -1 else statements for only, (statements, _) in zip(only_in, values, strict=True))
     return Program(
         fspa=fspa,
@@ -172,12 +174,12 @@ def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
     """
     remarks = [atom.name for atom in fspa.atoms]
     explained = {""}
-    eager = [place for place, only in enumerate(only_in) if only is None]
-    lazy = [place for state in fspa.states for place, only in enumerate(only_in) if only == state.id]
-    for place in (*eager, *lazy):
-        doc = fspa.atoms[place].doc
+    eager = [index for index, only in enumerate(only_in) if only is None]
+    lazy = [index for state in fspa.states for index, only in enumerate(only_in) if only == state.id]
+    for index in (*eager, *lazy):
+        doc = fspa.atoms[index].doc
         if doc not in explained:
-            remarks[place] += f": {doc}"
+            remarks[index] += f": {doc}"
             explained.add(doc)
     return tuple(remarks)
 

@@ -85,8 +85,8 @@ class Printer:
         """Return the lines of a branch: its cases and its ``else``."""
         indent = self.INDENT * depth
         lines: list[str] = []
-        for place, (test, body) in enumerate(statement.cases):
-            lines.append(f"{indent}{self.head(self.text(test), first=not place)}")
+        for index, (test, body) in enumerate(statement.cases):
+            lines.append(f"{indent}{self.head(self.text(test), first=not index)}")
             lines += self.lines(body, depth + 1) or self.nothing(depth + 1)
         if statement.otherwise:
             lines.append(f"{indent}{self.otherwise()}")

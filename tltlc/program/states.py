@@ -111,8 +111,8 @@ class _State:
         lines += self._bounding(first, NEAREST)
         if following:
             lines.append(Declare(OTHER, "real", self._least(following[0]), changes=len(following) > 1))
-        for place, prime in enumerate(following):
-            if place:
+        for index, prime in enumerate(following):
+            if index:
                 lines.append(Assign(OTHER, self._least(prime)))
             better = (Assign(NEAREST, Variable(OTHER)), *self._bounding(prime, OTHER))
             lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))

@@ -28,6 +28,6 @@ def filled(file: str, pieces: Mapping[str, str], present: Collection[str] = ()) 
 
 def fill(text: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
     """Return a text with its places filled, as in :func:`filled`; places inside pieces are left alone."""
-    kept = _BLOCK.sub(lambda block: block[2] if block[1] in present else "", text)
-    kept = _LINE.sub(lambda line: line[0] if pieces[line[1]] else "", kept)
-    return _PLACE.sub(lambda place: pieces[place[1]], kept)
+    remaining = _BLOCK.sub(lambda block: block[2] if block[1] in present else "", text)
+    remaining = _LINE.sub(lambda line: line[0] if pieces[line[1]] else "", remaining)
+    return _PLACE.sub(lambda place: pieces[place[1]], remaining)

@@ -34,7 +34,7 @@ class Real:
 
 @record
 class Int:
-    """A whole number."""
+    """An integer."""
 
     value: int
 

@@ -54,13 +54,13 @@ def _ladders(fspa: Fspa) -> list[list[Rung]]:
         steps[edge.source][edge.guard] = edge.target
         entering[edge.target].add(edge.source)
     ladders: list[list[Rung]] = []
-    taken: set[int] = set()
+    used_states: set[int] = set()
     for edge in fspa.edges:
-        if not taken & {edge.source, edge.target}:
+        if not used_states & {edge.source, edge.target}:
             for ladder in _from((edge.source,), (edge.target,), fspa.states, steps, entering):
-                if taken.isdisjoint(state for rung in ladder for state in rung):
+                if used_states.isdisjoint(state for rung in ladder for state in rung):
                     ladders.append(ladder)
-                    taken.update(state for rung in ladder[:-1] for state in rung)
+                    used_states.update(state for rung in ladder[:-1] for state in rung)
     return ladders
 
 

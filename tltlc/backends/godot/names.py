@@ -55,9 +55,9 @@ RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 
 def snake_case(names: Iterable[str]) -> dict[str, str]:
     """Return unique new names for those that are not in lower case; the engine's classes use capitals."""
-    wanted = list(names)
-    taken = Names({*RESERVED, *wanted})
-    return {name: taken.give(_lower(name)) for name in wanted if name != name.lower()}
+    all_names = list(names)
+    unique_names = Names({*RESERVED, *all_names})
+    return {name: unique_names.give(_lower(name)) for name in all_names if name != name.lower()}
 
 
 def _lower(name: str) -> str:

@@ -27,9 +27,9 @@ def number(value: float) -> str:
     written = sum(character.isdigit() for character in literal.partition("e")[0])
     if whole < _EXACT and abs(exponent) <= _LARGEST_POWER and written <= _MOST_DIGITS:
         return literal
-    near = Fraction(value).limit_denominator(_LARGEST_DIVISOR)
-    if near.numerator < _EXACT and near.numerator / near.denominator == value:
-        return f"({near.numerator}.0 / {near.denominator}.0)"
+    approximation = Fraction(value).limit_denominator(_LARGEST_DIVISOR)
+    if approximation.numerator < _EXACT and approximation.numerator / approximation.denominator == value:
+        return f"({approximation.numerator}.0 / {approximation.denominator}.0)"
     factor, power = _split(value)
     return f"({factor} * pow(2.0, {power}.0))"
 

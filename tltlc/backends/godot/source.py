@@ -136,7 +136,7 @@ class _Source:
                 depth=2,
             ),
             "param_fields": self._param_fields(),
-            "param_checks": Gd.block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
+            "param_checks": Gd.block(line for index in range(len(fspa.params)) for line in self._param_check(index)),
             "param_copies": Gd.block([f"_params.{name} = given.{name}" for name in self._params]),
             "sample": "sample" if program_.reads_sample else "_sample",
             "step": step,
@@ -172,9 +172,9 @@ class _Source:
                 lines += [*remarks, field]
         return Gd.block(lines)
 
-    def _param_check(self, place: int) -> list[str]:
-        param, name = self._fspa.params[place], f"given.{self._params[place]}"
-        refused = [f"\t_wrong = {name}", f"\treturn _refuse(Problem.WRONG_PARAM, {place})"]
+    def _param_check(self, index: int) -> list[str]:
+        param, name = self._fspa.params[index], f"given.{self._params[index]}"
+        refused = [f"\t_wrong = {name}", f"\treturn _refuse(Problem.WRONG_PARAM, {index})"]
         return [f"if not ({_within(name, param)}):", *refused]
 
     # --- the step function ------------------------------------------------------------------------
@@ -187,13 +187,13 @@ class _Source:
         used = self._program.used
         lines: list[str] = []
         checked = False
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
             if signal.type == "bool":
                 continue
-            is_used = self._program.signals[place] in used
+            is_used = self._program.signals[index] in used
             value = name if is_used else f"sample.{name}"
             low, high = _ends(signal)
-            call = f"_read({place}, {value}, {low}, {high})"
+            call = f"_read({index}, {value}, {low}, {high})"
             lines += [f"var {name}: float = sample.{name}"] if is_used else []
             lines += [f"if not ({_within(value, signal)}):", f"\t{f'{name} = ' if is_used else ''}{call}"]
             checked = True
@@ -216,32 +216,32 @@ class _Source:
     def _compute(self) -> list[str]:
         """Return code for the atoms that every step computes."""
         lines = self._values(None)
-        unsure = [(place, name) for place, name in enumerate(self._atoms) if not self._program.sure[place]]
-        for place, name in unsure:
-            lines += [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({place}, {name})"]
+        unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.sure[index]]
+        for index, name in unsure:
+            lines += [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({index}, {name})"]
         return [*lines, *(self._stop() if unsure else [])]
 
     def _values(self, state: int | None) -> list[str]:
         """Return code for the atoms that only this state computes; for None, for those that every step computes."""
-        return [line for place in self._program.computed_in(state) for line in self._value(place)]
+        return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
-    def _value(self, place: int) -> list[str]:
+    def _value(self, index: int) -> list[str]:
         """Return code for the value of one atom."""
-        program_, statements = self._program, self._program.values[place]
-        lines = self._printer.comment(program_.remarks[place])
-        lines += self._printer.lines(defined(program_.atoms[place], statements))
+        program_, statements = self._program, self._program.values[index]
+        lines = self._printer.comment(program_.remarks[index])
+        lines += self._printer.lines(defined(program_.atoms[index], statements))
         if called(statements) & FAILING:
-            lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
+            lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {index})"]
         return lines
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for place, group in self._program.exclusive:
+        for index, group in self._program.exclusive:
             names = [self._atoms[atom] for atom in group]
             holding = " + ".join(f"int({name} > 0.0)" for name in names)
             lines += [f"if {holding} > 1:", f"\t_clashing = [{', '.join(names)}]"]
-            lines.append(f"\treturn _refuse(Problem.TOGETHER, {place})")
+            lines.append(f"\treturn _refuse(Problem.TOGETHER, {index})")
         return lines
 
     def _move(self) -> list[str]:
