@@ -281,7 +281,9 @@ class _Source:
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts to numbers the bools that atoms of this state read."""
+        """Return code that converts bools to numbers: those that only this state reads; for None,
+        those read at every step.
+        """
         return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:

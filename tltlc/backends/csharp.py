@@ -187,7 +187,9 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts to numbers the bools that atoms of this state read."""
+        """Return code that converts bools to numbers: those that only this state reads; for None,
+        those read at every step.
+        """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _compute(self) -> list[str]:

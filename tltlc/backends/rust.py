@@ -190,7 +190,9 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts to numbers the bools that atoms of this state read."""
+        """Return code that converts bools to numbers: those that only this state reads; for None,
+        those read at every step.
+        """
         names = self._program.bools_read_in(state)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 

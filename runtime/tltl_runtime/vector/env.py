@@ -137,8 +137,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         seed, or with None, it continues with its random generator; the first reset without a seed
         draws one for each.
 
-        ``options["reset_mask"]``, one bool per environment, leaves the others unchanged; it is not
-        passed on.
+        ``options["reset_mask"]``, one bool per environment, chooses the environments to reset. The
+        others continue their episodes. The mask is not passed on to the environments.
         """
         self._check_open()
         if self._workers.is_waiting:

@@ -206,7 +206,9 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return code that converts to numbers the bools that atoms of this state read."""
+        """Return code that converts bools to numbers: those that only this state reads; for None,
+        those read at every step.
+        """
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
 
