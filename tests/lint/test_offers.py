@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import tltlc
+from tests.golden.cases import Case, cases
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, TltlError
 from tltlc.grammar.parser import parse
@@ -15,7 +17,7 @@ from tltlc.resolve.program import resolve
 from tltlc.tools.lint.fixes import Offer, of_errors
 from tltlc.tools.lint.scopes import after
 
-GOLDEN = sorted((Path(__file__).parents[1] / "golden" / "error").glob("TLT0[123]*/input.tltl"))
+GOLDEN = [case for case in cases("error") if re.match("TLT0[123]", case.name) and "input.tltl" in case.files]
 HEAD = """clock 10 Hz
 import stealth
 entity key, chest
@@ -201,10 +203,11 @@ def check(source: SourceFile) -> None:
         assert (len(parse(fixed)[1]), len(errors(fixed))) < (len(parse(source)[1]), len(errors(source)))
 
 
-@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.parent.name)
-def test_fixes_of_golden_messages(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(path.parent)
-    check(SourceFile(path.name, path.read_text(encoding="utf-8")))
+@pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case.name)
+def test_fixes_of_golden_messages(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case.unpack(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    check(SourceFile("input.tltl", case.files["input.tltl"].decode()))
 
 
 @pytest.mark.parametrize(("clause", "meant"), MEANT.items(), ids=MEANT)

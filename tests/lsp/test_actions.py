@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 from lsprotocol import types
 
+from tests.golden.cases import Case, cases
 from tests.lsp.texts import opened
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Edit
@@ -17,7 +19,8 @@ from tltlc.interfaces.lsp.diagnostics import label_in
 from tltlc.interfaces.lsp.edits import applied
 from tltlc.interfaces.lsp.positions import offset
 
-ERRORS = sorted((Path(__file__).parents[1] / "golden" / "error").glob("TLT0[123]*/input.tltl"))
+ERRORS = [case for case in cases("error") if re.match("TLT0[123]", case.name) and "input.tltl" in case.files]
+"""Errors of syntax, names and types."""
 URI = "file:///x.tltl"
 
 
@@ -67,9 +70,10 @@ def test_a_way_out(text: str, title: str, after: str) -> None:
     assert found.get(title) == after, found
 
 
-@pytest.mark.parametrize("path", ERRORS, ids=lambda path: path.parent.name)
-def test_every_way_out_leaves_less_to_be_mended(path: Path) -> None:
-    document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
+@pytest.mark.parametrize("case", ERRORS, ids=lambda case: case.name)
+def test_every_way_out_leaves_less_to_be_mended(case: Case, tmp_path: Path) -> None:
+    case.unpack(tmp_path)
+    document, _, _ = opened(case.files["input.tltl"].decode(), tmp_path)
     for each in document.said:
         label = label_in(each, document)
         if label is not None and each.severity == "error":
@@ -83,11 +87,12 @@ def wrong(document: Document) -> tuple[int, int]:
     return len(parse(document.source)[1]), sum(each.severity == "error" for each in document.said)
 
 
-def test_many_messages_have_a_way_out() -> None:
-    """Of all errors of syntax, names and types, a fair part can be mended at once."""
-    found = 0
-    for path in ERRORS:
-        document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
-        labels = [label_in(each, document) for each in document.said]
-        found += any(offered(document, label.span) for label in labels if label is not None)
-    assert found >= len(ERRORS) // 5
+def test_many_errors_have_a_fix(tmp_path: Path) -> None:
+    fixed = 0
+    for case in ERRORS:
+        folder = tmp_path / case.name
+        case.unpack(folder)
+        document, _, _ = opened(case.files["input.tltl"].decode(), folder)
+        labels = [label_in(diagnostic, document) for diagnostic in document.said]
+        fixed += any(offered(document, label.span) for label in labels if label is not None)
+    assert fixed >= len(ERRORS) // 5

@@ -18,7 +18,11 @@ PYODIDE: Final = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_
 
 _BY_SERVER: Final = 'data-compiler="server"'
 _BY_BROWSER: Final = 'data-compiler="browser"'
-_LEFT_OUT: Final = ("cli", "conformance", "hoa", "lsp", "mine", "diff", "fmt", "backends/templates", "stdlib")
+_LEFT_OUT: Final = (
+    *(f"interfaces/{name}" for name in ("cli", "lsp")),
+    *(f"tools/{name}" for name in ("conformance", "hoa", "mine", "diff", "fmt")),
+    *("backends/templates", "stdlib"),
+)
 """Parts of the compiler that the page does not use."""
 _ENDINGS: Final = (".py", ".json", ".lark", ".md", ".tltl")
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import tltlc
+from tests.golden.cases import Case, cases
 from tltl_runtime.stealth.level import Box, Level, Solid, entity_names
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.made_for import LEVELS
