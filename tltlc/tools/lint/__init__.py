@@ -1,4 +1,4 @@
-"""Remarks on specs that compile and yet may not say what was meant, some of them with a fix.
+"""Lint rules for specs that compile but may not mean what their author intended. Some have a fix.
 
-A rule is a module in :mod:`tltlc.tools.lint.rules`, found by its place there.
+Each rule is a module in :mod:`tltlc.tools.lint.rules`.
 """

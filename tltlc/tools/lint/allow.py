@@ -1,5 +1,6 @@
-"""Findings less those that comments silence (:mod:`tltlc.grammar.allow_comments`), and the comments that silence
-nothing.
+"""Apply ``allow`` comments to findings, and report comments that have no effect.
+
+:mod:`tltlc.grammar.allow_comments` defines these comments.
 """
 
 from __future__ import annotations
@@ -20,38 +21,43 @@ from tltlc.tools.lint.rule import Finding, removal
 
 CODE: Final = "TLT0427"
 SEVERITY: Final[Severity] = "warning"
-_MEANT: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}\b)")
+_INTENDED: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}\b)")
 
 
-def silenced(view: View, found: Iterable[Finding]) -> list[Finding]:
-    """The findings that no comment silences, of the file where they are; and one for each code that the file itself
-    allows in vain.
+def silenced(view: View, findings: Iterable[Finding]) -> list[Finding]:
+    """Return the findings that no comment silences, plus findings about the comments themselves.
+
+    A comment silences findings in its own file. Each code that the linted file allows in vain gets
+    a finding, unless the comment also allows TLT0427. Each comment that names no code or is
+    misspelt gets a finding, too.
     """
     comments = Silencing(loaded.module for loaded in view.modules)
-    left = [finding for finding in found if not comments.silences(finding.diagnostic)]
+    left = [finding for finding in findings if not comments.silences(finding.diagnostic)]
     own = comments.allowed(view.source)
-    asked_for = {each.comment for each in own if each.code == CODE}
+    asked_for = {allowance.comment for allowance in own if allowance.code == CODE}
     undecided = _Undecided(view)
     needless = [
-        each
-        for each in own
-        if each.comment not in asked_for and not comments.has_silenced(each) and not undecided.touch(each)
+        allowance
+        for allowance in own
+        if allowance.comment not in asked_for
+        and not comments.has_silenced(allowance)
+        and not undecided.touch(allowance)
     ]
     in_vain = set(map(id, needless))
-    kept = {each.comment for each in own if id(each) not in in_vain}
+    kept = {allowance.comment for allowance in own if id(allowance) not in in_vain}
     fixes = {
         comment: removal("Remove it", (without(view.source, comment.span),))
-        for comment in dict.fromkeys(each.comment for each in needless)
+        for comment in dict.fromkeys(allowance.comment for allowance in needless)
         if comment not in kept
     }
-    left += [_in_vain(each, fixes.get(each.comment)) for each in needless]
-    bare = [each for each in view.module.comments if is_allowing(each) and not codes(each)]
-    left += [_without_code(each, view.source) for each in bare]
-    return left + [_misspelt(each, view.source) for each in view.module.comments if _is_misspelt(each)]
+    left += [_in_vain(allowance, fixes.get(allowance.comment)) for allowance in needless]
+    bare = [comment for comment in view.module.comments if is_allowing(comment) and not codes(comment)]
+    left += [_without_code(comment, view.source) for comment in bare]
+    return left + [_misspelt(comment, view.source) for comment in view.module.comments if _is_misspelt(comment)]
 
 
 class _Undecided:
-    """The specs that no trace satisfies, or every one: until they are mended, most rules say nothing."""
+    """The specs that every trace satisfies, or none. Most rules skip them until they are fixed."""
 
     def __init__(self, view: View) -> None:
         self._specs = sorted(
@@ -60,37 +66,44 @@ class _Undecided:
         self._starts = [span.start for span in self._specs]
         self._known: dict[int, bool] = {}
 
-    def touch(self, each: Allowed) -> bool:
-        """Whether a comment speaks of any of them."""
-        if each.places is None:
+    def touch(self, allowance: Allowed) -> bool:
+        """Whether a comment applies to any of these specs."""
+        if allowance.places is None:
             return bool(self._specs)
-        # Comments that speak of the same line share its places.
-        if id(each.places) not in self._known:
-            self._known[id(each.places)] = any(map(self._covers, each.places))
-        return self._known[id(each.places)]
+        # Comments on the same line share one tuple of places.
+        if id(allowance.places) not in self._known:
+            self._known[id(allowance.places)] = any(map(self._covers, allowance.places))
+        return self._known[id(allowance.places)]
 
     def _covers(self, place: Span) -> bool:
         index = bisect_right(self._starts, place.start) - 1
         return index >= 0 and self._specs[index].covers(place)
 
 
-def _in_vain(each: Allowed, fix: Fix | None) -> Finding:
-    """``fix`` removes the comment; there is none where it still allows something else, and is left to the author."""
-    where = "in this file" if each.places is None else "here"
-    title = f"this allows {each.code}, which is not found {where}"
-    label = Label(each.source, each.span)
+def _in_vain(allowance: Allowed, fix: Fix | None) -> Finding:
+    """Return the finding for an allowed code that silences nothing.
+
+    ``fix`` removes the comment. It is None if the comment allows other codes with effect; then the
+    author has to edit the comment.
+    """
+    where = "in this file" if allowance.places is None else "here"
+    title = f"this allows {allowance.code}, which is not found {where}"
+    label = Label(allowance.source, allowance.span)
     return Finding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, (fix,) if fix else ()))
 
 
 def _without_code(comment: Comment, source: SourceFile) -> Finding:
-    title, way_out = "this comment allows nothing", "name a code, e.g. `// tltlc: allow TLT0419`"
-    return Finding(Diagnostic(CODE, title, (Label(source, comment.span),), way_out, SEVERITY))
+    title, suggestion = "this comment allows nothing", "name a code, e.g. `// tltlc: allow TLT0419`"
+    return Finding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))
 
 
 def _is_misspelt(comment: Comment) -> bool:
-    return bool(_MEANT.match(comment.text)) and not is_allowing(comment)
+    return bool(_INTENDED.match(comment.text)) and not is_allowing(comment)
 
 
 def _misspelt(comment: Comment, source: SourceFile) -> Finding:
-    title, way_out = "this comment allows nothing", "write `// tltlc: allow`, with two slashes, and the code behind it"
-    return Finding(Diagnostic(CODE, title, (Label(source, comment.span),), way_out, SEVERITY))
+    title, suggestion = (
+        "this comment allows nothing",
+        "write `// tltlc: allow`, with two slashes, and the code behind it",
+    )
+    return Finding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))

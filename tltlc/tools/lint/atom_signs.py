@@ -1,4 +1,4 @@
-"""Which signs the value of an atom can have, for all values of its signals and params."""
+"""Determine which signs the value of an atom can have over all values of its signals and params."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Sign = Literal["positive", "not positive", "negative", "not negative"]
 
 
 class Declares(Protocol):
-    """What declares signals and params, as an automaton does."""
+    """Anything that declares signals and params, for example an automaton."""
 
     @property
     def signals(self) -> tuple[Signal, ...]:
@@ -32,7 +32,7 @@ class Declares(Protocol):
 
 _MOST_POINTS: Final = 600
 _ABOVE_ZERO: Final = 1e3 * TOLERANCE
-"""What is proved to be no less than this is above 0, whatever the rounding."""
+"""A value proved to be at least this is above 0 despite rounding."""
 
 _RANGES: Final[dict[Sign, tuple[float, float]]] = {
     "positive": (_ABOVE_ZERO, inf),
@@ -45,7 +45,7 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 def can_be(sign: Sign, atom: Atom, of: Declares, tries: int = _MOST_POINTS) -> bool:
     """Whether a search finds values of signals and params for which an atom has this sign.
 
-    It takes so many tries, and no more steps than a check of a predicate.
+    The search makes at most ``tries`` tries and at most as many steps as a check of a predicate.
     """
     try:
         with limited(WORK["check of a predicate"]):
@@ -60,7 +60,7 @@ def can_be(sign: Sign, atom: Atom, of: Declares, tries: int = _MOST_POINTS) -> b
 
 
 def is_always(sign: Sign, atom: Atom, of: Declares) -> bool:
-    """Whether it is proved that the value of an atom has this sign for all values of its signals and params."""
+    """Whether it is proved that an atom has this sign for all values of its signals and params."""
     low, high = _RANGES[sign]
     try:
         with limited(WORK["check of a predicate"]):

@@ -1,4 +1,7 @@
-"""What rules see of a file: its syntax tree, its names, its specs and their automata, each made once for all rules."""
+"""The view of a file that rules get: its syntax tree, names, specs and automata.
+
+Everything in it is computed once for all rules.
+"""
 
 from __future__ import annotations
 
@@ -26,39 +29,48 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 
 @record
 class Expression:
-    """An expression of a clause, and what its names stand for there: the variables of quantifiers have values."""
+    """An expression of a clause, with the environment that resolves its names.
+
+    The environment also has the values of the variables of enclosing quantifiers.
+    """
 
     tree: Expr
     env: Env
 
     @property
     def source(self) -> SourceFile:
-        """The text that the expression stands in."""
+        """The source file that contains the expression."""
         return self.env.scope.source
 
     @property
     def text(self) -> str:
-        """The expression as it is written, on one line, without brackets around it."""
+        """The source text of the expression on one line, without brackets around it."""
         return " ".join(self.source.slice(inner(self.tree).span).split())
 
     def at(self, tree: Expr) -> Expression:
-        """A part of this expression that lies in no quantifier of it."""
+        """Return a part of this expression that is not inside one of its quantifiers."""
         return Expression(tree, self.env)
 
     def formula(self) -> Formula | None:
-        """The formula that it stands for, None where it stands for none."""
+        """Return the formula that the expression stands for, or None if it stands for none."""
         try:
             return formulas.formula(self.tree, self.env)
         except ResolutionError:
             return None
 
     def is_of_one_step(self) -> bool:
-        """Whether it asks something of the step that it is about and of no other: atoms without a temporal operator."""
+        """Whether the expression depends on one step alone.
+
+        It does if it has atoms and no temporal operator.
+        """
         formula = self.formula()
         return formula is not None and is_state(formula) and bool(formula.atoms())
 
     def parts(self) -> Iterator[Expression]:
-        """The expression and everything in it, outer before inner; the body of a quantifier once for each entity."""
+        """Yield the expression and everything in it, outer before inner.
+
+        The body of a quantifier comes once for each entity.
+        """
         waiting = [self]
         while waiting:
             part = waiting.pop()
@@ -66,7 +78,7 @@ class Expression:
             waiting += reversed(part.children())
 
     def children(self) -> list[Expression]:
-        """The operands, in order."""
+        """Return the operands, in order."""
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body
             return [Expression(body, self.env.also(variable, entity(name, self.env))) for name in self.tree.entities]
@@ -75,7 +87,7 @@ class Expression:
 
 @record
 class SpecView:
-    """A spec as it is written, resolved and compiled."""
+    """A spec with its declaration, its resolved form and its automaton."""
 
     declaration: SpecDecl
     spec: Spec
@@ -84,7 +96,10 @@ class SpecView:
 
     @property
     def decision(self) -> Decision:
-        """What decides whether no trace satisfies parts of the spec together, over the traces that it is about."""
+        """The function that decides whether some parts of the spec are unsatisfiable together.
+
+        It decides over finite or infinite traces, depending on the semantics of the spec.
+        """
         if self.spec.semantics == "finite":
             return unsatisfiable
         from tltlc.automaton.infinite import contradiction as over_infinite_traces
@@ -93,40 +108,47 @@ class SpecView:
 
     @property
     def is_settled(self) -> bool:
-        """Whether every trace satisfies it, or none does."""
+        """Whether every trace satisfies the spec, or none does."""
         return self.fspa.states[0].verdict in ("satisfied", "violated")
 
     def clauses(self, *kinds: str) -> Iterator[tuple[Clause, Expression]]:
-        """The clauses of these kinds (``reach keep avoid require``) that hold a formula, in order."""
+        """Yield the clauses of these kinds that have a formula, in order.
+
+        The kinds with formulas are ``reach keep avoid require``.
+        """
         for clause in self.declaration.clauses:
             if clause.kind in kinds and not isinstance(clause.value, tuple):
                 yield clause, Expression(clause.value, self.env)
 
     def formulas(self) -> Iterator[Expression]:
-        """The formulas of all clauses, in order."""
+        """Yield the formulas of all clauses, in order."""
         yield from (value for _, value in self.clauses("reach", "keep", "avoid", "require"))
 
     def name_label(self, message: str = "") -> Label:
-        """The place of the spec's name."""
+        """Return a label on the name of the spec."""
         return Label(self.spec.source, self.spec.name_span, message)
 
     def atom_label(self, name: str, message: str = "") -> Label:
-        """The place where an atom of the spec is first used; the spec's name where that is not found."""
+        """Return a label on the first use of an atom in the spec.
+
+        The label is on the spec's name if no use is found.
+        """
         for formula in self.formulas():
             for part in formula.parts():
                 if isinstance(part.tree, (Name, Call)) or _is_comparison(part.tree):
-                    found = part.formula()
-                    if found is not None and name in found.atoms():
+                    part_formula = part.formula()
+                    if part_formula is not None and name in part_formula.atoms():
                         return Label(part.source, part.tree.span, message)
         return self.name_label(message)
 
 
 @record
 class View:
-    """A file without errors.
+    """A file that compiles without errors.
 
-    ``said`` is what the compiler has to say of it; ``modules`` are those that it imports and itself, last;
-    ``elsewhere`` are names that other files may use of it; ``program`` has its tests.
+    ``said`` holds the diagnostics of the compiler. ``modules`` are the imported modules, and last
+    the file's own. ``elsewhere`` has the names that other files may use from this one. ``program``
+    has its tests.
     """
 
     module: Module
@@ -139,21 +161,24 @@ class View:
 
     @property
     def source(self) -> SourceFile:
-        """The text of the file."""
+        """The source file."""
         return self.module.source
 
     @property
     def used(self) -> Mentioned:
-        """The names that the file itself uses, or others use of it."""
+        """The names that are used by the file itself or, from this file, by others."""
         return Mentioned(mentions(self.module), self.elsewhere)
 
     def label(self, span: Span, message: str = "") -> Label:
-        """A place in the file."""
+        """Return a label on a place in the file."""
         return Label(self.source, span, message)
 
 
 def operand(part: Expression) -> str:
-    """The text of an expression as an operand of ``and`` or of a word like ``eventually``, in brackets where needed."""
+    """Return the text of an expression as an operand of ``and`` or of a word like ``eventually``.
+
+    It has brackets if it needs them.
+    """
     tree = inner(part.tree)
     return f"({part.text})" if isinstance(tree, (Binary, Quantified)) and not _is_comparison(tree) else part.text
 
@@ -163,7 +188,7 @@ def _is_comparison(tree: Expr) -> bool:
 
 
 def inner(tree: Expr) -> Expr:
-    """An expression without the brackets around it."""
+    """Return an expression without the brackets around it."""
     while isinstance(tree, Group):
         tree = tree.inner
     return tree

@@ -1,4 +1,4 @@
-"""The fixes of diagnostics that can be taken at once: each is tried before it is offered."""
+"""Find fixes of diagnostics that can be applied as they are. Each is tried before it is offered."""
 
 from __future__ import annotations
 
@@ -18,28 +18,29 @@ from tltlc.tools.lint.rule import Finding
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
 _MOST: Final = 8
-"""Of more errors, fixes are not tried."""
+"""Only the fixes of this many errors are tried."""
 
 Errors = Callable[[SourceFile], Iterable[Diagnostic]]
-"""What is wrong with a text."""
+"""Returns the errors in a text."""
 
 
 @record
 class Offer:
-    """A fix of a diagnostic that can be taken as it is."""
+    """A fix that can be applied as it is, with its diagnostic."""
 
     diagnostic: Diagnostic
     fix: Fix
 
 
-def of_findings(found: Iterable[Finding], module: Module) -> Iterator[Offer]:
-    """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow.
+def of_findings(findings: Iterable[Finding], module: Module) -> Iterator[Offer]:
+    """Yield the fixes of lint findings in a module, as ``tltlc lint --fix`` applies them.
 
-    If the module has comments, this tries each fix once, and stops after ``WORK["fixes tried"]`` fixes.
+    A fix must not change what the ``allow`` comments of the module apply to. If the module has such
+    comments, this tries each fix once, and stops after ``WORK["fixes tried"]`` fixes.
     """
     has_comments = bool(spoken_of(module))
     tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}
-    for finding in found:
+    for finding in findings:
         for fix in finding.diagnostic.fixes:
             edits: tuple[Edit, ...] | None = fix.edits
             if has_comments:
@@ -50,14 +51,19 @@ def of_findings(found: Iterable[Finding], module: Module) -> Iterator[Offer]:
                 yield Offer(finding.diagnostic, replace(fix, edits=edits))
 
 
-def of_errors(told: Iterable[Diagnostic], source: SourceFile, errors: Errors) -> Iterator[Offer]:
-    """The fixes of these messages about a text that leave less to be mended."""
-    candidates = [Offer(each, fix) for each in islice(told, _MOST) if _is_in(source, each) for fix in each.fixes]
+def of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: Errors) -> Iterator[Offer]:
+    """Yield the fixes of these diagnostics about a text that leave fewer errors in it."""
+    candidates = [
+        Offer(diagnostic, fix)
+        for diagnostic in islice(diagnostics, _MOST)
+        if _is_in(source, diagnostic)
+        for fix in diagnostic.fixes
+    ]
     if not candidates:
         return
-    before = _wrong(source, errors)
+    before = _count_errors(source, errors)
     for offer in candidates:
-        if _is_less(_wrong(after(source, offer.fix.edits), errors), before):
+        if _is_fewer(_count_errors(after(source, offer.fix.edits), errors), before):
             yield offer
 
 
@@ -65,11 +71,15 @@ def _is_in(source: SourceFile, diagnostic: Diagnostic) -> bool:
     return bool(diagnostic.labels) and diagnostic.labels[0].source == source
 
 
-def _wrong(source: SourceFile, errors: Errors) -> tuple[int, Counter[str]]:
-    """How many errors of syntax there are, and all errors by their codes."""
-    return len(parse(source)[1]), Counter(each.code for each in errors(source) if each.severity == "error")
+def _count_errors(source: SourceFile, errors: Errors) -> tuple[int, Counter[str]]:
+    """Return the number of syntax errors, and a count of all errors by code."""
+    return len(parse(source)[1]), Counter(error.code for error in errors(source) if error.severity == "error")
 
 
-def _is_less(left: tuple[int, Counter[str]], before: tuple[int, Counter[str]]) -> bool:
-    """Whether fewer errors are left, and none of a new kind; what could be read again may be wrong in itself."""
-    return left[0] < before[0] or (left[0] == before[0] and left[1] < before[1])
+def _is_fewer(now: tuple[int, Counter[str]], before: tuple[int, Counter[str]]) -> bool:
+    """Whether fewer errors are left.
+
+    With as many syntax errors as before, no code may have more errors than before. With fewer
+    syntax errors, more of the text is parsed, so new errors of other kinds may appear.
+    """
+    return now[0] < before[0] or (now[0] == before[0] and now[1] < before[1])

@@ -1,4 +1,4 @@
-"""Applying fixes to a text, again and again until there is none."""
+"""Apply fixes to a text repeatedly until no fix is left."""
 
 from __future__ import annotations
 
@@ -18,12 +18,16 @@ from tltlc.tools.lint.run import lint
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
 _MOST_ROUNDS = 100
-"""Every round removes something; this many would be needed by no file that a person has written."""
+"""A limit that no real file reaches: every round removes something."""
 
 
 @record
 class Fixed:
-    """A text after all fixes, what they were, each in the text in which it was found, and what is left to say."""
+    """A text after all fixes.
+
+    ``fixed`` are the diagnostics that were fixed, each with its place in the text where it was
+    found. ``left`` are the findings that remain.
+    """
 
     source: SourceFile
     fixed: tuple[Diagnostic, ...]
@@ -36,31 +40,35 @@ def fix(
     levels: Mapping[str, str] = EMPTY,
     elsewhere: Container[str] = frozenset(),
 ) -> Fixed:
-    """A file with every fix applied, until nothing changes.
+    """Return a file with all fixes applied, repeated until nothing changes.
 
-    ``levels`` are as of :func:`tltlc.tools.lint.run.levelled`, ``elsewhere`` as of :func:`tltlc.tools.lint.run.lint`.
+    ``levels`` is as in :func:`tltlc.tools.lint.run.levelled`, ``elsewhere`` as in
+    :func:`tltlc.tools.lint.run.lint`.
 
-    Errors: as of :func:`tltlc.tools.lint.run.lint`.
+    Errors: the same as :func:`tltlc.tools.lint.run.lint`.
     """
-    found = lint(source, options, elsewhere, levels)
+    findings = lint(source, options, elsewhere, levels)
     fixed: list[Diagnostic] = []
     for _ in range(_MOST_ROUNDS):
-        edited, applied = _applied(source, found)
+        edited, applied = _applied(source, findings)
         if not applied:
             break
         try:
-            left = lint(edited, options, elsewhere, levels)
+            remaining = lint(edited, options, elsewhere, levels)
         except TltlError:
-            # A fix that breaks a file is none: the file stays as it was before.
+            # These fixes break the file, so discard them and keep the text before them.
             break
-        source, found = edited, left
+        source, findings = edited, remaining
         fixed += applied
-    return Fixed(source, tuple(fixed), found)
+    return Fixed(source, tuple(fixed), findings)
 
 
-def _applied(source: SourceFile, found: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
-    """The text with all fixes that do not overlap and keep the scopes of comments, and what they mend."""
-    fixable = _apart([finding for finding in found if finding.fix])
+def _applied(source: SourceFile, findings: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
+    """Apply all fixes that do not overlap and do not change what comments apply to.
+
+    Returns the new text and the diagnostics that were fixed.
+    """
+    fixable = _without_overlaps([finding for finding in findings if finding.fix])
     if not fixable:
         return source, []
     module, _ = parse(source)
@@ -71,23 +79,26 @@ def _applied(source: SourceFile, found: tuple[Finding, ...]) -> tuple[SourceFile
     return after(source, edits), [finding.diagnostic for finding in applied]
 
 
-def _apart(findings: Iterable[Finding]) -> list[Finding]:
-    """The findings whose edits overlap none of an earlier one; two may share an edit."""
-    apart: list[Finding] = []
+def _without_overlaps(findings: Iterable[Finding]) -> list[Finding]:
+    """Return the findings whose edits do not overlap with those of an earlier finding.
+
+    Two findings may share an edit.
+    """
+    accepted: list[Finding] = []
     spans: list[tuple[int, int]] = []
     known: set[Edit] = set()
     for finding in findings:
         new = [(edit.span.start, edit.span.end) for edit in finding.fix if edit not in known]
-        if not any(_meets(span, spans) for span in new):
-            apart.append(finding)
+        if not any(_overlaps(span, spans) for span in new):
+            accepted.append(finding)
             known.update(finding.fix)
             for span in new:
                 insort(spans, span)
-    return apart
+    return accepted
 
 
-def _meets(span: tuple[int, int], spans: list[tuple[int, int]]) -> bool:
-    """Whether a span overlaps one of the sorted ones, which do not overlap each other."""
+def _overlaps(span: tuple[int, int], spans: list[tuple[int, int]]) -> bool:
+    """Whether a span overlaps with one of ``spans``, which are sorted and do not overlap."""
     place = bisect(spans, span)
     start, end = span
     return any(other < end and start < stop for other, stop in spans[max(0, place - 1) : place + 1])
@@ -98,9 +109,11 @@ def _edits(findings: Iterable[Finding]) -> tuple[Edit, ...]:
 
 
 def _keeping_scopes(module: Module, findings: Sequence[Finding]) -> tuple[list[Finding], tuple[Edit, ...]]:
-    """The findings that can be fixed together without a change of what a comment speaks of, and their edits.
+    """Return the findings that can be fixed together, and their edits.
 
-    All are tried at once, then halves: a file has few that cannot be fixed. After some attempts, the rest is left.
+    Their fixes do not change what comments apply to. This tries all findings at once and then
+    halves, because most files have few findings that cannot be fixed. It stops after ``WORK["fixes
+    tried"]`` attempts.
     """
     applied: list[Finding] = []
     edits: tuple[Edit, ...] = ()

@@ -1,4 +1,4 @@
-"""The goals of a spec: what has to come at some time, one step each."""
+"""Find the goals of a spec: expressions that must hold at some step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from tltlc.tools.lint.file_view import Expression, SpecView, inner
 
 
 def goals(spec: SpecView) -> Iterator[Expression]:
-    """The steps of each ``reach`` and ``then``, and what stands behind ``eventually``; nothing of what is negated."""
+    """Yield each step of ``reach`` and ``then``, and each operand of ``eventually``.
+
+    Negated expressions have no goals.
+    """
     for clause, value in spec.clauses("reach", "keep", "require"):
         if clause.kind == "reach":
             for step in walk.operands(value.tree, "then"):
@@ -21,37 +24,40 @@ def goals(spec: SpecView) -> Iterator[Expression]:
 
 
 def conjuncts(goal: Expression) -> list[Expression]:
-    """What a goal asks for together, in order; of `all` what it asks for of each entity."""
-    found: list[Expression] = []
+    """Return the conjuncts of a goal, in order; for `all`, the conjuncts for each entity."""
+    parts: list[Expression] = []
     for tree in walk.conjuncts(goal.tree):
         part = goal.at(inner(tree))
         if isinstance(part.tree, Quantified) and part.tree.all:
-            found += [each for body in part.children() for each in conjuncts(body)]
+            parts += [conjunct for body in part.children() for conjunct in conjuncts(body)]
         else:
-            found.append(part)
-    return found
+            parts.append(part)
+    return parts
 
 
 def is_of_implications(value: Expression) -> bool:
-    """Whether it asks for nothing else: as a goal it would be met by their conditions not holding."""
+    """Whether an expression consists of implications only.
+
+    As a goal it would be met as soon as the conditions of the implications do not hold.
+    """
     trees = (part.tree for part in conjuncts(value))
     return all(isinstance(tree, Binary) and tree.op == "implies" for tree in trees)
 
 
 def _inside(value: Expression) -> Iterator[Expression]:
-    """The goals in an expression, outer before inner; takes no recursion."""
+    """Yield the goals in an expression, outer before inner. Does not recurse."""
     waiting = [value]
     while waiting:
         part = waiting.pop()
         tree = part.tree
         if isinstance(tree, Unary) and tree.op == "not":
             continue
-        found = part.children()
+        operands = part.children()
         if isinstance(tree, Unary) and tree.op == "F":
-            yield from found
+            yield from operands
         elif isinstance(tree, Binary) and tree.op == "then":
-            found = [part.at(step) for step in walk.operands(tree, "then")]
-            yield from found
+            operands = [part.at(step) for step in walk.operands(tree, "then")]
+            yield from operands
         elif isinstance(tree, Binary) and tree.op == "implies":
-            found = found[1:]
-        waiting += reversed(found)
+            operands = operands[1:]
+        waiting += reversed(operands)

@@ -1,4 +1,4 @@
-"""Which names of a file others may use: those that import it, directly or through others."""
+"""Find the names of a file that other files may use by importing it, directly or through others."""
 
 from __future__ import annotations
 
@@ -11,12 +11,18 @@ from typing import Final
 from tltlc.core.record import record
 
 _PIECE: Final = re.compile(r'//[^\n]*|"(?P<text>[^"\n]*)"?|(?P<name>[A-Za-z_][\w.]*)')
-"""A comment, a text or a name: each takes all of its characters, so that none is looked at twice."""
+"""A comment, a quoted text or a name.
+
+Each match consumes all of its characters, so nothing is scanned twice.
+"""
 
 
 @record
 class Words:
-    """What a file imports, by the last part of the name without ``.tltl``, and every name outside its comments."""
+    """The imports of a file and every name outside its comments.
+
+    An import is stored as the last part of its name, without ``.tltl``.
+    """
 
     stem: str
     imports: frozenset[str]
@@ -25,10 +31,10 @@ class Words:
 
 @record
 class Used:
-    """The names that files use. It contains every end of a name with dots as well: ``near`` of ``game.near``.
+    """The names that files use, and every suffix of a dotted name: ``near`` of ``game.near``.
 
-    ``backwards`` are the names with dots in sorted order, each from its last character to its first: there are too
-    many ends to list them all.
+    ``backwards`` are the dotted names, each reversed, in sorted order. There are too many suffixes
+    to list them all.
     """
 
     names: frozenset[str]
@@ -37,44 +43,48 @@ class Used:
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or name in self.names:
             return name in self.names
-        beginning = f".{name}"[::-1]
-        place = bisect_left(self.backwards, beginning)
-        return place < len(self.backwards) and self.backwards[place].startswith(beginning)
+        reversed_suffix = f".{name}"[::-1]
+        place = bisect_left(self.backwards, reversed_suffix)
+        return place < len(self.backwards) and self.backwards[place].startswith(reversed_suffix)
 
 
 def words(path: str, text: str) -> Words:
-    """The words of a file, which need not compile; where it imports nothing, its names do not matter."""
+    """Return the words of a file, which need not compile.
+
+    If the file imports nothing, its names do not matter and are left out.
+    """
     targets: set[str] = set()
     names: set[str] = set()
-    before = ""
+    previous = ""
     for quoted, name in _pieces(text):
-        if before == "import":
+        if previous == "import":
             targets.add(_stem(quoted or name.replace(".", "/")))
         names.add(name)
-        before = name
+        previous = name
     return Words(_stem(path), frozenset(targets), frozenset(names) if targets else frozenset())
 
 
 def used_elsewhere(path: str, others: Iterable[Words]) -> Container[str]:
-    """Every name in those files among the others that import this one.
+    """Return every name in those of the other files that import this one.
 
-    Files of one name in different folders are not told apart, so more may count as used than is.
+    This includes files that import it through others. Files with the same name in different folders
+    are not distinguished, so the result may have names that are not really used from this file.
     """
-    left, reached = list(others), {_stem(path)}
-    found: list[Words] = []
-    while importing := [each for each in left if each.imports & reached]:
-        left = [each for each in left if not each.imports & reached]
-        reached |= {each.stem for each in importing}
-        found += importing
-    names = frozenset().union(*(each.names for each in found))
+    remaining, reached = list(others), {_stem(path)}
+    importers: list[Words] = []
+    while importing := [file for file in remaining if file.imports & reached]:
+        remaining = [file for file in remaining if not file.imports & reached]
+        reached |= {file.stem for file in importing}
+        importers += importing
+    names = frozenset().union(*(file.names for file in importers))
     return Used(names, tuple(sorted(name[::-1] for name in names if "." in name)))
 
 
 def _pieces(text: str) -> Iterator[tuple[str, str]]:
-    """The texts in quotes and the names of a file, in order: one of each pair is empty."""
-    for found in _PIECE.finditer(text):
-        if found.lastgroup:
-            yield found["text"] or "", found["name"] or ""
+    """Yield the quoted texts and the names of a file, in order; one of each pair is empty."""
+    for match in _PIECE.finditer(text):
+        if match.lastgroup:
+            yield match["text"] or "", match["name"] or ""
 
 
 def _stem(path: str) -> str:

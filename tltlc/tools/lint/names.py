@@ -1,4 +1,4 @@
-"""Which names the declarations of a module mention."""
+"""Find the names that the declarations of a module mention."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _FORMULAS = ("reach", "keep", "avoid", "require")
 
 @record
 class Mentioned:
-    """The names that a file mentions itself, and those that others use of it."""
+    """The names that a file mentions itself, and the names that other files use from it."""
 
     here: frozenset[str]
     elsewhere: Container[str]
@@ -23,7 +23,7 @@ class Mentioned:
 
 
 def mentions(module: Module) -> frozenset[str]:
-    """Every name that stands in an expression of a module, as it is written there."""
+    """Return every name that occurs in an expression of a module, as it is written there."""
     return frozenset(name for declaration in module.declarations for name in _in_declaration(declaration))
 
 
@@ -40,7 +40,7 @@ def _expressions(declaration: Declaration) -> Iterator[Expr]:
     if not isinstance(declaration, SpecDecl):
         yield from expressions(declaration)
         return
-    # The name of a level, or of a tag, is no name of a declaration.
+    # Names of levels and tags do not refer to declarations.
     for clause in declaration.clauses:
         if clause.kind in _FORMULAS and not isinstance(clause.value, tuple):
             yield clause.value

@@ -1,4 +1,7 @@
-"""The source files that may import those that a command names: theirs, and those of the same folder tree."""
+"""Find the source files that may import the given files.
+
+These are the files in the same folder tree and in the folders above.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +11,15 @@ from pathlib import Path
 from typing import Final
 
 _ROOTS: Final = ("tltl.toml", ".git")
-"""A folder with one of these is where a tree begins."""
+"""A folder that contains one of these is the root of a tree."""
 
 
 def neighbours(paths: Iterable[str]) -> dict[Path, str]:
-    """The texts of these files, of those in their trees and of those in the folders above; what cannot be read is out.
+    """Return the texts of the given files and of their neighbours.
 
-    A tree begins at the project file or the repository, else at the current folder, else at the file's own folder.
+    The neighbours are the files in the same trees and in the folders above. Files that cannot be
+    read are left out. The root of a tree is the folder of the project file or of the repository,
+    else the current folder, else the file's own folder.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.io.files import read_source
@@ -22,14 +27,14 @@ def neighbours(paths: Iterable[str]) -> dict[Path, str]:
     files = {Path(os.path.realpath(path)) for path in paths}
     folders = {file.parent for file in files}
     inside = {file for root in {_root(folder) for folder in folders} for file in _below(root)}
-    above = {file for folder in {each for own in folders for each in own.parents} for file in _in(folder)}
-    found: dict[Path, str] = {}
+    above = {file for folder in {parent for child in folders for parent in child.parents} for file in _in(folder)}
+    texts: dict[Path, str] = {}
     for file in sorted(files | inside | above):
         try:
-            found[file] = read_source(file).text
+            texts[file] = read_source(file).text
         except TltlError:
             continue
-    return found
+    return texts
 
 
 def _root(folder: Path) -> Path:

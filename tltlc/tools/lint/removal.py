@@ -1,4 +1,7 @@
-"""The spans that go where a declaration, a clause or an item of a list is removed, so that no odd gap is left."""
+"""Compute the spans to delete when a declaration, a clause or a list item is removed.
+
+The spans are chosen so that no odd gap is left.
+"""
 
 from __future__ import annotations
 
@@ -10,29 +13,35 @@ from tltlc.grammar.tree import Comment
 
 
 def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
-    """The span of what stands there, with its documentation and the end of its line where nothing else is on it."""
+    """Return the span to delete so that ``span`` goes without leaving a gap.
+
+    It includes the documentation above, and the end of the line if nothing else is on the line.
+    """
     text = source.text
     start, end = documented(source, span.start, comments), span.end
     line = text.rfind("\n", 0, start) + 1
     after = text.find("\n", end)
     after = len(text) if after < 0 else after
     if text[end:after].strip() and not _is_comment(text, end, after):
-        # Something else follows on the line: it moves up.
+        # Something else follows on the line and moves up.
         return Span(start, end + len(text[end:after]) - len(text[end:after].lstrip()))
     if text[line:start].strip():
         return Span(line + len(text[line:start].rstrip()), end if text[end:after].strip() else after)
     end = min(after + 1, len(text))
     below = text.find("\n", end) + 1
     if below and not text[end:below].strip() and not text[text.rfind("\n", 0, max(0, line - 1)) + 1 : line].strip():
-        # Of the empty lines above and below, one is enough.
+        # Keep only one of the empty lines above and below.
         end = below
     return Span(line, end)
 
 
 def item(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
-    """The span of an item of a list, of two at least, with one of its commas; none where a comment would go with it."""
-    gone = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
-    return () if any(gone.start <= each.span.start < gone.end for each in comments) else (gone,)
+    """Return the span of a list item and one comma next to it; the list has at least two items.
+
+    Returns an empty tuple if that would delete a comment.
+    """
+    removed = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
+    return () if any(removed.start <= comment.span.start < removed.end for comment in comments) else (removed,)
 
 
 def _is_comment(text: str, start: int, end: int) -> bool:

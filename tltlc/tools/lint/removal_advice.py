@@ -1,4 +1,7 @@
-"""Advice on a clause that the spec does not need: leave it out, and say when to judge if that changes."""
+"""The advice to leave out a clause that the spec does not need.
+
+If that changes when the spec is judged, the advice says what to write instead.
+"""
 
 from __future__ import annotations
 
@@ -10,16 +13,17 @@ from tltlc.tools.lint.file_view import SpecView
 
 
 def leave_out(part: Part, left: Sequence[Part], spec: SpecView) -> str:
-    """Return the advice to leave a clause out, which is one of the parts; ``left`` are those that remain."""
+    """Return the advice to leave out ``part``. ``left`` are the parts that remain."""
     if changes_judge(part, left, spec):
         return f"leave it out and say `judge at {spec.fspa.judge}`"
     return "leave it out"
 
 
 def changes_judge(part: Part, left: Sequence[Part], spec: SpecView) -> bool:
-    """Whether a spec without a part, of which these parts are left, would be judged at another moment.
+    """Whether leaving out ``part``, so that ``left`` remain, changes when the spec is judged.
 
-    A spec is judged at its limit if each of its parts alone would be, so a part that would be changes nothing.
+    A spec is judged at its limit if each of its parts alone would be. So leaving out a part that is
+    judged at the limit changes nothing.
     """
     if spec.spec.judge is not None or spec.spec.semantics == "infinite":
         return False

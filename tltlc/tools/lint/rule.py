@@ -1,4 +1,4 @@
-"""What a rule is, and what it finds."""
+"""The types of lint rules and their findings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @record
 class Remark:
-    """The message of a rule.  Its fields mean what those of :class:`~tltlc.diagnostics.diagnostic.Diagnostic` mean.
+    """The message of a rule, with fields as in :class:`~tltlc.diagnostics.diagnostic.Diagnostic`.
 
     The fix, if there is one, does not change the meaning of any spec in the file.
     """
@@ -28,10 +28,11 @@ class Remark:
 
 @record
 class Rule:
-    """A rule: the page of ``code`` says what it finds, what to write instead, and why.
+    """A lint rule. The page of ``code`` says what it finds, what to write instead, and why.
 
-    ``check`` is a pure function from a file to remarks.  ``supersedes`` are codes that say less of the same place: they
-    are left out where one of their labels covers a remark of this rule.
+    ``check`` is a pure function from a file to remarks. ``supersedes`` are the codes of less
+    specific diagnostics. Such a diagnostic is left out if one of its labels covers a remark of this
+    rule.
     """
 
     code: str
@@ -48,7 +49,10 @@ class Finding:
 
     @property
     def fix(self) -> tuple[Edit, ...]:
-        """The edits that make it go away and change nothing that a spec asks for, if there are any."""
+        """The edits of the first safe fix; empty if there is none.
+
+        They do not change what any spec asks for.
+        """
         return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
 
 

@@ -1,4 +1,4 @@
-"""Linting a file: it is compiled once, every rule looks at it, and comments silence what they allow."""
+"""Lint a file: compile it once, run every rule, and apply the comments that silence findings."""
 
 from __future__ import annotations
 
@@ -28,58 +28,70 @@ def lint(
     elsewhere: Container[str] = frozenset(),
     levels: Mapping[str, str] = EMPTY,
 ) -> tuple[Finding, ...]:
-    """What is to be said of a file that compiles, in the order of its text; the compiler's own warnings are among it.
+    """Return the findings about a file that compiles, in the order of its text.
 
-    All specs of the file are looked at, whatever the options name; ``elsewhere`` are names that other files may use
-    of it; :func:`levelled` explains ``levels``.
-    Errors: :class:`TltlError` with everything that was found, as of :func:`tltlc.pipeline.compile_source`.
+    They include the compiler's own warnings. All specs of the file are checked, even if the options
+    name only some. ``elsewhere`` has the names that other files may use from this one.
+    :func:`levelled` explains ``levels``.
+
+    Errors: :class:`TltlError` with all diagnostics, as in :func:`tltlc.pipeline.compile_source`.
     """
     return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere), levels)
 
 
 def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[Finding, ...]:
-    """What the compiler and the rules have to say of a file, less what its comments and ``levels`` silence.
+    """Return the findings of the compiler and the rules in the order of the text.
 
-    Only what is shown supersedes anything, and nothing of a higher severity than its own.
+    Findings that comments or ``levels`` silence are left out. A finding supersedes another one only
+    if it is shown itself and its severity is at least as high.
     """
-    found = [Finding(said) for said in view.said]
+    all_findings = [Finding(diagnostic) for diagnostic in view.said]
     supersedes: dict[str, tuple[str, ...]] = {}
     for rule in rules():
-        # The body of a quantifier is looked at once for each entity, and says the same of all.
-        found += dict.fromkeys(_found(rule, view))
+        # A rule looks at the body of a quantifier once for each entity, and reports the same for all.
+        all_findings += dict.fromkeys(_found(rule, view))
         supersedes[rule.code] = rule.supersedes
-    shown = levelled(silenced(view, found), levels)
-    more: dict[str, list[Diagnostic]] = {}
+    shown = levelled(silenced(view, all_findings), levels)
+    superseding: dict[str, list[Diagnostic]] = {}
     for finding in shown:
         for code in supersedes.get(finding.diagnostic.code, ()):
-            more.setdefault(code, []).append(finding.diagnostic)
-    left = [each for each in shown if not _is_superseded(each.diagnostic, more.get(each.diagnostic.code, ()))]
-    return tuple(sorted(left, key=lambda finding: _place(finding, view.source)))
+            superseding.setdefault(code, []).append(finding.diagnostic)
+    remaining = [
+        finding
+        for finding in shown
+        if not _is_superseded(finding.diagnostic, superseding.get(finding.diagnostic.code, ()))
+    ]
+    return tuple(sorted(remaining, key=lambda finding: _place(finding, view.source)))
 
 
-def levelled(found: Iterable[Finding], levels: Mapping[str, str]) -> tuple[Finding, ...]:
-    """The findings with the severities of ``levels``, code by code, less those whose level is ``allow``."""
-    left = [each for each in found if levels.get(each.diagnostic.code) != "allow"]
-    return tuple(_at(each, levels.get(each.diagnostic.code, each.diagnostic.severity)) for each in left)
+def levelled(all_findings: Iterable[Finding], levels: Mapping[str, str]) -> tuple[Finding, ...]:
+    """Return the findings with their severities set by ``levels``, which maps codes to levels.
+
+    Findings with the level ``allow`` are left out.
+    """
+    shown = [finding for finding in all_findings if levels.get(finding.diagnostic.code) != "allow"]
+    return tuple(_at(finding, levels.get(finding.diagnostic.code, finding.diagnostic.severity)) for finding in shown)
 
 
 def view_of(source: SourceFile, options: CompileOptions) -> View:
-    """A file parsed, resolved and compiled; errors as of :func:`lint`."""
-    module, said = parse(source)
-    stop_at_errors(said)
+    """Parse, resolve and compile a file. The errors are the same as in :func:`lint`."""
+    module, diagnostics = parse(source)
+    stop_at_errors(diagnostics)
     resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
-    said += resolved.diagnostics
+    diagnostics += resolved.diagnostics
     modules = [loaded.module for loaded in resolved.modules]
-    stop_at_errors(unsilenced(modules, said))
-    declared = {each.name: each for each in module.declarations if isinstance(each, SpecDecl)}
+    stop_at_errors(unsilenced(modules, diagnostics))
+    declared = {
+        declaration.name: declaration for declaration in module.declarations if isinstance(declaration, SpecDecl)
+    }
     specs: list[SpecView] = []
     for spec in resolved.program.specs:
         fspa, remarks = build_spec(spec, options)
-        said += remarks
+        diagnostics += remarks
         if fspa is not None:
             specs.append(SpecView(declared[spec.name], spec, fspa, resolved.env))
-    stop_at_errors(unsilenced(modules, said))
-    return View(module, resolved.env, resolved.modules, tuple(specs), said, program=resolved.program)
+    stop_at_errors(unsilenced(modules, diagnostics))
+    return View(module, resolved.env, resolved.modules, tuple(specs), diagnostics, program=resolved.program)
 
 
 def _at(finding: Finding, severity: str) -> Finding:
@@ -92,14 +104,17 @@ def _found(rule: Rule, view: View) -> Iterator[Finding]:
         yield Finding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
-def _is_superseded(diagnostic: Diagnostic, more: Iterable[Diagnostic]) -> bool:
-    """Whether a rule says more of one of the places that a diagnostic points at, and counts as much."""
-    places = [other.labels[0] for other in more if _COUNTS[other.severity] >= _COUNTS[diagnostic.severity]]
+def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
+    """Whether a superseding diagnostic points at a place that a label of this one covers.
+
+    The superseding diagnostic must have at least the same severity.
+    """
+    places = [other.labels[0] for other in superseding if _COUNTS[other.severity] >= _COUNTS[diagnostic.severity]]
     labels = diagnostic.labels
     return any(label.source == place.source and label.span.covers(place.span) for label in labels for place in places)
 
 
 def _place(finding: Finding, source: SourceFile) -> tuple[bool, int, str]:
-    """Where a finding stands among others: those of imported files come first."""
+    """Return the sort key of a finding. Findings in imported files come first."""
     label = finding.diagnostic.labels[0] if finding.diagnostic.labels else None
     return label is not None and label.source == source, label.span.start if label else 0, finding.diagnostic.code

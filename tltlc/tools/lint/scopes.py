@@ -1,4 +1,4 @@
-"""Which statements each ``allow`` comment speaks of, before and after a fix: a fix must not change it."""
+"""Check that a fix does not change which statements each ``allow`` comment applies to."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tltlc.tools.lint.removal import without
 
 T = TypeVar("T")
 _Places = tuple[Span, ...] | None
-"""The statements of which a comment speaks; None is the whole file."""
+"""The statements that a comment applies to. None is the whole file."""
 
 
 def after(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
-    """The text after edits that do not overlap."""
+    """Return the text after edits that do not overlap."""
     pieces: list[str] = []
     place = 0
     for edit in sorted(edits, key=lambda edit: edit.span.start):
@@ -30,19 +30,22 @@ def after(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
 
 
 def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
-    """The edits, and those that remove comments which spoke only of what they remove.
+    """Return the edits, adjusted so that comments that stay apply to the same statements.
 
-    An edit leaves out comments that still speak of something: of the whole file, or of another statement of the line.
-    None where a comment that stays would speak of other statements than before: removing the first declaration
-    of a file, for one, can turn a comment on the next one into a comment on the whole file.
+    An edit leaves out comments that still apply to something: to the whole file, or to another
+    statement of the line. Comments that apply only to removed statements are removed, too.
+
+    Returns None if a comment that stays would apply to other statements than before. For example,
+    when the first declaration of a file is removed, a comment on the next one can become a comment
+    on the whole file.
     """
     scopes = spoken_of(module)
     known, changes = frozenset(edits), _Changes(edits)
     kept = [
         comment.span
-        for comment, speaks in _of_each(scopes, lambda places: places is None or any(map(changes.keep, places)))
-        # An edit may be there to remove the comment itself.
-        if speaks and Edit(without(module.source, comment.span), "") not in known
+        for comment, applies in _of_each(scopes, lambda places: places is None or any(map(changes.keep, places)))
+        # An edit may intend to remove the comment itself.
+        if applies and Edit(without(module.source, comment.span), "") not in known
     ]
     edits = tuple(part for edit in edits for part in _around(module.source.text, edit, kept))
     known, changes = frozenset(edits), _Changes(edits)
@@ -52,7 +55,7 @@ def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | 
     all_edits = (*edits, *(removal for removal in removals if removal not in known))
     all_changes = _Changes(all_edits)
     fixed, _ = parse(after(module.source, all_edits))
-    # Equal sets get equal numbers, so that comments on one line are compared soon.
+    # Equal sets get equal numbers, so that the scopes of many comments on one line compare fast.
     numbers: dict[frozenset[int] | None, int] = {}
     starts_before = _of_each(scopes, lambda places: _number(all_changes.starts(places), numbers))
     starts_now = _of_each(spoken_of(fixed), lambda places: _number(_starts(places), numbers))
@@ -66,7 +69,7 @@ def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | 
 
 
 class _Changes:
-    """What edits that do not overlap do to offsets."""
+    """Maps offsets through edits that do not overlap."""
 
     def __init__(self, edits: Sequence[Edit]) -> None:
         by_start = sorted((edit.span.start, edit.span.end) for edit in edits)
@@ -77,28 +80,31 @@ class _Changes:
         self._shifts = [0, *accumulate(shift for _, shift in by_end)]
 
     def keep(self, span: Span) -> bool:
-        """Whether what begins with a span stays."""
+        """Whether the start of a span is kept."""
         place = bisect_right(self._starts, span.start)
         return not place or self._reach[place - 1] <= span.start
 
     def moved(self, offset: int) -> int:
-        """Where an offset outside all edits is after them."""
+        """Return where an offset outside all edits is after them."""
         return offset + self._shifts[bisect_right(self._ends, offset)]
 
     def starts(self, places: Iterable[Span] | None) -> frozenset[int] | None:
-        """Where the statements that stay begin after the edits; None for the whole file."""
+        """Return where the kept statements begin after the edits; None for the whole file."""
         if places is None:
             return None
         return frozenset(self.moved(place.start) for place in places if self.keep(place))
 
 
 def _of_each(scopes: Sequence[tuple[Comment, _Places]], of: Callable[[_Places], T]) -> list[tuple[Comment, T]]:
-    """Each comment with what a function makes of its places, which those of one line share."""
-    known: dict[int, T] = {}
+    """Return each comment with the result of a function on its places.
+
+    Comments on one line share their places, so the function runs only once for each line.
+    """
+    results: dict[int, T] = {}
     for _, places in scopes:
-        if id(places) not in known:
-            known[id(places)] = of(places)
-    return [(comment, known[id(places)]) for comment, places in scopes]
+        if id(places) not in results:
+            results[id(places)] = of(places)
+    return [(comment, results[id(places)]) for comment, places in scopes]
 
 
 def _number(starts: frozenset[int] | None, numbers: dict[frozenset[int] | None, int]) -> int:
@@ -106,7 +112,10 @@ def _number(starts: frozenset[int] | None, numbers: dict[frozenset[int] | None, 
 
 
 def _around(text: str, edit: Edit, kept: Sequence[Span]) -> Iterator[Edit]:
-    """An edit in parts, between the lines of comments that are to be kept, which are in order."""
+    """Yield an edit in parts that leave out the lines of ``kept`` comments.
+
+    ``kept`` is in order.
+    """
     start = edit.span.start
     for index in range(bisect_left(kept, start, key=lambda span: span.start), len(kept)):
         comment = kept[index]
@@ -118,7 +127,7 @@ def _around(text: str, edit: Edit, kept: Sequence[Span]) -> Iterator[Edit]:
         begin = comment.start if text[line : comment.start].strip() else max(start, line)
         if start < begin:
             yield Edit(Span(start, begin), "")
-        # With the end of its line.
+        # Keep the end of the comment's line, too.
         start = min(comment.end + 1, edit.span.end)
     if start < edit.span.end or edit.text:
         yield Edit(Span(start, edit.span.end), edit.text)
