@@ -1,4 +1,4 @@
-"""The rules: every module of this folder that is not itself a package is one, with its ``RULE``."""
+"""The lint rules. Every module in this folder is a rule and defines ``RULE``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tltlc.tools.lint.rule import Rule
 
 @lru_cache(maxsize=1)
 def rules() -> tuple[Rule, ...]:
-    """Every rule, by code."""
+    """Return all rules, sorted by code."""
     names = sorted(name[:-3] for name in os.listdir(os.path.dirname(__file__)) if name.endswith(".py"))  # noqa: PTH120, PTH208
-    found: list[Rule] = [import_module(f"{__name__}.{name}").RULE for name in names if not name.startswith("_")]
-    return tuple(sorted(found, key=lambda rule: rule.code))
+    all_rules: list[Rule] = [import_module(f"{__name__}.{name}").RULE for name in names if not name.startswith("_")]
+    return tuple(sorted(all_rules, key=lambda rule: rule.code))

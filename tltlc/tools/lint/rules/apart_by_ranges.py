@@ -1,4 +1,4 @@
-"""TLT0431: clauses that contradict each other by what their atoms say of signals."""
+"""TLT0431: clauses that contradict each other because of the ranges of signals."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ _MOST_LABELS: Final = 4
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each spec that no trace satisfies, where the compiler, to which atoms are atoms, does not see it."""
+    """Yield a remark for each spec that is unsatisfiable only because of what its atoms compute.
+
+    The compiler does not see this: to it, atoms have no relation to each other.
+    """
     for spec in view.specs:
         if spec.fspa.states[0].verdict != "violated" and is_impossible(spec):
             yield _remark(spec)
@@ -29,10 +32,10 @@ def _remark(spec: SpecView) -> Remark:
     clauses = [part for part in needed if part not in known]
     together = "this cannot be met" if len(clauses) == 1 else "together with the others"
     labels = tuple(Label(part.source, part.span, together) for part in clauses[:_MOST_LABELS])
-    never = next(part for part in needed if part in known).formula.args[0].args[0]
+    excluded = next(part for part in needed if part in known).formula.args[0].args[0]
     title = f"no trace satisfies `{spec.spec.name}`, by the values that its signals can have"
-    way_out = f"`{phrase(never)}` is never true: check the numbers, and the direction of each comparison"
-    return Remark(title, labels, way_out)
+    suggestion = f"`{phrase(excluded)}` is never true: check the numbers, and the direction of each comparison"
+    return Remark(title, labels, suggestion)
 
 
 RULE = Rule("TLT0431", "warning", check)

@@ -1,4 +1,4 @@
-"""TLT0416: an atom that holds always, or never, whatever values the signals have."""
+"""TLT0416: an atom that always holds, or never, for all values of the signals."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each atom of a spec that has one truth alone; each once in a file."""
+    """Yield a remark for each atom that is constant, once for each atom of the file."""
     seen: set[str] = set()
     for spec in view.specs:
         for atom in spec.fspa.atoms:
@@ -19,12 +19,12 @@ def check(view: View) -> Iterator[Remark]:
             seen.add(atom.name)
             if not can_be("positive", atom, spec.fspa) and is_always("not positive", atom, spec.fspa):
                 label = spec.atom_label(atom.name, "its value is 0 or less for all values of the signals")
-                way_out = "an atom holds where its value is above 0: check the sign, the range and the units"
-                yield Remark(f"`{atom.name}` never holds", (label,), way_out)
+                suggestion = "an atom holds where its value is above 0: check the sign, the range and the units"
+                yield Remark(f"`{atom.name}` never holds", (label,), suggestion)
             elif not can_be("not positive", atom, spec.fspa) and is_always("positive", atom, spec.fspa):
                 label = spec.atom_label(atom.name, "its value is above 0 for all values of the signals")
-                way_out = "an atom fails where its value is 0 or less: check the sign, the range and the units"
-                yield Remark(f"`{atom.name}` always holds", (label,), way_out)
+                suggestion = "an atom fails where its value is 0 or less: check the sign, the range and the units"
+                yield Remark(f"`{atom.name}` always holds", (label,), suggestion)
 
 
 RULE = Rule("TLT0416", "error", check)

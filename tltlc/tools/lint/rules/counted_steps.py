@@ -16,9 +16,12 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each chain of two or more `next`, or `next after` of as many steps, in specs and lets."""
+    """Yield a remark for each chain of two or more `next`, in specs and lets.
+
+    `next after` counts as that many steps.
+    """
     trees = [formula.tree for spec in view.specs for formula in spec.formulas()]
-    trees += [each.body for each in view.module.declarations if isinstance(each, LetDecl)]
+    trees += [declaration.body for declaration in view.module.declarations if isinstance(declaration, LetDecl)]
     inside: set[int] = set()
     for tree in trees:
         for part in parts(tree):
@@ -29,7 +32,11 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
-    """How many steps a chain takes, and what comes then; those that count on by seconds end it."""
+    """Return how many steps a chain takes, and the expression at its end.
+
+    A `next` with a bound in seconds ends the chain. Adds the ids of the chain's nodes to
+    ``inside``.
+    """
     steps, tree = 0.0, inner(first)
     while isinstance(tree, Unary) and tree.op == first.op and _steps(tree):
         inside.add(id(tree))
@@ -46,20 +53,23 @@ def _steps(tree: Unary) -> float:
 
 def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
     text = operand(Expression(awaited, view.env))
-    way_out = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
+    suggestion = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
     if view.env.context.clock_s:
         time = _seconds(steps, view.env.context.clock_s, view.env)
         if chain.op == "N":
-            way_out = f"say it in seconds: `weak_next after {time} s {text}`"
+            suggestion = f"say it in seconds: `weak_next after {time} s {text}`"
         else:
-            way_out = f"say it in seconds: `next after {time} s {text}`"
-            way_out += f", or `eventually within {time} s {text}` where it may come earlier"
+            suggestion = f"say it in seconds: `next after {time} s {text}`"
+            suggestion += f", or `eventually within {time} s {text}` where it may come earlier"
     label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
-    return Remark("this counts steps, whatever time they take", (label,), way_out)
+    return Remark("this counts steps, whatever time they take", (label,), suggestion)
 
 
 def _seconds(steps: float, period: float, env: Env) -> str:
-    """Return a short time in seconds that covers exactly this many steps.  Times round up, so it is never longer."""
+    """Return a short time in seconds that covers exactly this many steps.
+
+    Times round up to steps, so the result is never longer than the exact time.
+    """
     exact = steps * period
     shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))
     texts = [f"{exact:.6g}", *shorter]

@@ -1,4 +1,4 @@
-"""TLT0425: a clause that stands twice in a spec."""
+"""TLT0425: a clause that occurs twice in a spec."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from tltlc.tools.lint.rule import Remark, Rule, removal
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each clause, or part of one, that says the same as an earlier one in the same form."""
+    """Yield a remark for each clause, or part of one, that repeats an earlier one.
+
+    Both must have the same form.
+    """
     for spec in view.specs:
         first: dict[Formula, Part] = {}
         covering = _covering(spec.declaration.clauses, spec.spec.parts)
@@ -28,25 +31,25 @@ def check(view: View) -> Iterator[Remark]:
             if earlier is not part:
                 labels = (view.label(part.span, "this again"), view.label(earlier.span, "said here"))
                 if part.unbounded != earlier.unbounded:
-                    others = [each for each in remaining if each is not part]
-                    if changes_judge(part, others, spec):
-                        # The bound of the later one, as in `F[0,0] a` behind `a`, makes it a goal.
-                        way_out = f"remove one of them and say `judge at {spec.fspa.judge}`"
-                        yield Remark(_TITLE, labels, way_out)
+                    left = [other for other in remaining if other is not part]
+                    if changes_judge(part, left, spec):
+                        # The bound of the later part makes it a goal, for example `F[0,0] a` after `a`.
+                        suggestion = f"remove one of them and say `judge at {spec.fspa.judge}`"
+                        yield Remark(_TITLE, labels, suggestion)
                         continue
-                    remaining = others
+                    remaining = left
                 yield Remark(_TITLE, labels, "remove one of them", _fix(covering.get(part.span), view))
 
 
 def _fix(clause: Clause | None, view: View) -> Fix | None:
-    """Without the clause, if there is one that says no more than the part."""
+    """Return the fix that removes the clause, or None if no clause consists of the part alone."""
     if clause is None:
         return None
     return removal("Remove one of them", (without(view.source, clause.span, view.module.comments),))
 
 
 def _covering(clauses: Sequence[Clause], parts: Iterable[Part]) -> dict[Span, Clause]:
-    """The clauses that consist of one part, by the span of this part."""
+    """Return the clauses that consist of one part, by the span of that part."""
     starts = [clause.span.start for clause in clauses]
     covered: dict[int, list[Span]] = {}
     for part in parts:

@@ -1,4 +1,4 @@
-"""TLT0414: a goal of atoms that are exclusive, and so never hold together."""
+"""TLT0414: a goal that asks for exclusive atoms, which never hold together."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each goal that asks at one step for what ``exclusive`` forbids."""
+    """Yield a remark for each goal that asks for what ``exclusive`` forbids at one step."""
     for spec in view.specs:
         for goal in goals(spec) if spec.spec.exclusive else ():
             names = _excluding(goal, spec)
@@ -24,14 +24,17 @@ def check(view: View) -> Iterator[Remark]:
                 title = "this goal asks for atoms that never hold together"
                 listed = " and ".join(f"`{name}`" for name in names)
                 label = Label(goal.source, inner(goal.tree).span, f"{listed} are `exclusive`")
-                way_out = "ask for one after the other with `then`, or for either with `or`"
-                yield Remark(title, (label,), way_out)
+                suggestion = "ask for one after the other with `then`, or for either with `or`"
+                yield Remark(title, (label,), suggestion)
 
 
 def _excluding(goal: Expression, spec: SpecView) -> list[str]:
-    """The exclusive atoms by which a goal can never be met; none where it can, or where they are not to blame."""
-    found = [part.formula() for part in conjuncts(goal)]
-    formula = and_(*(each for each in found if each is not None and is_state(each)))
+    """Return the exclusive atoms that make a goal impossible.
+
+    The result is empty if the goal is possible, or impossible for another reason.
+    """
+    formulas = [part.formula() for part in conjuncts(goal)]
+    formula = and_(*(state for state in formulas if state is not None and is_state(state)))
     used = formula.atoms()
     for group in spec.spec.exclusive:
         names = [name for name in used if name in {spec.spec.atoms[index].name for index in group}]

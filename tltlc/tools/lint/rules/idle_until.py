@@ -1,4 +1,4 @@
-"""TLT0433: `avoid a until b` and `reach a until b`, where a has no say."""
+"""TLT0433: `avoid a until b` and `reach a until b`, where a has no effect."""
 
 from __future__ import annotations
 
@@ -12,25 +12,26 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each clause that comes to its second formula, since `a until b` holds wherever b does.
+    """Yield a remark for each clause that amounts to its second formula.
 
-    Of a chain of goals it is the last: one before it also says since when the next is waited for.
+    `a until b` holds at every step where b holds. In a chain of goals, only the last `until` gets a
+    remark: an earlier one also says from when on the next goal counts.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("reach", "avoid"):
-            *others, last = operands(value.tree, "then")
+            *earlier, last = operands(value.tree, "then")
             part = value.at(inner(last))
             if not isinstance(part.tree, Binary) or part.tree.op != "U":
                 continue
             before, goal = value.at(part.tree.left), value.at(part.tree.right)
             label = Label(value.source, part.tree.span, f"this is `{clause.kind} {goal.text}` and no more")
-            way_out = f"say `require {operand(before)} until {operand(goal)}`"
+            suggestion = f"say `require {operand(before)} until {operand(goal)}`"
             if clause.kind == "avoid":
-                # What is only forbidden need not come.
-                way_out = f"say `require (not {operand(before)}) weak_until {operand(goal)}`"
-            if others:
-                way_out = f"say `{operand(value.at(others[-1]))} and ({part.text})`, which counts from there on"
-            yield Remark("the first half of this `until` has no say", (label,), way_out)
+                # A forbidden b does not have to occur.
+                suggestion = f"say `require (not {operand(before)}) weak_until {operand(goal)}`"
+            if earlier:
+                suggestion = f"say `{operand(value.at(earlier[-1]))} and ({part.text})`, which counts from there on"
+            yield Remark("the first half of this `until` has no say", (label,), suggestion)
 
 
 RULE = Rule("TLT0433", "warning", check)

@@ -1,4 +1,4 @@
-"""TLT0413: a clause that the others imply."""
+"""TLT0413: a clause that the other clauses imply."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ from tltlc.tools.lint.rule import Remark, Rule
 from tltlc.tools.lint.rules import recurrence
 
 _MOST_PARTS = 24
-"""With more clauses than this they are not compared: each costs an automaton of the others."""
+"""Specs with more clauses are not checked: each check builds an automaton of the other clauses."""
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each clause that the others of its spec imply, and which of them do.
+    """Yield a remark for each clause that other clauses of its spec imply, with those clauses.
 
-    What speaks of the last step alone was mostly not meant, so that nothing is concluded from it.
+    A clause that constrains only the last step is usually a mistake, so it does not count as a
+    reason.
     """
     doubtful = [remark.labels[0] for remark in recurrence.check(view)]
     for spec in view.specs:
-        # Of what stands twice another rule speaks.
+        # Another rule reports duplicate clauses.
         first: dict[Formula, Part] = {}
         for part in spec.spec.parts:
             first.setdefault(part.formula, part)
@@ -41,29 +42,33 @@ def _is_any_in(places: Sequence[Label], part: Part) -> bool:
 
 def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> Iterator[Remark]:
     left, remaining = list(reasons), list(spec.spec.parts)
-    # The later of two that imply each other goes, and nothing is implied by what has gone.
+    # Of two clauses that imply each other, the later one is reported. A reported clause is no reason for others.
     for part in reversed(parts):
-        others = [other for other in left if other is not part]
-        needed = _reasons(part, others, _known(part, spec), spec)
+        candidates = [candidate for candidate in left if candidate is not part]
+        needed = _reasons(part, candidates, _known(part, spec), spec)
         if needed:
-            left = others
+            left = candidates
             labels = (
                 Label(part.source, part.span, "nothing is lost without this"),
-                *(Label(other.source, other.span, "because of this") for other in needed),
+                *(Label(reason.source, reason.span, "because of this") for reason in needed),
             )
             title = f"{'another clause asks' if len(needed) == 1 else 'other clauses ask'} for this already"
-            remaining = [each for each in remaining if each.formula is not part.formula]
+            remaining = [other for other in remaining if other.formula is not part.formula]
             yield Remark(title, labels, f"{leave_out(part, remaining, spec)}, or say what more it should ask for")
 
 
 def _known(part: Part, spec: SpecView) -> list[Part]:
-    """What is known of the atoms of a part and of others, by the ranges of what they compare."""
+    """Return the proved relations between the atoms of a part and the other atoms of the spec."""
     own = set(part.formula.atoms())
-    return [each for each in relations(spec, spec.spec.formula.atoms()) if own.intersection(each.formula.atoms())]
+    return [
+        relation
+        for relation in relations(spec, spec.spec.formula.atoms())
+        if own.intersection(relation.formula.atoms())
+    ]
 
 
 def _reasons(part: Part, others: Sequence[Part], known: Sequence[Part], spec: SpecView) -> tuple[Part, ...]:
-    """Of the other parts some that imply a part together, none of which could be left out; none where they do not."""
+    """Return a minimal set of other parts that imply a part together; empty if they do not."""
     if not _share_atoms(part, others, known, spec.spec):
         return ()
     negated = replace(part, formula=not_(part.formula))
@@ -71,12 +76,15 @@ def _reasons(part: Part, others: Sequence[Part], known: Sequence[Part], spec: Sp
     if not spec.decision(together, spec.spec):
         return ()
     needed = contradiction(replace(spec.spec, parts=together), spec.decision)
-    return tuple(each for each in needed if each in others)
+    return tuple(other for other in needed if other in others)
 
 
 def _share_atoms(part: Part, others: Sequence[Part], known: Sequence[Part], spec: Spec) -> bool:
-    """Whether the others speak of an atom of the part, or of one that excludes it: if not, they say nothing of it."""
-    own = set(part.formula.atoms()).union(*(each.formula.atoms() for each in known))
+    """Whether other parts are about an atom of the part, or about one that excludes such an atom.
+
+    If not, they cannot imply the part.
+    """
+    own = set(part.formula.atoms()).union(*(relation.formula.atoms() for relation in known))
     for group in spec.exclusive:
         names = {spec.atoms[index].name for index in group}
         own |= names if own & names else set()

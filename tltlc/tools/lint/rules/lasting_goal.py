@@ -1,4 +1,7 @@
-"""TLT0434: `reach (always for 3 s a)`, which one step meets: past the end of the play it asks nothing."""
+"""TLT0434: `reach (always for 3 s a)`, which a single step can meet.
+
+The bounded `always` asks for nothing after the end of the trace.
+"""
 
 from __future__ import annotations
 
@@ -14,24 +17,29 @@ from tltlc.tools.lint.file_view import Expression, SpecView, View, inner, operan
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import Remark, Rule
 
-_WAY_OUT = "let a signal count the time, and ask for enough of it, as in `reach time_there >= 3 s`"
+_SUGGESTION = "let a signal count the time, and ask for enough of it, as in `reach time_there >= 3 s`"
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each bounded `always` in a last goal, of specs that end with success as soon as they are met."""
+    """Yield a remark for each bounded `always` in a last goal.
+
+    This applies to specs that end with success as soon as they are met.
+    """
     for spec in view.specs:
         if spec.fspa.semantics != "finite" or spec.fspa.judge != "goal":
             continue
         for clause, value in spec.clauses("reach", "require"):
-            wanted = [value] if clause.kind == "reach" else [goal for part in conjuncts(value) for goal in _asked(part)]
-            for asked in map(_last, wanted):
-                found = [remark for goal in asked for remark in _remarks(goal)]
-                if found and _is_met_by_one_step(asked, spec):
-                    yield from found
+            goals = (
+                [value] if clause.kind == "reach" else [goal for part in conjuncts(value) for goal in _goals_of(part)]
+            )
+            for final in map(_last, goals):
+                remarks = [remark for last_part in final for remark in _remarks(last_part)]
+                if remarks and _is_met_by_one_step(final, spec):
+                    yield from remarks
 
 
-def _asked(part: Expression) -> Iterator[Expression]:
-    """What a conjunct asks for at some step, as a goal; nothing of one that is no goal."""
+def _goals_of(part: Expression) -> Iterator[Expression]:
+    """Yield what a conjunct asks for at some step, as a goal; nothing if it is no goal."""
     if isinstance(part.tree, Unary) and part.tree.op == "F":
         yield part.at(part.tree.operand)
     elif isinstance(part.tree, Binary) and part.tree.op == "then":
@@ -39,23 +47,29 @@ def _asked(part: Expression) -> Iterator[Expression]:
 
 
 def _last(goal: Expression) -> list[Expression]:
-    """What a goal asks for last: of a chain its last step, of `eventually a` what that asks for."""
-    found: list[Expression] = []
+    """Return what a goal asks for last.
+
+    For a chain this is its last step, for `eventually a` it is what a asks for last.
+    """
+    parts: list[Expression] = []
     waiting = [goal]
     while waiting:
         goal = waiting.pop()
         for part in conjuncts(goal.at(operands(goal.tree, "then")[-1])):
-            inside = list(_asked(part))
+            inside = list(_goals_of(part))
             waiting += inside
-            found += [] if inside else [part]
-    return found
+            parts += [] if inside else [part]
+    return parts
 
 
-def _is_met_by_one_step(asked: list[Expression], spec: SpecView) -> bool:
-    """Whether a play of one step can meet all of it; what is to come at the next step or later takes more."""
-    formulas = (formula for formula in map(Expression.formula, asked) if formula is not None)
-    ended = and_(weak_next(FALSE), *formulas)
-    return not unsatisfiable((Part(ended, spec.spec.source, spec.spec.name_span),), spec.spec)
+def _is_met_by_one_step(final: list[Expression], spec: SpecView) -> bool:
+    """Whether a trace of one step can meet all of these expressions.
+
+    Anything that asks for a later step needs a longer trace.
+    """
+    formulas = (formula for formula in map(Expression.formula, final) if formula is not None)
+    at_end = and_(weak_next(FALSE), *formulas)
+    return not unsatisfiable((Part(at_end, spec.spec.source, spec.spec.name_span),), spec.spec)
 
 
 def _remarks(goal: Expression) -> Iterator[Remark]:
@@ -69,9 +83,9 @@ def _remarks(goal: Expression) -> Iterator[Remark]:
             waiting += (part.at(tree.right), holds), (part.at(tree.left), holds)
         elif isinstance(tree, Unary) and tree.bound is not None and tree.op == ("G" if holds else "F"):
             lasting = part.at(tree.operand)
-            what = lasting.text if holds else f"not {operand(lasting)}"
-            message = f"past the end it asks nothing, so one step with `{what}` is enough"
-            yield Remark("this goal is met by one step", (Label(part.source, tree.span, message),), _WAY_OUT)
+            condition = lasting.text if holds else f"not {operand(lasting)}"
+            message = f"past the end it asks nothing, so one step with `{condition}` is enough"
+            yield Remark("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
 
 
 RULE = Rule("TLT0434", "warning", check)

@@ -1,4 +1,4 @@
-"""TLT0423: an automaton that is far larger than the spec reads."""
+"""TLT0423: an automaton that is much larger than the spec suggests."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 _FEW: Final = 100
 _PER_PART: Final = 10
-"""States that nobody minds, and states for each operator, name and number of the spec that are no surprise."""
+"""No remark for up to ``_FEW`` states, or up to this many for each part of the spec.
+
+The parts of a spec are its operators, names and numbers.
+"""
 
 _MOST_LABELS: Final = 4
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each spec whose automaton has many more states than the spec has parts."""
+    """Yield a remark for each spec whose automaton has many more states than the spec has parts."""
     for spec in view.specs:
-        written = sum(1 for formula in spec.formulas() for _ in parts(formula.tree))
+        part_count = sum(1 for formula in spec.formulas() for _ in parts(formula.tree))
         states = len(spec.fspa.states)
-        if states > max(_FEW, _PER_PART * written):
+        if states > max(_FEW, _PER_PART * part_count):
             yield _remark(spec, states)
 
 
@@ -35,8 +38,8 @@ def _remark(spec: SpecView, states: int) -> Remark:
         return Remark(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
     message = "the states of its parts multiply" if rest else "this has to remember much"
-    way_out = "split the spec, say an order with `then`, or declare atoms that never hold together `exclusive`"
-    return Remark(title, (Label(first.source, first.span, message), *rest), way_out)
+    suggestion = "split the spec, say an order with `then`, or declare atoms that never hold together `exclusive`"
+    return Remark(title, (Label(first.source, first.span, message), *rest), suggestion)
 
 
 RULE = Rule("TLT0423", "note", check)

@@ -1,4 +1,4 @@
-"""TLT0412: a goal that is met where nothing has been done, because it may be met by what does not hold."""
+"""TLT0412: a goal that can be met without doing anything, because false atoms can meet it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each goal that can be met while none of what it asks for holds, whatever the other clauses ask."""
+    """Yield a remark for each goal that can be met while none of the atoms it asks for holds.
+
+    The other clauses are taken into account.
+    """
     for spec in view.specs:
         if not spec.is_settled:
             for goal in goals(spec):
@@ -30,7 +33,7 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
         return
     still = _standing_still(formula)
     holding, failing = _wanted(still)
-    # A goal that is only to hold, or only not to hold, is one that a player brings about.
+    # If all atoms should hold, or all should not, the player has to bring the goal about.
     if not failing or not set(holding) - set(failing):
         return
 
@@ -40,14 +43,14 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
         part = Part(eventually(state), goal.source, goal.tree.span)
         return not spec.decision((*spec.spec.parts, *known, part), spec.spec)
 
-    # What the other clauses keep anyway is nothing to bring about.
+    # If the other clauses already ensure an atom, there is nothing to do for it.
     missing = [name for name in holding if can_be(not_(atom(name)))]
     awaited = [name for name in missing if name not in failing]
     met = and_(formula, still, *(not_(atom(name)) for name in missing))
     if awaited and can_be(met):
         implications = _implications(goal)
         conditions = (part.formula() or TRUE for part, _ in implications)
-        # A condition that always holds is not to blame.
+        # If some condition always holds, the implications are not the reason.
         if implications and can_be(and_(met, *map(not_, conditions))):
             yield _of_implications(implications)
         else:
@@ -57,25 +60,28 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
 
 
 def _standing_still(formula: Formula) -> Formula:
-    """What a formula comes to while nothing changes: one without temporal operators."""
-    found: dict[Formula, Formula] = {}
+    """Return what a formula amounts to while nothing changes, without temporal operators."""
+    still: dict[Formula, Formula] = {}
     for part in formula.bottom_up():
-        args = tuple(found[each] for each in part.args)
+        args = tuple(still[argument] for argument in part.args)
         if part.op in ("X", "N", "F", "G"):
-            found[part] = args[0]
+            still[part] = args[0]
         elif part.op in ("U", "R"):
-            found[part] = args[1]
+            still[part] = args[1]
         elif part.op == "W":
-            found[part] = or_(*args)
+            still[part] = or_(*args)
         elif part.op == "M":
-            found[part] = and_(*args)
+            still[part] = and_(*args)
         else:
-            found[part] = rebuild(part, args)
-    return found[formula]
+            still[part] = rebuild(part, args)
+    return still[formula]
 
 
 def _wanted(state: Formula) -> tuple[list[str], list[str]]:
-    """The atoms whose truth helps a formula, and those whose falsehood does; some may be both."""
+    """Return the atoms whose truth helps a formula, and those whose falsehood does.
+
+    An atom may be in both.
+    """
     signs: dict[tuple[Formula, bool], None] = {}
     waiting = [(state, True)]
     while waiting:
@@ -88,29 +94,36 @@ def _wanted(state: Formula) -> tuple[list[str], list[str]]:
         elif part.op == "implies":
             waiting += (part.args[1], holds), (part.args[0], not holds)
         elif part.op == "iff":
-            waiting += [(each, sign) for each in part.args for sign in (True, False)]
+            waiting += [(argument, sign) for argument in part.args for sign in (True, False)]
         else:
-            waiting += [(each, holds) for each in reversed(part.args)]
+            waiting += [(argument, holds) for argument in reversed(part.args)]
     atoms = [(part.name, holds) for part, holds in signs if part.op == "atom"]
     return [name for name, holds in atoms if holds], [name for name, holds in atoms if not holds]
 
 
 def _implications(goal: Expression) -> list[tuple[Expression, Expression]]:
-    """The condition and the result of each one that a goal asks for; the body of `all` is one, for all its entities."""
-    found: dict[Span, tuple[Expression, Expression]] = {}
+    """Return the condition and the result of each implication that a goal asks for.
+
+    The body of `all` counts once for all entities.
+    """
+    by_span: dict[Span, tuple[Expression, Expression]] = {}
     for part in conjuncts(goal):
         if isinstance(part.tree, Binary) and part.tree.op == "implies":
-            found[part.tree.span] = part.at(part.tree.left), part.at(part.tree.right)
-    return list(found.values())
+            by_span[part.tree.span] = part.at(part.tree.left), part.at(part.tree.right)
+    return list(by_span.values())
 
 
 def _of_implications(implications: list[tuple[Expression, Expression]]) -> Remark:
-    labels, ways = [], []
+    labels, alternatives = [], []
     for condition, result in implications:
         span = condition.tree.span.to(result.tree.span)
         labels.append(Label(condition.source, span, f"true while {condition.text} is false"))
-        ways.append(f"{operand(condition)} and {operand(result)}")
-    return Remark(_TITLE, tuple(labels), f"`{ways[0]}`" if len(ways) == 1 else f"`({') or ('.join(ways)})`")
+        alternatives.append(f"{operand(condition)} and {operand(result)}")
+    return Remark(
+        _TITLE,
+        tuple(labels),
+        f"`{alternatives[0]}`" if len(alternatives) == 1 else f"`({') or ('.join(alternatives)})`",
+    )
 
 
 _TITLE: Final = "this goal can be met without doing anything"

@@ -16,15 +16,15 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each clause that no trace breaks, whatever the other clauses ask."""
+    """Yield a remark for each clause that no trace violates, regardless of the other clauses."""
     for spec in view.specs:
-        # Where all of it is so, the compiler says it.
+        # If every trace satisfies the whole spec, the compiler reports that.
         if spec.fspa.states[0].verdict == "satisfied":
             continue
         remaining = list(spec.spec.parts)
         for part in spec.spec.parts:
             if _is_always_met(part, spec):
-                remaining = [each for each in remaining if each is not part]
+                remaining = [other for other in remaining if other is not part]
                 label = Label(part.source, part.span, "every trace satisfies this")
                 yield Remark(
                     "this clause asks nothing of the game", (label,), f"{leave_out(part, remaining, spec)}{_OR}"

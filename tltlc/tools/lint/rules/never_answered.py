@@ -1,4 +1,4 @@
-"""TLT0432: `p implies q` where q never holds at the step of p, so that p is forbidden."""
+"""TLT0432: `p implies q` where q never holds at the step of p, so p is forbidden."""
 
 from __future__ import annotations
 
@@ -16,29 +16,33 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each implication of a rule whose two sides never hold at one step, and each of them does at some.
+    """Yield a remark for each implication in a rule whose two sides never hold at the same step.
 
-    None for a clause that no trace satisfies: it does more than forbid one side.
+    Each side must be able to hold on its own. Clauses that no trace satisfies get no remark,
+    because they do more than forbid one side.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
-            found = [part for part in _implications(value) if _never_together(part, spec)]
-            if found and _can_hold(clause, value, spec):
-                yield from map(_remark, found)
+            implications = [part for part in _implications(value) if _never_together(part, spec)]
+            if implications and _can_hold(clause, value, spec):
+                yield from map(_remark, implications)
 
 
 def _implications(value: Expression) -> Iterator[Expression]:
-    """Those that are to hold as rules: not as a goal, negated, in a condition or in `iff`."""
+    """Yield the implications that must hold as rules.
+
+    Implications in goals, in negations, in conditions and in `iff` are left out.
+    """
     waiting = [value]
     while waiting:
         part = waiting.pop()
         if isinstance(part.tree, (Unary, Binary)) and part.tree.op in ("not", "F", "then", "iff"):
             continue
-        found = part.children()
+        operands = part.children()
         if isinstance(part.tree, Binary) and part.tree.op == "implies":
             yield part
-            found = found[1:]
-        waiting += reversed(found)
+            operands = operands[1:]
+        waiting += reversed(operands)
 
 
 def _never_together(implication: Expression, spec: SpecView) -> bool:
@@ -66,8 +70,8 @@ def _remark(implication: Expression) -> Remark:
     assert isinstance(implication.tree, Binary)
     condition, result = implication.at(implication.tree.left), implication.at(implication.tree.right)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
-    way_out = f"where it comes later, write `{operand(condition)} implies eventually {operand(result)}`"
-    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), way_out)
+    suggestion = f"where it comes later, write `{operand(condition)} implies eventually {operand(result)}`"
+    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), suggestion)
 
 
 RULE = Rule("TLT0432", "warning", check)

@@ -9,7 +9,10 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each spec that is a block, where a limit could stand, and has none."""
+    """Yield a remark for each spec that is a block and has no limit.
+
+    Only a block can have one.
+    """
     for spec in view.specs:
         if spec.spec.limit_steps is None and spec.declaration.block:
             yield _remark(spec)

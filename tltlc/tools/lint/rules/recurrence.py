@@ -1,4 +1,4 @@
-"""TLT0424: `always eventually` on traces that end, where it speaks of the last sample alone."""
+"""TLT0424: `always eventually` over finite traces, which constrains only the last step."""
 
 from __future__ import annotations
 
@@ -13,22 +13,23 @@ from tltlc.tools.lint.goals import is_of_implications
 from tltlc.tools.lint.rule import Remark, Rule
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
-"""What is mostly meant, by the inner operator."""
+"""What the author usually means, by the inner operator."""
 _OTHER = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
-"""The operator that a clause stands for, and whether it speaks of its formula or of the negation."""
+"""The operator of each clause kind, and whether its formula applies as it is or negated."""
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each `G F p` and `F G p` of a spec over finite traces, in the form of clauses as well.
+    """Yield a remark for each `G F p` and `F G p` of a spec over finite traces.
 
-    Those in a let are found where no spec of the file is over infinite traces.
+    This includes clauses that stand for the outer operator. Lets are checked only if all specs of
+    the file are over finite traces.
     """
     finite = [spec for spec in view.specs if spec.spec.semantics == "finite"]
     for spec in finite:
         for clause, formula in spec.clauses("reach", "keep", "avoid", "require"):
             yield from _inside(formula.tree, view)
-            # A goal is asked for once, and of a chain the last step alone is what the trace may end with.
+            # In a chain of goals only the last step can be a condition on the end of the trace.
             last = operands(formula.tree, "then")[-1] if clause.kind == "reach" else formula.tree
             start = clause.span.start if last is formula.tree else inner(last).span.start
             if clause.kind in _OF_CLAUSES:
@@ -46,9 +47,10 @@ def _inside(tree: Expr, view: View) -> Iterator[Remark]:
 
 
 def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Iterator[Remark]:
-    """Of what ``outer`` asks of an expression, or of its negation, the parts that come to its truth at the last step.
+    """Yield remarks for the parts of an operand that reduce to their truth at the last step.
 
-    `always` may be said of each operand of `and` on its own, `eventually` of each one of `or`.
+    ``outer`` is the operator in front of the operand. The operand is negated unless ``holds``.
+    `always` distributes over `and`, and `eventually` over `or`.
     """
     whole = inner(tree)
     waiting = [(tree, holds)]
@@ -75,13 +77,13 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
 
 
 def _remark(place: Span, op: str, awaited: Expression, sign: bool) -> Remark:
-    """``sign``: whether what is awaited, or its negation, is to hold."""
+    """Return the remark; ``sign`` is whether ``awaited`` is to hold, or else its negation."""
     goal = awaited.text if sign else f"not {operand(awaited)}"
     label = Label(awaited.source, place, f"where the trace ends, this is `{goal}` at its last step and no more")
-    way_out = f"where play has no end and {_WORDS[op]}, say `semantics infinite`"
+    suggestion = f"where play has no end and {_WORDS[op]}, say `semantics infinite`"
     if not (sign and is_of_implications(awaited)):
-        way_out += f"; once is `reach {goal}`"
-    return Remark("this speaks of the last step alone", (label,), way_out)
+        suggestion += f"; once is `reach {goal}`"
+    return Remark("this speaks of the last step alone", (label,), suggestion)
 
 
 RULE = Rule("TLT0424", "warning", check)

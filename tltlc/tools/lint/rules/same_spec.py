@@ -1,4 +1,4 @@
-"""TLT0426: a spec that asks for the same as another one of the file."""
+"""TLT0426: a spec that asks for the same as another spec of the file."""
 
 from __future__ import annotations
 
@@ -10,20 +10,21 @@ from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.rule import Remark, Rule
 
 _WORK: Final = 200_000
-"""Steps after which two specs count as different: a note must not take longer than the compilation."""
+"""Steps after which two specs count as different: a note must not take longer than compiling."""
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each spec that accepts what an earlier one does, and is judged as it is.
+    """Yield a remark for each spec that accepts the same traces as an earlier one.
 
-    Of one that every trace satisfies, or none, the compiler has said what is wrong with it.
+    Both must be judged the same way. Specs that every trace satisfies, or none, already have a
+    warning of the compiler and are left out.
     """
     firsts: dict[object, list[SpecView]] = {}
     for spec in view.specs:
         if spec.is_settled:
             continue
         alike = firsts.setdefault(_form(spec.fspa), [])
-        earlier = next((each for each in alike if _accept_the_same(each.fspa, spec.fspa)), None)
+        earlier = next((candidate for candidate in alike if _accept_the_same(candidate.fspa, spec.fspa)), None)
         if earlier is None:
             alike.append(spec)
             continue
@@ -33,15 +34,18 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _form(fspa: Fspa) -> object:
-    """What two specs of a file share that may accept the same; over finite traces they then do."""
+    """Return a key that is equal for specs that may accept the same traces.
+
+    Over finite traces, specs with equal keys do accept the same traces.
+    """
     settings = (fspa.semantics, fspa.judge, fspa.limit_steps, fspa.level, fspa.spec_size)
     return settings if fspa.semantics == "infinite" else (*settings, _edges(fspa))
 
 
 def _edges(fspa: Fspa) -> tuple[object, ...]:
-    """The edges from state to state, by guards and not by the numbers that states and atoms happen to have.
+    """Return the edges in a canonical form that does not depend on the numbers of states and atoms.
 
-    Minimal automata of one language, whose guards are canonical, have the same ones.
+    Minimal automata of one language have canonical guards, so they have the same form.
     """
     leaving: dict[int, list[tuple[list[list[tuple[str, bool]]], int]]] = {state.id: [] for state in fspa.states}
     for edge in fspa.edges:
@@ -50,18 +54,18 @@ def _edges(fspa: Fspa) -> tuple[object, ...]:
         )
         leaving[edge.source].append((primes, edge.target))
     order, places = [0], {0: 0}
-    found: list[object] = []
+    canonical: list[object] = []
     for state in order:
         for primes, target in sorted(leaving[state]):
             if target not in places:
                 places[target] = len(order)
                 order.append(target)
-            found.append((places[state], fspa.states[target].accepting, str(primes), places[target]))
-    return tuple(found)
+            canonical.append((places[state], fspa.states[target].accepting, str(primes), places[target]))
+    return tuple(canonical)
 
 
 def _accept_the_same(one: Fspa, other: Fspa) -> bool:
-    """Whether two of one form accept the same traces."""
+    """Whether two automata with the same form accept the same traces."""
     if one.semantics == "finite":
         return True
     from tltlc.automaton.compare import are_equivalent

@@ -9,11 +9,11 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each spec whose goal is more steps away than its limit has."""
+    """Yield a remark for each spec whose goal is more steps away than its limit allows."""
     for spec in view.specs:
         limit, least = spec.spec.limit_steps, spec.fspa.states[0].distance
         if limit is not None and least is not None and least > limit:
-            clause = next(each for each in spec.declaration.clauses if each.kind == "limit")
+            clause = next(clause for clause in spec.declaration.clauses if clause.kind == "limit")
             label = view.label(clause.span, f"the goal takes {least} steps at least, and this is {limit}")
             title = f"`{spec.spec.name}` cannot be met within its limit"
             yield Remark(title, (label,), f"allow more, at least `limit {least} steps`")

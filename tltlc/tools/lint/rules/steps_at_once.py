@@ -1,4 +1,4 @@
-"""TLT0415: goals at several places that the automaton takes to be met at one step."""
+"""TLT0415: several goals that the automaton lets one step meet."""
 
 from __future__ import annotations
 
@@ -17,11 +17,18 @@ from tltlc.tools.lint.rule import Remark, Rule
 
 _MOST_LABELS: Final = 4
 _MOST_STATES: Final = 1_000
-"""Of an automaton that is built to see what `exclusive` would do: a note must not take longer than the compilation."""
+"""Limit on the automaton that is built to see the effect of `exclusive`.
+
+It keeps a note from taking longer than the compilation.
+"""
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each predicate with which a spec is farther from its goal where its atoms never hold together."""
+    """Yield a remark for each predicate whose atoms can shorten the way by holding together.
+
+    The way to the goal is longer if these atoms are declared exclusive. Also yields a remark for
+    each goal that asks for several of the atoms at one step.
+    """
     entities = {binding.name for binding in view.env.scope.names.values() if binding.kind == "entity"}
     for spec in view.specs:
         if spec.fspa.semantics != "finite" or spec.fspa.states[0].verdict == "violated":
@@ -36,35 +43,41 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _together(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
-    """A remark for each goal that asks for several atoms of a group at one step, and may well mean one by one."""
+    """Yield a remark for each goal that asks for several atoms of a group at one step.
+
+    The author may well mean one after the other.
+    """
     for goal in goals(spec):
         parts = [part for part in conjuncts(goal) if _atom(part)]
         for group in groups:
             names = {spec.fspa.atoms[index].name for index in group}
-            asked = [part for part in parts if _atom(part) in names]
-            if len({_atom(part) for part in asked}) > 1:
-                found = list(dict.fromkeys(_atom(part) for part in asked))
-                title = f"`{found[0]}` and `{found[1]}` are asked for at one step"
+            members = [part for part in parts if _atom(part) in names]
+            if len({_atom(part) for part in members}) > 1:
+                member_names = list(dict.fromkeys(_atom(part) for part in members))
+                title = f"`{member_names[0]}` and `{member_names[1]}` are asked for at one step"
                 label = Label(goal.source, inner(goal.tree).span, "all of this at the same moment")
-                way_out = f"where one comes after the other, say so: `{' then '.join(found)}`"
-                yield Remark(title, (label,), way_out)
+                suggestion = f"where one comes after the other, say so: `{' then '.join(member_names)}`"
+                yield Remark(title, (label,), suggestion)
 
 
 def _atom(part: Expression) -> str:
-    """The name of an atom, empty where an expression is none."""
+    """Return the name of an atom, or an empty string if the expression is no atom."""
     formula = part.formula()
     return formula.name if formula is not None and formula.op == "atom" else ""
 
 
 def _reached(groups: list[set[int]], spec: SpecView) -> list[set[int]]:
-    """Of each group the atoms that goals ask for: what is kept, or comes by an `until`, is no step of the way."""
-    asked = {part.name for goal in goals(spec) for part in _operands(goal.formula()) if part.op == "atom"}
-    reached = [{index for index in group if spec.fspa.atoms[index].name in asked} for group in groups]
+    """Return the atoms of each group that goals ask for, in groups of at least two.
+
+    Atoms that are kept, or that occur in an `until`, are no steps towards a goal.
+    """
+    goal_atoms = {part.name for goal in goals(spec) for part in _operands(goal.formula()) if part.op == "atom"}
+    reached = [{index for index in group if spec.fspa.atoms[index].name in goal_atoms} for group in groups]
     return [group for group in reached if len(group) > 1]
 
 
 def _operands(formula: Formula | None) -> Iterator[Formula]:
-    """The operands of `and` and `or`, and the formula itself where it is neither."""
+    """Yield the operands of `and` and `or`, or the formula itself if it is neither."""
     waiting = [] if formula is None else [formula]
     while waiting:
         part = waiting.pop()
@@ -74,8 +87,11 @@ def _operands(formula: Formula | None) -> Iterator[Formula]:
             yield part
 
 
-def _apart(spec: Spec, indices: list[int]) -> Spec:
-    """The spec with these atoms declared exclusive; those of the automaton are those of the spec."""
+def _with_exclusive(spec: Spec, indices: list[int]) -> Spec:
+    """Return the spec with these atoms declared exclusive.
+
+    The indices refer to the automaton, which has the same atoms as the spec.
+    """
     return replace(spec, exclusive=(*spec.exclusive, tuple(indices)))
 
 
@@ -84,12 +100,15 @@ def _remark(spec: SpecView, names: list[str]) -> Remark:
     labels = (Label(part.source, part.span) for part in parts[:_MOST_LABELS])
     others = f" and {len(names) - 2} more" if len(names) > 2 else ""
     title = f"`{names[0]}` and `{names[1]}`{others} may be met at one step, so progress counts them as one"
-    way_out = f"where at most one of them holds at a time, say so: `exclusive {', '.join(names)}`"
-    return Remark(title, (spec.name_label(), *labels), way_out)
+    suggestion = f"where at most one of them holds at a time, say so: `exclusive {', '.join(names)}`"
+    return Remark(title, (spec.name_label(), *labels), suggestion)
 
 
 def _alike(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
-    """Groups of atoms that differ in the entity that they speak of first, as ``near(s1)`` and ``near(s2)``."""
+    """Return groups of atoms that differ only in their first entity.
+
+    An example is ``near(s1)`` and ``near(s2)``.
+    """
     known = set(entities)
     groups: dict[tuple[str, ...], set[int]] = {}
     for index, atom in enumerate(fspa.atoms):
@@ -101,22 +120,28 @@ def _alike(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
 
 
 def _atoms_together(edge: Edge, group: set[int]) -> set[int]:
-    """The atoms of a group that an edge needs to hold at once; none where it can be taken otherwise."""
+    """Return the atoms of a group that an edge needs to hold at the same step.
+
+    The result is empty if the edge can be taken otherwise.
+    """
     together = [group.intersection(atom for atom, holds in prime if holds) for prime in edge.guard.primes]
-    return set().union(*together) if all(len(held) > 1 for held in together) else set()
+    return set().union(*together) if all(len(atoms) > 1 for atoms in together) else set()
 
 
 def _is_shortened(spec: SpecView, indices: list[int]) -> bool:
-    """Whether the way to the goal is longer where these atoms exclude each other, and there still is one."""
+    """Whether the goal is farther away, but still reachable, if these atoms are exclusive."""
     try:
-        apart = build(_apart(spec.spec, indices), state_budget=_MOST_STATES)
+        apart = build(_with_exclusive(spec.spec, indices), state_budget=_MOST_STATES)
     except TltlError:
         return False
     return _length(apart) > _length(spec.fspa)
 
 
 def _length(fspa: Fspa) -> tuple[int, int]:
-    """The distance from the start, and the greatest one; both are 0 where no trace satisfies it."""
+    """Return the distance from the start and the greatest distance of any state.
+
+    Both are 0 if no trace satisfies the spec.
+    """
     return fspa.states[0].distance or 0, fspa.spec_size
 
 

@@ -16,7 +16,10 @@ Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each signal, param, entity, predicate and let that nothing here, or where it is imported, names."""
+    """Yield a remark for each declaration that is named neither here nor in an importing file.
+
+    This covers signals, params, entities, predicates and lets.
+    """
     if not view.specs:
         return
     used = view.used
@@ -26,8 +29,8 @@ def check(view: View) -> Iterator[Remark]:
         elif isinstance(declaration, (SignalDecl, ParamDecl, PredicateDecl, LetDecl)) and not (
             declaration.name in used or _is_refined(declaration, view)
         ):
-            gone = without(view.source, declaration.span, view.module.comments)
-            yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, (gone,), view)
+            removed = without(view.source, declaration.span, view.module.comments)
+            yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, (removed,), view)
 
 
 def _entities(declaration: EntityDecl, used: Container[str], view: View) -> Iterator[Remark]:
@@ -35,19 +38,22 @@ def _entities(declaration: EntityDecl, used: Container[str], view: View) -> Iter
     unused = [index for index, name in enumerate(declaration.names) if name.name not in used]
     for index in unused:
         if len(unused) == len(spans):
-            gone: tuple[Span, ...] = (without(view.source, declaration.span, view.module.comments),)
+            removed: tuple[Span, ...] = (without(view.source, declaration.span, view.module.comments),)
         else:
-            gone = item(spans, index, view.module.comments)
-        yield _remark("entity", declaration.names[index].name, spans[index], gone, view)
+            removed = item(spans, index, view.module.comments)
+        yield _remark("entity", declaration.names[index].name, spans[index], removed, view)
 
 
-def _remark(kind: str, name: str, place: Span, gone: tuple[Span, ...], view: View) -> Remark:
+def _remark(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: View) -> Remark:
     title = f"nothing uses the {kind} `{name}`"
-    return Remark(title, (view.label(place),), "remove it, or use it", removal("Remove it", gone))
+    return Remark(title, (view.label(place),), "remove it, or use it", removal("Remove it", removed))
 
 
 def _is_refined(declaration: Declared, view: View) -> bool:
-    """Whether a module that is imported declares the same: then it is used there, with the range that is said here."""
+    """Whether an imported module declares the same signal or param.
+
+    Then that module uses the declaration, with the range that is given here.
+    """
     return any(
         isinstance(other, (SignalDecl, ParamDecl)) and other.name == declaration.name
         for loaded in view.modules[:-1]

@@ -1,4 +1,4 @@
-"""TLT0422: an import of which nothing is used, in a file that has specs."""
+"""TLT0422: an import that is not used, in a file that has specs."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from tltlc.tools.lint.rule import Remark, Rule, removal
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each import that brings no name that the file mentions, and for each name chosen in vain."""
+    """Yield a remark for each unused import, and for each unused name in an import list."""
     if not view.specs:
         return
     used = view.used
-    brought, unnamed = _brought(used, view), _count_unnamed(view.modules)
+    brought, unnamed = _brought(used, view), _effective_unnamed(view.modules)
     for declaration, loaded in view.modules[-1].imports:
         if id(loaded) in unnamed:
             continue
         if not _brings_any(declaration, brought.get(declaration.target, [])):
-            gone = without(view.source, declaration.span, view.module.comments)
+            removed = without(view.source, declaration.span, view.module.comments)
             title = f"nothing of `{declaration.target}` is used"
-            remark = view.label(declaration.target_span)
-            yield Remark(title, (remark,), "remove the import, or use it", removal("Remove the import", (gone,)))
+            label = view.label(declaration.target_span)
+            yield Remark(title, (label,), "remove the import, or use it", removal("Remove the import", (removed,)))
         else:
             yield from _names(declaration, used, view)
 
@@ -35,34 +35,34 @@ def _names(declaration: Import, used: Container[str], view: View) -> Iterator[Re
     names = declaration.names or ()
     for index, name in enumerate(names):
         if f"{_prefix(declaration)}{name.name}" not in used:
-            gone = item([each.span for each in names], index, view.module.comments)
+            removed = item([entry.span for entry in names], index, view.module.comments)
             title = f"`{name.name}` of `{declaration.target}` is not used"
-            fix = removal("Remove it from the import", gone)
+            fix = removal("Remove it from the import", removed)
             yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 
 def _brought(used: Container[str], view: View) -> dict[str, list[str]]:
-    """The names that are used, by the target of the import that makes them visible, in sorted order.
+    """Return the used names in sorted order, by the target of the import that provides them.
 
-    A name that an earlier import brings as well is counted there.
+    A name that several imports provide counts for the first of them.
     """
-    found: dict[str, list[str]] = {}
+    by_target: dict[str, list[str]] = {}
     for name, binding in view.env.scope.names.items():
         if binding.via is not None and name in used:
-            found.setdefault(binding.via, []).append(name)
-    return {target: sorted(names) for target, names in found.items()}
+            by_target.setdefault(binding.via, []).append(name)
+    return {target: sorted(names) for target, names in by_target.items()}
 
 
 def _brings_any(declaration: Import, names: Sequence[str]) -> bool:
-    """Whether an import makes any of these sorted names visible."""
+    """Whether an import provides any of these sorted names."""
     if declaration.names is not None:
-        return any(_first(names, each.name) == each.name for each in declaration.names)
+        return any(_first(names, entry.name) == entry.name for entry in declaration.names)
     prefix = _prefix(declaration)
     return bool(names) and _first(names, prefix).startswith(prefix)
 
 
 def _first(names: Sequence[str], start: str) -> str:
-    """The first of these names, which are sorted, that is not below a text; empty where there is none."""
+    """Return the first of these sorted names that is at least ``start``, or an empty string."""
     place = bisect_left(names, start)
     return names[place] if place < len(names) else ""
 
@@ -71,28 +71,33 @@ def _prefix(declaration: Import) -> str:
     return f"{declaration.alias}." if declaration.alias else ""
 
 
-def _count_unnamed(modules: Iterable[Loaded]) -> set[int]:
-    """The modules, by identity, that say what counts without being named: a clock, what is exclusive, or the range of
-    a signal or a param that another module declares as well.
+def _effective_unnamed(modules: Iterable[Loaded]) -> set[int]:
+    """Return the ids of the modules that have an effect without being named.
 
-    They may say it by what they import, which stands before them.
+    Such a module declares a clock, exclusive atoms, or a signal or param that another module
+    declares as well, so that its range counts. A module also has an effect if one of its imports
+    does. Imported modules come first in ``modules``.
     """
-    found: set[int] = set()
+    effective: set[int] = set()
     modules = tuple(modules)
     declaring = Counter(
         name
         for loaded in modules
-        for name in {each.name for each in loaded.module.declarations if isinstance(each, (SignalDecl, ParamDecl))}
+        for name in {
+            declaration.name
+            for declaration in loaded.module.declarations
+            if isinstance(declaration, (SignalDecl, ParamDecl))
+        }
     )
     for loaded in modules:
         own = any(
-            isinstance(each, (ClockDecl, ExclusiveDecl))
-            or (isinstance(each, (SignalDecl, ParamDecl)) and declaring[each.name] > 1)
-            for each in loaded.module.declarations
+            isinstance(declaration, (ClockDecl, ExclusiveDecl))
+            or (isinstance(declaration, (SignalDecl, ParamDecl)) and declaring[declaration.name] > 1)
+            for declaration in loaded.module.declarations
         )
-        if own or any(id(other) in found for _, other in loaded.imports):
-            found.add(id(loaded))
-    return found
+        if own or any(id(other) in effective for _, other in loaded.imports):
+            effective.add(id(loaded))
+    return effective
 
 
 RULE = Rule("TLT0422", "warning", check)
