@@ -1,4 +1,4 @@
-"""The layout of source texts: one way to write each of them, in four styles of operators."""
+"""The formatter: one layout for every source text, with a choice of four operator styles."""
 
 from tltlc.tools.fmt.format import format_source as format_source
 from tltlc.tools.fmt.format import format_text as format_text

@@ -1,4 +1,8 @@
-"""Comments such as ``// tltlc: allow TLT0421`` speak of what is on their line, and of the same after layout."""
+"""Keep the effect of ``allow`` comments when a text is laid out.
+
+A comment such as ``// tltlc: allow TLT0421`` applies to what is on its line, so the layout must not
+change what shares a line with it.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +18,11 @@ from tltlc.grammar.tree import Comment, EntityDecl, Module
 
 @record
 class Kept:
-    """What the layout leaves as it is, by offsets: no line begins at ``joints``, ``declarations`` stay as written."""
+    """The offsets where the layout must keep the source as it is.
+
+    No line begins at an offset in ``joints``. A declaration that starts at an offset in
+    ``declarations`` is copied as it is written.
+    """
 
     joints: frozenset[int]
     declarations: frozenset[int]
@@ -24,12 +32,18 @@ NOTHING: Final = Kept(frozenset(), frozenset())
 
 
 def keeping(module: Module, text: str, kept: Kept) -> Kept:
-    """What is to be kept beside ``kept``, with which ``text`` was laid out, for comments to allow the same as before.
+    """Return what the layout must keep for comments to allow the same as before.
 
-    First that the statements of a line share one, and where that is not enough their declarations as they are.
+    ``text`` is the layout of the module with ``kept``. The result extends ``kept``. First,
+    statements that share a line with a comment keep sharing it. If that is not enough, their
+    declarations are kept as they are written.
     """
     before = spoken_of(module)
-    lists = [each for each in module.declarations if isinstance(each, EntityDecl) and len(each.names) > 1]
+    lists = [
+        declaration
+        for declaration in module.declarations
+        if isinstance(declaration, EntityDecl) and len(declaration.names) > 1
+    ]
     listed = {span for list_ in lists for span in (list_.span, *(name.span for name in list_.names))}
     if not any(_may_change(comment, places or (), module.source.text, listed) for comment, places in before):
         return kept
@@ -37,23 +51,31 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     back = dict(zip(statements(laid_out), statements(module), strict=True))
     wrong: set[Span] = set()
     after = spoken_of(laid_out)
-    # Comments that speak of the same line share its statements, before and after.
-    pairs = {(id(places), id(others)): (places, others) for (_, places), (_, others) in zip(before, after, strict=True)}
-    for places, others in pairs.values():
-        now = {back[place] for place in others or ()}
-        if places is not None and _outer(places) != _outer(now):
-            wrong.update(now.union(places))
+    # Comments on the same line share one tuple of places, before and after.
+    pairs = {
+        (id(places), id(new_places)): (places, new_places)
+        for (_, places), (_, new_places) in zip(before, after, strict=True)
+    }
+    for places, new_places in pairs.values():
+        places_now = {back[place] for place in new_places or ()}
+        if places is not None and _outer(places) != _outer(places_now):
+            wrong.update(places_now.union(places))
     joints = kept.joints.union(*(_joints(module.source.text, place) for place in wrong))
     if joints != kept.joints:
         return Kept(joints, kept.declarations)
-    starts = {each.span.start for each in module.declarations if any(each.span.covers(place) for place in wrong)}
+    starts = {
+        declaration.span.start
+        for declaration in module.declarations
+        if any(declaration.span.covers(place) for place in wrong)
+    }
     return Kept(joints, kept.declarations | starts)
 
 
 def _may_change(comment: Comment, places: tuple[Span, ...], text: str, listed: Container[Span]) -> bool:
-    """Whether a comment speaks of several statements, of one in a list, or stands in the block of which it speaks.
+    """Whether a comment could apply to something else after layout.
 
-    Others stay above, behind or within the one that they speak of, and need no second look.
+    It could if it applies to several statements, to an entry of a list, or to the block that
+    contains it. Other comments stay above, after or within their one statement and need no check.
     """
     if len(places) > 1 or any(place.covers(comment.span) and text[place.end - 1] == "}" for place in places):
         return True
@@ -61,7 +83,7 @@ def _may_change(comment: Comment, places: tuple[Span, ...], text: str, listed: C
 
 
 def _outer(places: Iterable[Span]) -> set[Span]:
-    """The places that lie in no other one."""
+    """Return the places that are not inside another one."""
     outer: list[Span] = []
     for place in sorted(places, key=lambda place: (place.start, -place.end)):
         if not outer or place.end > outer[-1].end:
@@ -70,7 +92,7 @@ def _outer(places: Iterable[Span]) -> set[Span]:
 
 
 def _joints(text: str, place: Span) -> Iterator[int]:
-    """The offsets where a statement, or its closing brace, stands behind others on a line."""
+    """Yield the offsets where a statement or its closing brace follows something on its line."""
     for offset in (place.start, *((place.end - 1,) if text[place.end - 1] == "}" else ())):
         if text[text.rfind("\n", 0, offset) + 1 : offset].strip():
             yield offset

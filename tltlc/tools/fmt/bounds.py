@@ -1,4 +1,4 @@
-"""Bounds in words and in brackets, each where it says exactly the same."""
+"""Convert bounds between words and brackets where both mean exactly the same."""
 
 from __future__ import annotations
 
@@ -14,32 +14,34 @@ _WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
 
 
 def forms(node: tree.Unary, number: Callable[[tree.Number], str]) -> dict[str, str]:
-    """The bound of an operator as ``words`` (``within 3 steps``) and as ``brackets`` (``[0,3]``), where it has both.
+    """Return the forms of an operator's bound, by the names ``words`` and ``brackets``.
 
-    ``number`` gives the text of a number.  Words count the samples of ``for``, and brackets name the last one, so a
-    time, which is rounded up to samples, has no second form there.  ``after`` has no brackets at all.
+    Words look like ``within 3 steps``, brackets like ``[0,3]``. A bound may have only one of these
+    forms. ``number`` returns the text of a number. The words of ``for`` count samples, and brackets
+    name the last sample. A time is rounded up to samples, so the two forms differ and ``for`` with
+    a time has only one. ``after`` has no brackets.
     """
     bound = node.bound
     if bound is None:
         return {}
     high = number(bound.high)
     if bound.words:
-        found = {"words": f"{_WORD[node.op]} {high}"}
+        texts = {"words": f"{_WORD[node.op]} {high}"}
         last = _in_brackets(node.op, bound.high, high)
-        return {**found, "brackets": f"[0,{last}]"} if last else found
+        return {**texts, "brackets": f"[0,{last}]"} if last else texts
     assert bound.low is not None
     low = number(bound.low)
-    # With units, the comma needs its space to be seen.
+    # With units, a space makes the comma visible.
     comma = ", " if bound.low.unit else ","
-    found = {"brackets": f"[{low}{comma}{high}]"}
+    texts = {"brackets": f"[{low}{comma}{high}]"}
     if bound.low.value or bound.low.unit not in _STEPS:
-        return found
-    said = _in_words(node.op, bound.high, high)
-    return {**found, "words": f"{_WORD[node.op]} {said}"} if said else found
+        return texts
+    phrase = _in_words(node.op, bound.high, high)
+    return {**texts, "words": f"{_WORD[node.op]} {phrase}"} if phrase else texts
 
 
 def _in_brackets(op: str, high: tree.Number, text: str) -> str | None:
-    """The last sample of ``within`` or ``for``, as brackets name it, or None where they cannot."""
+    """Return the last sample of ``within`` or ``for`` as it appears in brackets, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]
@@ -49,7 +51,7 @@ def _in_brackets(op: str, high: tree.Number, text: str) -> str | None:
 
 
 def _in_words(op: str, high: tree.Number, text: str) -> str | None:
-    """What ``within`` or ``for`` says of a bound that begins now and ends at ``high``, or None."""
+    """Return the words of ``within`` or ``for`` for a bound from now until ``high``, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
     count = text.partition(" ")[0]

@@ -1,4 +1,4 @@
-"""What formatting changes, as a unified diff."""
+"""Show the changes of the formatter as a unified diff."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _COLOURS: Final = {"---": "1", "+++": "1", "@@": "36", "-": "31", "+": "32"}
 
 
 def unified(name: str, before: str, after: str, *, color: bool = False) -> str:
-    """The diff between two texts of a file, empty where they are the same."""
+    """Return the diff between two texts of a file; empty if they are equal."""
     from difflib import unified_diff
 
     lines = unified_diff(_lines(before), _lines(after), name, name)
@@ -16,7 +16,7 @@ def unified(name: str, before: str, after: str, *, color: bool = False) -> str:
 
 
 def _lines(text: str) -> list[str]:
-    """The lines of a text with their ends."""
+    """Return the lines of a text with their line ends."""
     *whole, last = text.split("\n")
     return [f"{line}\n" for line in whole] + ([last] if last else [])
 

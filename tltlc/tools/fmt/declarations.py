@@ -1,4 +1,4 @@
-"""Declarations: their heads, their bodies behind ``=``, and blocks with a clause on each line."""
+"""Lay out declarations: heads, bodies after ``=``, and blocks with one clause on each line."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tltlc.tools.fmt.flat import Flat
 from tltlc.tools.fmt.page import STEP, Page
 
 _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
-"""The end of ``expect progress >= 50 %``."""
+"""Matches the end of ``expect progress >= 50 %``."""
 
 
 class Declarations:
-    """Writes the declarations of one source on a page; no line begins at the offsets ``joints``."""
+    """Writes the declarations of one source on a page. No line begins at the offsets ``joints``."""
 
     def __init__(self, source: SourceFile, page: Page, flat: Flat, joints: Set[int]) -> None:
         self._source = source
@@ -28,10 +28,10 @@ class Declarations:
         self._expressions = Expressions(page, flat)
 
     def put(self, node: tree.Declaration) -> None:
-        """Write a declaration, on lines of its own.
+        """Write a declaration on lines of its own.
 
-        Every comment that stands in one is written before its last word: behind it, a ``///`` would
-        document what follows.
+        Comments inside a declaration are written before its last word. After it, a ``///`` comment
+        would document the next declaration.
         """
         match node:
             case tree.Import():
@@ -71,7 +71,7 @@ class Declarations:
     # --- heads ----------------------------------------------------------------------------------
 
     def _put_words(self, keyword: str, rest: str, end: int) -> None:
-        """Write a keyword and words that are never broken; ``end`` is the offset behind them."""
+        """Write a keyword and words that are never broken; they end at the offset ``end``."""
         self._page.put(keyword)
         self._page.comments(end, STEP)
         self._page.put(f" {rest}")
@@ -94,7 +94,10 @@ class Declarations:
         interval: tree.Interval | None,
         end: int,
     ) -> None:
-        """Write ``keyword NAME(parameters): type in [low, high]``; comments up to ``end`` stand in it."""
+        """Write ``keyword NAME(parameters): type in [low, high]``.
+
+        Comments before the offset ``end`` are part of it.
+        """
         self._put_words(keyword, node.name, node.name_span.end)
         rest = (f": {type_}" if type_ else "") + (f" {self._range(interval)}" if interval else "")
         if not isinstance(node, tree.ParamDecl) and node.parameters:
@@ -120,7 +123,11 @@ class Declarations:
     # --- blocks ---------------------------------------------------------------------------------
 
     def _put_block(self, span: Span, head: int, items: Sequence[tree.Clause | tree.TestStep | tree.TestExpect]) -> None:
-        """Write ``{ … }``: on one line if it was on one and fits, else with an item on each."""
+        """Write ``{ … }``.
+
+        It stays on one line if it is on one line in the source and fits. Else each item gets a
+        line.
+        """
         page = self._page
         brace = page.find("{", head)
         if page.has_comment(brace) and "///" in self._source.text[head:brace]:
@@ -144,7 +151,7 @@ class Declarations:
         page.put("}")
 
     def _flat_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:
-        """An item of a block on one line, or None where it is longer than that."""
+        """Return an item of a block on one line, or None if it is too long."""
         if isinstance(item, tree.TestExpect):
             return self._expectation(item)
         if isinstance(item, tree.TestStep):
@@ -177,7 +184,7 @@ class Declarations:
             self._expressions.put_behind_word(item.value, indent)
 
     def _step(self, item: tree.TestStep) -> str:
-        """``step`` with the number that it repeats, if that is written."""
+        """Return ``step`` with its number of repetitions, if the source has one."""
         head = self._without_comments(Span(item.span.start, item.atoms[0].span.start))
         times = re.search("[0-9]+", head)
         return f"step {times[0]}x" if times else "step"
@@ -187,10 +194,10 @@ class Declarations:
             return f'expect state "{item.value}"'
         if item.kind == "verdict":
             return f"expect {item.value}"
-        found = _AMOUNT.search(self._without_comments(item.span))
-        assert found is not None
-        unit = f" {found[3]}" if found[3] else ""
-        return f"expect progress{self._flat.infix(item.comparison or '>=')}{found[2]}{unit}"
+        amount = _AMOUNT.search(self._without_comments(item.span))
+        assert amount is not None
+        unit = f" {amount[3]}" if amount[3] else ""
+        return f"expect progress{self._flat.infix(item.comparison or '>=')}{amount[2]}{unit}"
 
     def _without_comments(self, span: Span) -> str:
         return re.sub("//[^\n]*", "", self._source.slice(span))

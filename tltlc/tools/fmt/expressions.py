@@ -1,4 +1,7 @@
-"""Expressions: on one line where they fit, else broken at their loosest operators and in their brackets."""
+"""Lay out expressions.
+
+An expression is on one line if it fits, else it is broken at its loosest operators and in brackets.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +15,11 @@ from tltlc.tools.fmt.flat import Flat, chain, is_speed
 from tltlc.tools.fmt.page import STEP, WIDTH, Page
 
 _ENDLESS: Final = 1 << 30
-"""Room for what can be broken nowhere."""
+"""The room for a text that cannot be broken."""
 
 
 class Item(NamedTuple):
-    """An element of a list: ``head`` and, behind it, a value."""
+    """An element of a list: ``head`` and then a value."""
 
     head: str
     value: Expr | None
@@ -24,7 +27,7 @@ class Item(NamedTuple):
 
     @property
     def is_name(self) -> bool:
-        """Whether this is a name alone, of which several share a line."""
+        """Whether the item is only a name. Several names share a line."""
         return self.value is None and ":" not in self.head
 
 
@@ -36,9 +39,9 @@ class Expressions:
         self._flat = flat
 
     def put(self, node: Expr, indent: int, behind: int = 0) -> None:
-        """Write an expression; its further lines begin at ``indent``.
+        """Write an expression. Its further lines begin at ``indent``.
 
-        ``behind`` is how many columns its last line leaves for what follows.
+        ``behind`` is the number of columns to leave free at the end of its last line.
         """
         self._page.comments(node.span.start, indent)
         text = self.fitting(node, behind)
@@ -48,8 +51,11 @@ class Expressions:
             self._page.put(text)
 
     def put_value(self, node: Expr, indent: int) -> None:
-        """Write an expression behind ``=`` or ``:`` if it fits there, else on lines of its own at ``indent``."""
-        # Cases read best below each other, however short they are.
+        """Write an expression after ``=`` or ``:``.
+
+        If it does not fit there, it gets lines of its own at ``indent``.
+        """
+        # Cases are easiest to read below each other, even if they are short.
         has_cases = isinstance(node, tree.When)
         text = None if has_cases else self.fitting(node, 1)
         if text is not None:
@@ -63,20 +69,29 @@ class Expressions:
             self.put(node, indent)
 
     def put_behind_word(self, node: Expr, indent: int) -> None:
-        """Write an expression behind a keyword, on further lines if its first operand takes several."""
+        """Write an expression after a keyword.
+
+        It starts on a new line if its first operand takes several lines.
+        """
         self._page.comments(node.span.start, indent)
         if isinstance(node, tree.Binary) and self.fitting(next(chain(node))[1]) is None:
             self._page.end_line(indent)
         self.put(node, indent)
 
     def fitting(self, node: Expr, behind: int = 0) -> str | None:
-        """The expression on one line, or None where this one is too short for it, or a comment in the way."""
+        """Return the expression on one line, or None.
+
+        It is None if the current line is too short or a comment is inside the expression.
+        """
         if self._page.has_comment(node.span.end):
             return None
         return self._flat.text(node, self._page.room - behind)
 
     def put_list(self, items: Sequence[Item], indent: int) -> None:
-        """Write elements with commas, as many on a line as fit; further lines begin at ``indent``."""
+        """Write elements with commas, as many on a line as fit.
+
+        Further lines begin at ``indent``.
+        """
         for place, item in enumerate(items):
             comma = "," if place < len(items) - 1 else ""
             self._page.comments(item.span.start, indent)
@@ -89,9 +104,11 @@ class Expressions:
             self._put_item(item, indent + STEP, comma)
 
     def put_in_brackets(self, items: Sequence[Item], end: int | None = None, behind: int = 0) -> None:
-        """Write ``(…)`` around elements: on this line, or on one of their own, or each on one.
+        """Write elements in ``(…)``.
 
-        ``end`` is the offset behind the closing bracket, the next one if it is None.
+        They stay on this line if they fit, else they share one line of their own or get one line
+        each. ``end`` is the offset after the closing bracket. If it is None, the next bracket is
+        found.
         """
         page, outer = self._page, self._page.indent
         if end is None:
@@ -145,7 +162,10 @@ class Expressions:
                 self._page.put(self._flat.text(node, _ENDLESS) or "")
 
     def _put_chain(self, node: tree.Binary, indent: int, behind: int) -> None:
-        """Write operands on lines that begin with their operators; comments move in front of these."""
+        """Write operands on lines that begin with their operators.
+
+        Comments move in front of the operators.
+        """
         operands = [*chain(node)]
         for place, (operator, operand) in enumerate(operands):
             last = behind if place == len(operands) - 1 else 0
@@ -156,7 +176,7 @@ class Expressions:
             self.put(operand, indent + STEP, last)
 
     def _put_when(self, node: tree.When, indent: int) -> None:
-        """Write each case on a line, the values in one column if they fit there."""
+        """Write each case on a line, with the values in one column if they fit."""
         column = self._value_column(node, indent)
         for case in node.cases:
             self._page.comments(case.span.start, indent)
@@ -172,7 +192,10 @@ class Expressions:
         self.put_value(node.otherwise, indent + STEP)
 
     def _value_column(self, node: tree.When, indent: int) -> int:
-        """Where the values of all cases can begin, a blank behind the end of the widest condition; 0 for nowhere."""
+        """Return the column where the values of all cases can begin, or 0 if there is none.
+
+        It is one blank after the end of the widest condition.
+        """
         heads = [self._flat.text(case.condition, WIDTH) for case in node.cases]
         values = [self._flat.text(value, WIDTH) for value in (*(case.value for case in node.cases), node.otherwise)]
         column = indent + max(len(f"when {head}:") for head in heads)
@@ -182,17 +205,17 @@ class Expressions:
     # --- elements of lists ----------------------------------------------------------------------
 
     def _put_lines(self, items: Sequence[Item], indent: int) -> None:
-        """Write each element on a line; a single one has the lines to itself."""
+        """Write each element on a line. A single element is not indented further."""
         for place, item in enumerate(items):
             self._page.comments(item.span.start, indent)
             self._page.end_line(indent)
             self._put_item(item, indent + STEP if len(items) > 1 else indent, "," if place < len(items) - 1 else "")
 
     def _put_hugging(self, items: Sequence[Item], indent: int) -> None:
-        """Write elements behind each other, the larger one over several lines, in its brackets."""
+        """Write elements after each other. The large one is broken inside its brackets."""
         for place, item in enumerate(items):
             comma = ", " if place < len(items) - 1 else ""
-            # The brackets are broken even where they alone would fit.
+            # The brackets are broken even if they would fit on their own.
             self._put_item(item, indent, comma, 0 if _is_simple(item.value) else WIDTH)
 
     def _put_item(self, item: Item, indent: int, comma: str, behind: int = 0) -> None:
@@ -204,28 +227,28 @@ class Expressions:
             self._page.put(comma)
 
     def _item_text(self, item: Item) -> str | None:
-        """An element on one line, or None where it is too long or holds a comment."""
+        """Return an element on one line, or None if it is too long or contains a comment."""
         if self._page.has_comment(item.span.end):
             return None
         text = "" if item.value is None else self._flat.text(item.value)
         return None if text is None else item.head + text
 
     def _joined(self, items: Sequence[Item], end: int) -> str | None:
-        """All elements on one line, or None where they are too long or a comment is among them."""
+        """Return all elements on one line, or None if they are too long or contain a comment."""
         if self._page.has_comment(end):
             return None
-        found: list[str] = []
+        texts: list[str] = []
         room = WIDTH
         for item in items:
             text = self._item_text(item) if room > 0 else None
             if text is None:
                 return None
-            found.append(text)
+            texts.append(text)
             room -= len(text)
-        return ", ".join(found)
+        return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether the lines end with the brackets of the only larger element, as in ``clamp(min(``."""
+        """Whether the only large element shares lines with the brackets, as in ``clamp(min(``."""
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.Call, tree.Group)):
             return False
@@ -238,12 +261,12 @@ class Expressions:
 
 
 def argument(node: tree.Argument) -> Item:
-    """An argument of a call."""
+    """Return the item for an argument of a call."""
     return Item(f"{node.name} = " if node.name else "", node.value, node.span)
 
 
 def name(node: tree.Name) -> Item:
-    """A name in a list of names."""
+    """Return the item for a name in a list of names."""
     return Item(node.name, None, node.span)
 
 

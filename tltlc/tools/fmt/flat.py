@@ -1,4 +1,4 @@
-"""An expression on one line."""
+"""Write expressions on one line."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ from tltlc.tools.fmt.page import WIDTH
 from tltlc.tools.fmt.style import Style
 
 _LEVEL: Final = {"-": "+", "/": "*", "W": "U", "R": "U", "M": "U"}
-"""Operators of the same strength, under one of their names."""
+"""Maps operators of the same precedence to one of them."""
 
 _PER: Final = ("s", "h", "ms", "min")
-"""Units behind the stroke of ``20 m/s``."""
+"""Units after the slash of ``20 m/s``."""
 
 _LETTERS: Final = "abcdefghijklmnopqrstuvwxyzHz%"
 
 
 class Flat:
-    """Writes expressions of one source on one line, in one style."""
+    """Writes the expressions of one source on one line, in one style."""
 
     def __init__(self, source: SourceFile, style: Style) -> None:
         self._source = source
         self._style = style
 
     def text(self, node: Expr, room: int = WIDTH) -> str | None:
-        """The expression, or None where it takes more than ``room`` columns; comments in it are not looked at.
+        """Return the expression, or None if it takes more than ``room`` columns.
 
-        It gives up early, so that a long expression costs no more than a line of it.
+        Comments inside it are ignored. It stops as soon as the room is used up, so a long
+        expression costs no more than one line of it.
         """
         if room <= 0:
             return None
@@ -64,7 +65,7 @@ class Flat:
         return text if text is not None and len(text) <= room else None
 
     def number(self, node: tree.Number) -> str:
-        """A number as it is written, with a space before its unit."""
+        """Return a number as it is written, with a space before its unit."""
         written = self._source.slice(node.span)
         if node.unit is None:
             return written
@@ -72,59 +73,62 @@ class Flat:
         return f"{count.rstrip()} {written[len(count) :]}"
 
     def prefix(self, node: tree.Unary) -> str:
-        """The operator before an operand, with its bound and its space."""
+        """Return the operator before an operand, with its bound and its space."""
         return self._style.before(node, bounds.forms(node, self.number))
 
     def infix(self, op: str) -> str:
-        """An operator between two operands, with its spaces."""
+        """Return an operator between two operands, with its spaces."""
         return self._style.infix[op]
 
     def quantifier(self, node: tree.Quantified) -> str:
-        """``all x in``."""
+        """Return the beginning of a quantifier: ``all x in``."""
         return f"{'all' if node.all else 'any'} {node.variable} in"
 
     def _arguments(self, node: tree.Call, room: int) -> str | None:
-        found: list[str] = []
+        texts: list[str] = []
         for argument in node.arguments:
             head = f"{argument.name} = " if argument.name else ""
             text = self.text(argument.value, room - len(head))
             if text is None:
                 return None
-            found.append(head + text)
+            texts.append(head + text)
             room -= len(head) + len(text) + 2
-        return ", ".join(found)
+        return ", ".join(texts)
 
     def _chain(self, node: tree.Binary, room: int) -> str | None:
-        found: list[str] = []
+        texts: list[str] = []
         for operator, operand in chain(node):
             head = self.infix(operator.op) if operator else ""
             text = self._speed(operand, room) if is_speed(operand) else self.text(operand, room - len(head))
             if text is None:
                 return None
-            found += (head, text)
+            texts += (head, text)
             room -= len(head) + len(text)
-        return "".join(found)
+        return "".join(texts)
 
     def _speed(self, node: Expr, room: int) -> str | None:
-        """``20 m/s``."""
+        """Return a speed: ``20 m/s``."""
         assert isinstance(node, tree.Binary)
-        under = self.text(node.right, room)
-        return None if under is None else f"{self.text(node.left)}/{under}"
+        denominator = self.text(node.right, room)
+        return None if denominator is None else f"{self.text(node.left)}/{denominator}"
 
     def _when(self, node: tree.When, room: int) -> str | None:
-        found: list[str] = []
+        texts: list[str] = []
         for case in node.cases:
             condition, value = self.text(case.condition, room), self.text(case.value, room)
             if condition is None or value is None:
                 return None
-            found.append(f"when {condition}: {value} ")
-            room -= len(found[-1])
+            texts.append(f"when {condition}: {value} ")
+            room -= len(texts[-1])
         value = self.text(node.otherwise, room)
-        return None if value is None else f"{''.join(found)}otherwise: {value}"
+        return None if value is None else f"{''.join(texts)}otherwise: {value}"
 
 
 def chain(node: tree.Binary) -> Iterator[tuple[tree.Binary | None, Expr]]:
-    """The operands of operators of the same strength, in order, each with the operator before it."""
+    """Yield the operands of operators with the same precedence, in order.
+
+    Each operand comes with the operator before it.
+    """
     if is_speed(node):
         yield None, node
         return
@@ -139,13 +143,13 @@ def chain(node: tree.Binary) -> Iterator[tuple[tree.Binary | None, Expr]]:
 
 
 def is_speed(node: Expr) -> bool:
-    """Whether this is a quotient of units, such as ``20 m/s``, which stands together."""
+    """Whether this is a quotient with units, such as ``20 m/s``, which is never broken."""
     if not isinstance(node, tree.Binary) or node.op != "/":
         return False
-    under = node.right.left if isinstance(node.right, tree.Binary) else node.right
+    denominator = node.right.left if isinstance(node.right, tree.Binary) else node.right
     return (
         isinstance(node.left, tree.Number)
         and node.left.unit is not None
-        and isinstance(under, tree.Name)
-        and under.name in _PER
+        and isinstance(denominator, tree.Name)
+        and denominator.name in _PER
     )

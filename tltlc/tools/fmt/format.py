@@ -1,4 +1,4 @@
-"""A source text in its one layout: same meaning, same comments, other spaces and spellings."""
+"""Format a source text: it keeps its meaning and comments, and gets other spaces and spellings."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ from tltlc.tools.fmt.style import DEFAULT, STYLES, Style
 
 
 def format_text(text: str, style: str = DEFAULT) -> str:
-    r"""The text in its layout, with the operators of a style: ``words``, ``letters``, ``symbols`` or ``unicode``.
+    r"""Return the text in its layout, with the operators of a style.
 
-    Its syntax tree is that of ``text``, spans and the form of bounds apart.
+    The styles are ``words``, ``letters``, ``symbols`` and ``unicode``. The syntax tree of the
+    result is the same as the tree of ``text``, except for spans and the form of bounds.
 
     Raises:
-        TltlError: every error of syntax; TLT0004, the result would be larger than what can be read.
+        TltlError: the text has syntax errors; or TLT0004, the result would be too large to be read.
         KeyError: there is no such style.
 
     >>> from tltlc.tools.fmt import format_text
@@ -33,16 +34,16 @@ def format_text(text: str, style: str = DEFAULT) -> str:
 
 
 def format_source(source: SourceFile, style: str = DEFAULT) -> str:
-    """As :func:`format_text`, for a text with a name, by which errors call it."""
-    module, found = parse(source)
-    if found:
-        raise TltlError(found)
+    """Format a text like :func:`format_text`; errors call it by its name."""
+    module, diagnostics = parse(source)
+    if diagnostics:
+        raise TltlError(diagnostics)
     try:
         return _written(module, STYLES[style])
     except RecursionError:
         from tltlc.automaton.finite.blowup import recursion_room
 
-        # The grammar lets operators nest 1000 deep.
+        # The grammar allows operators to nest 1000 levels deep.
         with recursion_room():
             return _written(module, STYLES[style])
 
@@ -51,19 +52,22 @@ _EVERYTHING: Final = 1 << 62
 
 
 def _written(module: tree.Module, style: Style) -> str:
-    """The layout, with as much as it takes kept as it is for comments to allow the same as before."""
+    """Return the layout in which comments allow the same as before.
+
+    It keeps as much of the source as that takes.
+    """
     kept = NOTHING
     while True:
         text = _laid_out(module, style, kept)
         _check_size(module.source.name, text)
-        more = keeping(module, text, kept)
-        if more == kept:
+        needed = keeping(module, text, kept)
+        if needed == kept:
             return text
-        kept = more
+        kept = needed
 
 
 def _check_size(name: str, text: str) -> None:
-    """Raise TLT0004 where a layout is too large to be read again."""
+    """Raise TLT0004 if a layout is too large to be read again."""
     if is_too_large(SourceFile(name, text)):
         title = f"`{name}` would be larger than 1 MiB or {MAX_TOKENS:,} words and signs in its layout"
         help_ = "it stays as it is; to lay it out, split it: a file may `import` others"

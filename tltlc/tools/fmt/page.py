@@ -1,4 +1,4 @@
-"""The page that is written: its lines, with the comments of the source where they belong."""
+"""The page that the formatter writes: code with the comments of the source in their places."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.tree import Comment
 
 WIDTH: Final = 100
-"""The most columns of a line, where its words and comments allow it."""
+"""The maximum number of columns in a line, if its words and comments allow it."""
 
 STEP: Final = 4
-"""By how many columns what belongs to a line is indented."""
+"""The number of columns of one level of indentation."""
 
 _DEEPEST: Final = 60
-"""No line begins further to the right, however deep it is nested: there would be no room for it."""
+"""The largest indentation. A deeper one would leave no room for code."""
 
 _GAP: Final = 2
-"""Blanks between a line and the comment behind it."""
+"""The number of blanks between a line and the comment after it."""
 
 _OPENERS: Final = ("{", "(", ":", "=")
-"""Ends of lines whose comments speak of all that follows, and not of the next line."""
+"""Line ends after which a comment applies to everything that follows, not only to the next line."""
 
 
 class Page:
-    """Lines that grow from left to right; comments join them in the order of the source.
+    """Lines that are filled from left to right. Comments join them in the order of the source.
 
-    A comment behind code stays behind it, one on a line of its own stays on one.
+    A comment after code stays after it. A comment on its own line stays on its own line.
     """
 
     def __init__(self, source: SourceFile, comments: Sequence[Comment]) -> None:
@@ -42,7 +42,7 @@ class Page:
         self._opened = 0
 
     def put(self, text: str) -> None:
-        """Write on, on a new line where the last one has ended."""
+        """Write a text, on a new line if the last line has ended."""
         if self._fresh:
             self._lines.append(" " * self._indent + text.lstrip(" "))
             self._fresh = self._is_comment = False
@@ -50,51 +50,51 @@ class Page:
             self._lines[-1] += text
 
     def end_line(self, indent: int) -> None:
-        """What is put next begins a line there."""
+        """End the line. The next text begins a line at ``indent``."""
         self._fresh = True
         self._indent = min(indent, _DEEPEST)
 
     def begin(self, joined: bool, indent: int) -> None:
-        """What is put next begins a line there, or stands behind this one where that does not end in a comment."""
+        """Begin a line, or continue this line if ``joined`` and it does not end in a comment."""
         if joined and not self._fresh:
             self.put(" ")
         else:
             self.end_line(indent)
 
     def put_as_written(self, span: Span) -> None:
-        """Write a part of the source, and the comments in it, as it stands there."""
+        """Write a part of the source, with its comments, as it is in the source."""
         while self.has_comment(span.end):
             self._next += 1
-        first, *others = (line.rstrip() for line in self._text[span.start : span.end].split("\n"))
+        first, *rest = (line.rstrip() for line in self._text[span.start : span.end].split("\n"))
         self.put(first)
-        for place, line in enumerate(others):
-            if line or others[place - 1]:
+        for place, line in enumerate(rest):
+            if line or rest[place - 1]:
                 self._lines.append(line)
 
     def open_block(self) -> None:
-        """No empty line follows here."""
+        """Note that a block begins here, so that no empty line follows."""
         self._opened = len(self._lines)
 
     @property
     def is_fresh(self) -> bool:
-        """Whether what is put next begins a line."""
+        """Whether the next text begins a line."""
         return self._fresh
 
     @property
     def room(self) -> int:
-        """How many columns are left."""
+        """The number of columns that are left in the line."""
         return WIDTH - (self._indent if self._fresh else len(self._lines[-1]))
 
     @property
     def indent(self) -> int:
-        """Where the line begins."""
+        """The column where the line begins."""
         if self._fresh:
             return self._indent
         line = self._lines[-1]
         return len(line) - len(line.lstrip(" "))
 
     def has_comment(self, end: int, start: int = 0) -> bool:
-        """Whether a comment that is still to be written stands before an offset (and not before ``start``)."""
+        """Whether an unwritten comment begins before ``end`` and not before ``start``."""
         for place in range(self._next, len(self._comments)):
             at = self._comments[place].span.start
             if at >= start:
@@ -102,7 +102,10 @@ class Page:
         return False
 
     def find(self, sign: str, start: int) -> int:
-        """The first place of a sign behind an offset of the source, comments that are still to be written left out."""
+        """Return the first place of a sign from an offset of the source on.
+
+        Comments that are not yet written are skipped.
+        """
         place = self._text.find(sign, start)
         for number in range(self._next, len(self._comments)):
             span = self._comments[number].span
@@ -113,9 +116,9 @@ class Page:
         return place
 
     def comments(self, end: int, indent: int, *, gaps: bool = False) -> None:
-        """Write the comments before an offset; what follows them begins a line at ``indent``, as they do.
+        """Write the comments before an offset. They and the next text begin lines at ``indent``.
 
-        With ``gaps``, empty lines in front of them stay.
+        With ``gaps``, empty lines before comments are kept.
         """
         while self._next < len(self._comments) and self._comments[self._next].span.start < end:
             comment = self._comments[self._next]
@@ -130,7 +133,7 @@ class Page:
             self.end_line(indent)
 
     def gap(self, offset: int) -> None:
-        """An empty line, where the source has any in front of this offset."""
+        """Write an empty line if the source has any before this offset."""
         start = offset
         while start and self._text[start - 1].isspace():
             start -= 1
@@ -138,7 +141,10 @@ class Page:
             self._lines.append("")
 
     def text(self) -> str:
-        """All lines, each with a line feed; comments behind lines of one kind stand in one column."""
+        """Return all lines, each with a line feed.
+
+        Comments after neighbouring lines are aligned.
+        """
         lines = [line.rstrip() for line in self._lines]
         group: list[int] = []
         for place in sorted(self._remarks):
@@ -150,7 +156,10 @@ class Page:
         return "".join(f"{line}\n" for line in lines)
 
     def _align(self, lines: list[str], group: list[int]) -> None:
-        """Put comments behind their lines: in one column, unless one of them would then end beyond the width."""
+        """Write comments after their lines.
+
+        They share one column unless one of them would then end beyond ``WIDTH``.
+        """
         widest = max((len(lines[place]) for place in group), default=0)
         if any(widest + _GAP + len(self._remarks[place]) > WIDTH for place in group):
             widest = 0
@@ -158,6 +167,6 @@ class Page:
             lines[place] = lines[place].ljust(widest) + " " * _GAP + self._remarks[place]
 
     def _stands_alone(self, comment: Comment) -> bool:
-        """Whether nothing stands before a comment on its line in the source."""
+        """Whether a comment is alone on its line in the source."""
         start = self._text.rfind("\n", 0, comment.span.start) + 1
         return not self._text[start : comment.span.start].lstrip("\ufeff").strip()

@@ -1,4 +1,4 @@
-"""The four styles: which of its spellings each operator gets."""
+"""The four styles, which select a spelling for each operator."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ _ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", 
 
 @record
 class Style:
-    """Spellings of operators with their spaces: ``prefix`` before an operand, ``infix`` between two.
+    """The spellings of operators with their spaces.
 
-    ``letters`` are the prefixes of bounds that words cannot say, where they are to be said in words: else None.
+    ``prefix`` is before an operand and ``infix`` between two. ``letters`` are the prefixes for
+    bounds that words cannot express. It is None for styles that do not write bounds in words.
     """
 
     prefix: Mapping[str, str]
@@ -27,21 +28,21 @@ class Style:
     letters: Mapping[str, str] | None
 
     def before(self, node: tree.Unary, bound: Mapping[str, str]) -> str:
-        """The operator before an operand, with its bound and the space behind it.
+        """Return the operator before an operand, with its bound and the space after it.
 
-        ``bound`` holds the forms of the bound, as :func:`tltlc.tools.fmt.bounds.forms` gives them.
+        ``bound`` has the forms of the bound, from :func:`tltlc.tools.fmt.bounds.forms`.
         """
         if "words" in bound and (self.letters or "brackets" not in bound):
             return f"{self.prefix[node.op].rstrip()} {bound['words']} "
         spelling = self.prefix[node.op]
         if bound:
-            # F[2,3] reads best in letters.
+            # `F[2,3]` is easiest to read in letters.
             spelling = f"{(self.letters or self.prefix)[node.op].rstrip()}{bound['brackets']} "
         return spelling.rstrip() if isinstance(node.operand, tree.Group) and not self.space_before_bracket else spelling
 
 
 def _style(notation: Notation, others: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None) -> Style:
-    """The style of a notation; ``others`` are further spellings of infix operators."""
+    """Return the style of a notation; ``others`` are additional spellings of infix operators."""
     prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
     return Style(
         {"-": "-", **prefix}, {**_ARITHMETIC, **infix, **others}, constants, notation.space_before_bracket, letters
@@ -58,7 +59,7 @@ STYLES: Final[Mapping[str, Style]] = {
     "symbols": _style(ASCII._replace(prefix={**ASCII.prefix, "F": "<>", "G": "[]"})),
     "unicode": _style(UNICODE, {"<=": " ≤ ", ">=": " ≥ "}),
 }
-"""The styles by their names; what has no symbol keeps its letter."""
+"""The styles by name. An operator without a symbol keeps its letter."""
 
 DEFAULT: Final = "words"
-"""The style where nobody names one."""
+"""The default style."""
