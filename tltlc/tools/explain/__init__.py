@@ -1,1 +1,5 @@
-"""Specs in plain words: what is asked for, the states of the automaton, the shortest ways to succeed and to fail."""
+"""Explain specs in plain words.
+
+An explanation has what the spec asks for, the states of its automaton, and the shortest traces that
+succeed and that fail.
+"""

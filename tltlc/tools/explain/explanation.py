@@ -1,4 +1,7 @@
-"""What there is to say of a spec, complete and in words: what the outputs of ``tltlc explain`` are written from."""
+"""The complete explanation of a spec in words.
+
+All outputs of ``tltlc explain`` are built from it.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +21,14 @@ from tltlc.tools.witness.traces import Witness, accepting, rejecting
 from tltlc.tools.witness.transitions import Moves
 
 ANYTHING: Final = "anything"
-"""What is said of a step at which all samples do the same."""
+"""The text for a step at which all samples lead to the same state."""
 _MOST_WORK: Final = 2_000_000
-"""Steps that the search for an infinite trace may take here."""
+"""The most steps that the search for an infinite trace may take here."""
 
 
 @record
 class Lead:
-    """What leads from a state to another one: when, in words, and the number of that state."""
+    """An edge that leads on from a state: its condition in words, and the number of its target."""
 
     when: str
     state: int
@@ -33,7 +36,10 @@ class Lead:
 
 @record
 class StateRow:
-    """A state: what remains, its verdict, its distance (None in a trap), what leads on from it."""
+    """A state: what remains to be satisfied, its verdict, its distance, and the edges that lead on.
+
+    The distance is None in a trap.
+    """
 
     id: int
     remains: str
@@ -44,7 +50,10 @@ class StateRow:
 
 @record
 class Failure:
-    """What breaks the spec for good, and in which states; ``everywhere`` where these are all that can be left."""
+    """A condition that breaks the spec for good, and the states in which it does.
+
+    ``everywhere`` is true if it does so in every state that is not decided yet.
+    """
 
     when: str
     states: tuple[int, ...]
@@ -53,7 +62,7 @@ class Failure:
 
 @record
 class WayStep:
-    """Steps in a row at which the same is done, and the state that the last of them leads to."""
+    """Consecutive steps with the same condition, and the state that the last of them leads to."""
 
     times: int
     what: str
@@ -62,7 +71,10 @@ class WayStep:
 
 @record
 class Way:
-    """A way to the end: its steps, and over infinite traces the index of the first of those that repeat for ever."""
+    """A trace to success or failure.
+
+    Over infinite traces, ``cycle`` is the index of the first step that repeats for ever.
+    """
 
     steps: tuple[WayStep, ...]
     cycle: int | None
@@ -70,13 +82,15 @@ class Way:
 
 @record
 class Explanation:
-    """A spec in words; the fields are those of the JSON that ``tltlc explain --format json`` writes.
+    """A spec in words. The fields are those of the JSON of ``tltlc explain --format json``.
 
-    ``outline`` is None where the formula cannot be read.  ``exclusive`` lists atoms of which at most one holds at a
-    time.  ``counting`` lists rows of states, each leading to the next, that differ in a count alone.  ``judge`` is
-    ``goal`` or ``limit``, ``ending`` says what that means here.  ``succeed`` and ``fail`` are None where there is no
-    such way, or none was found; over finite traces a way to fail ends where nothing can succeed any more, and both
-    are shortest.
+    ``outline`` is None if the formula cannot be read. ``exclusive`` lists atoms of which at most
+    one holds at a time. ``counting`` lists runs of states, each leading to the next, that differ
+    only in a count. ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for
+    this spec.
+
+    ``succeed`` and ``fail`` are None if there is no such trace, or if none was found. Over finite
+    traces both are shortest, and ``fail`` ends where success is no longer possible.
     """
 
     name: str
@@ -100,7 +114,11 @@ class Explanation:
 
 
 def explain(fspa: Fspa, formula: Formula | None = None) -> Explanation:
-    """What there is to say of an automaton; ``formula`` is that of its spec, read from its text where it is missing."""
+    """Return the explanation of an automaton.
+
+    ``formula`` is the formula of its spec. If it is missing, it is parsed from the automaton's
+    text.
+    """
     formula = formula or formula_of(fspa)
     guards = _guards(fspa)
     moves = Moves(fspa)
@@ -113,7 +131,7 @@ def explain(fspa: Fspa, formula: Formula | None = None) -> Explanation:
         semantics=fspa.semantics,
         level=fspa.level,
         outline=None if formula is None else _outline(formula, endless=fspa.semantics == "infinite"),
-        exclusive=tuple(tuple(fspa.atoms[each].name for each in group) for group in fspa.exclusive),
+        exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
         failures=_failures(fspa, guards),
         judge=fspa.judge,
         ending=ending(fspa),
@@ -136,22 +154,22 @@ def _outline(formula: Formula, *, endless: bool) -> Outline:
 
 
 def _guards(fspa: Fspa) -> tuple[Formula, ...]:
-    """The guard of each edge."""
+    """Return the guard of each edge as a formula."""
     read = guard_reader(fspa)
-    known = {edge.guard.text: edge.guard for edge in fspa.edges}
-    formulas = {text: read(guard) for text, guard in known.items()}
+    by_text = {edge.guard.text: edge.guard for edge in fspa.edges}
+    formulas = {text: read(guard) for text, guard in by_text.items()}
     return tuple(formulas[edge.guard.text] for edge in fspa.edges)
 
 
 def _words(state: Formula) -> str:
-    return ANYTHING if state is TRUE else phrase(_with_what_holds_first(state))
+    return ANYTHING if state is TRUE else phrase(_positive_first(state))
 
 
-def _with_what_holds_first(state: Formula) -> Formula:
-    """The guard, or part of one, with atoms before their negations in each row: ``b and not a``."""
+def _positive_first(state: Formula) -> Formula:
+    """Return a guard, or part of one, with atoms before negated atoms: ``b and not a``."""
     if state.op not in ("and", "or"):
         return state
-    parts = (_with_what_holds_first(part) for part in state.args)
+    parts = (_positive_first(part) for part in state.args)
     return rebuild(state, tuple(sorted(parts, key=lambda part: part.op == "not")))
 
 
@@ -167,27 +185,30 @@ def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
 
 
 def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[Failure, ...]:
-    """What leads into a trap, each of several reasons by itself; what does so everywhere first."""
+    """Return what leads into a trap, one entry for each reason.
+
+    Reasons that apply in every undecided state come first.
+    """
     broken = {state.id for state in fspa.states if state.verdict == "violated"}
     open_ = {state.id for state in fspa.states if state.verdict in ("pending", "holding")}
-    found: dict[str, dict[int, None]] = {}
+    sources: dict[str, dict[int, None]] = {}
     for edge, guard in zip(fspa.edges, guards, strict=True):
         if edge.source not in broken and edge.target in broken:
             for reason in guard.args if guard.op == "or" else (guard,):
-                found.setdefault(_words(reason), {})[edge.source] = None
-    failures = [Failure(when, tuple(states), set(states) == open_) for when, states in found.items()]
+                sources.setdefault(_words(reason), {})[edge.source] = None
+    failures = [Failure(when, tuple(states), set(states) == open_) for when, states in sources.items()]
     return tuple(sorted(failures, key=lambda failure: (not failure.everywhere, failure.states)))
 
 
 def _found(moves: Moves, accept: bool) -> Witness | None:
     try:
-        found = accepting(moves, _MOST_WORK) if accept else rejecting(moves, _MOST_WORK)
+        witness = accepting(moves, _MOST_WORK) if accept else rejecting(moves, _MOST_WORK)
     except OutOfWork:
         return None
-    if found is None or accept or found.cycle is not None:
-        return found
-    edge = moves.fspa.edges[found.moves[-1].edge]
-    return found if moves.fspa.states[edge.target].verdict == "violated" else None
+    if witness is None or accept or witness.cycle is not None:
+        return witness
+    edge = moves.fspa.edges[witness.moves[-1].edge]
+    return witness if moves.fspa.states[edge.target].verdict == "violated" else None
 
 
 def _way(fspa: Fspa, witness: Witness | None) -> Way | None:
@@ -197,11 +218,11 @@ def _way(fspa: Fspa, witness: Witness | None) -> Way | None:
     steps: list[WayStep] = []
     cycle: int | None = None
     for index, move in enumerate(witness.moves):
-        what, state = _words(literals(fspa, move.prime)), fspa.edges[move.edge].target
+        condition, state = _words(literals(fspa, move.prime)), fspa.edges[move.edge].target
         if index == witness.cycle:
             cycle = len(steps)
-        elif steps and steps[-1].what == what:
-            steps[-1] = WayStep(steps[-1].times + 1, what, state)
+        elif steps and steps[-1].what == condition:
+            steps[-1] = WayStep(steps[-1].times + 1, condition, state)
             continue
-        steps.append(WayStep(1, what, state))
+        steps.append(WayStep(1, condition, state))
     return Way(tuple(steps), cycle)

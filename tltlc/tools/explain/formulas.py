@@ -1,4 +1,4 @@
-"""Formulas of an automaton, read back from the texts that it holds."""
+"""Parse the formulas and guards of an automaton from its texts."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ from tltlc.resolve.program import resolve
 
 
 def formula_of(fspa: Fspa) -> Formula | None:
-    """The formula of an automaton; None where its text is none, as it may be where another tool made it."""
-    stand_ins = {each.name: f"atom_{index}" for index, each in enumerate(fspa.atoms)}
+    """Return the formula of an automaton, or None if its text is no valid formula.
+
+    The text may be invalid if another tool made the automaton.
+    """
+    stand_ins = {declared.name: f"atom_{index}" for index, declared in enumerate(fspa.atoms)}
     text = fspa.formula.ascii
     if stand_ins:
         text = _any_of(stand_ins).sub(lambda match: stand_ins[match[0]], text)
     signals = "".join(f"signal {stand_in}: bool\n" for stand_in in stand_ins.values())
-    module, found = parse(SourceFile(fspa.name, f"{signals}spec explained = {text}\n"))
-    if any(each.severity == "error" for each in found):
+    module, diagnostics = parse(SourceFile(fspa.name, f"{signals}spec explained = {text}\n"))
+    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
         return None
     program, _ = resolve(module)
     names = {stand_in: name for name, stand_in in stand_ins.items()}
@@ -30,7 +33,7 @@ def formula_of(fspa: Fspa) -> Formula | None:
 
 
 def _any_of(names: dict[str, str]) -> re.Pattern[str]:
-    """Matches the names of atoms, the longest that fits."""
+    """Return a pattern that matches the names of atoms, the longest possible one first."""
     longest_first = sorted(names, key=len, reverse=True)
     return re.compile(rf"(?<![\w.])(?:{'|'.join(map(re.escape, longest_first))})(?![\w.])")
 
@@ -44,27 +47,34 @@ def _renamed(formula: Formula, names: dict[str, str]) -> Formula:
 
 
 def guard_reader(fspa: Fspa) -> Callable[[Guard], Formula]:
-    """Reads guards: their texts are literals in sums of products, or in products of sums in brackets."""
+    """Return a function that parses guards.
+
+    The texts of guards are sums of products of literals, or products of sums in brackets.
+    """
     spelled: dict[str, Formula] = {}
-    for each in fspa.atoms:
-        found = atom(each.name)
-        spelled |= {each.name: found, operand_text(found): found, f"!{operand_text(found)}": build.not_(found)}
+    for declared in fspa.atoms:
+        formula = atom(declared.name)
+        spelled |= {
+            declared.name: formula,
+            operand_text(formula): formula,
+            f"!{operand_text(formula)}": build.not_(formula),
+        }
 
     def read(guard: Guard) -> Formula:
-        found = _sum(guard.text, spelled)
-        return found if found is not None else build.or_(*(literals(fspa, prime) for prime in guard.primes))
+        formula = _sum(guard.text, spelled)
+        return formula if formula is not None else build.or_(*(literals(fspa, prime) for prime in guard.primes))
 
     return read
 
 
 def literals(fspa: Fspa, implicant: Implicant) -> Formula:
-    """The conjunction of literals, ``true`` where there are none."""
+    """Return the conjunction of literals; ``true`` if there are none."""
     named = [(atom(fspa.atoms[index].name), holds) for index, holds in implicant]
-    return build.and_(*(each if holds else build.not_(each) for each, holds in named))
+    return build.and_(*(literal if holds else build.not_(literal) for literal, holds in named))
 
 
 def _sum(text: str, spelled: dict[str, Formula]) -> Formula | None:
-    """The formula of a sum, of a product or of a literal; None where it is no such thing."""
+    """Parse a sum, a product or a literal. Return None if the text is none of these."""
     if text in spelled:
         return spelled[text]
     for symbol, make in ((" | ", build.or_), (" & ", build.and_)):
@@ -79,7 +89,7 @@ def _sum(text: str, spelled: dict[str, Formula]) -> Formula | None:
 
 
 def _split(text: str, symbol: str) -> Iterator[str]:
-    """The parts of a text between symbols that stand in no brackets."""
+    """Yield the parts of a text between symbols that are outside brackets."""
     if "(" not in text:
         yield from text.split(symbol)
         return

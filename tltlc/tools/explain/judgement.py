@@ -1,4 +1,4 @@
-"""When an episode ends and how it is judged, in sentences."""
+"""Describe when an episode ends and how it is judged."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from tltlc.automaton.fspa import Fspa
 
 
 def ending(fspa: Fspa) -> str:
-    """When an episode of the spec ends, and what is a success (semantics, section 4)."""
+    """Return when an episode ends and what counts as success (semantics, section 4)."""
     first, verdicts = fspa.states[0].verdict, {state.verdict for state in fspa.states}
     if first in ("satisfied", "violated"):
         return f"Every episode is a {'success' if first == 'satisfied' else 'failure'}."
@@ -29,7 +29,7 @@ def ending(fspa: Fspa) -> str:
 
 
 def limit_text(steps: int | None, seconds: float | None) -> str:
-    """The limit of an episode in words."""
+    """Return a sentence on the limit of an episode."""
     if steps is None:
         return "There is no limit."
     time = "" if seconds is None else f", {seconds:g} s"

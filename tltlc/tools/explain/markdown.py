@@ -1,4 +1,4 @@
-"""An explanation as Markdown."""
+"""Write an explanation as Markdown."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.tools.explain.sections import List, Section, document
 
 
 def markdown(explained: Explanation) -> str:
-    """The explanation, ended by a newline."""
+    """Return the explanation as Markdown that ends with a newline."""
     lines: list[str] = []
     for number, section in enumerate(document(explained)):
         lines += [f"{'##' if number else '#'} {_plain(section.heading)}", ""]
@@ -34,5 +34,5 @@ def _blocks(section: Section) -> Iterator[str]:
 
 
 def _plain(words: str) -> str:
-    """The text with the signs escaped that mean something in Markdown."""
+    """Return the text with the characters escaped that have a meaning in Markdown."""
     return re.sub(r"([\\`*_|<>\[\]])", r"\\\1", " ".join(words.split()))

@@ -1,4 +1,4 @@
-"""What leads on from a state: nearer to the goal, or to where less is left to be done."""
+"""Find the edges that lead on from a state: closer to the goal, or to where less is left to do."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from tltlc.automaton.fspa import Edge, Fspa
 from tltlc.automaton.infinite.work import OutOfWork
 
 _MOST_WORK: Final = 500_000
-"""Steps that comparing states may take."""
+"""The most steps that the comparison of states may take."""
 
 
 def leading_on(fspa: Fspa) -> tuple[int, ...]:
-    """The edges, by their indices, that lead on; those that ask for few atoms at once come first.
+    """Return the indices of the edges that lead on, edges that need the fewest atoms at once first.
 
-    An edge does if it leads to a smaller distance.  Two goals that may be met at once are as far away as one of them:
-    over finite traces one does, too, if whatever mends its source mends its target, and not the other way round.
+    An edge leads on if it leads to a smaller distance. That is too strict where one step may meet
+    two goals, because two such goals are as far away as one. So over finite traces, an edge between
+    states of the same distance also leads on, if every trace that succeeds from its source also
+    succeeds from its target, but not the other way round.
     """
     nearer, level = [], []
     for index, edge in enumerate(fspa.edges):
@@ -26,12 +28,12 @@ def leading_on(fspa: Fspa) -> tuple[int, ...]:
                 nearer.append(index)
             elif there == here and edge.source != edge.target:
                 level.append(index)
-    found = [*nearer, *(_to_less(fspa, level) if fspa.semantics == "finite" else ())]
-    return tuple(sorted(found, key=lambda index: (_at_once(fspa.edges[index]), index)))
+    leading = [*nearer, *(_to_less(fspa, level) if fspa.semantics == "finite" else ())]
+    return tuple(sorted(leading, key=lambda index: (_at_once(fspa.edges[index]), index)))
 
 
 def _to_less(fspa: Fspa, edges: Sequence[int]) -> Iterable[int]:
-    """Those of the edges after which less is left; none where comparing takes too long."""
+    """Return the edges after which less is left to do; empty if the comparison takes too long."""
     if not edges:
         return ()
     from tltlc.automaton.compare import less_is_left
@@ -44,5 +46,5 @@ def _to_less(fspa: Fspa, edges: Sequence[int]) -> Iterable[int]:
 
 
 def _at_once(edge: Edge) -> int:
-    """How many atoms have to hold for an edge to be taken, at least."""
+    """Return the smallest number of atoms that must hold to take an edge."""
     return min(sum(holds for _, holds in prime) for prime in edge.guard.primes)

@@ -1,4 +1,7 @@
-"""An explanation as headings, paragraphs, lists and a table: what text and Markdown are both written from."""
+"""Arrange an explanation in headings, paragraphs, lists and a table.
+
+The text and Markdown outputs are written from these sections.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ _MOST_STEPS = 60
 
 @record
 class List:
-    """Items, each numbered from 1 where ``numbered``; ``title`` stands before them."""
+    """A list of items under a title, numbered from 1 if ``numbered``."""
 
     title: str
     items: tuple[str, ...]
@@ -34,15 +37,15 @@ class Table:
 
 @record
 class Section:
-    """Blocks under a heading: texts are paragraphs."""
+    """Blocks under a heading. A block that is a string is a paragraph."""
 
     heading: str
     blocks: tuple[str | List | Table, ...]
 
 
 def document(explained: Explanation) -> tuple[Section, ...]:
-    """The sections, of which the first has the spec's name as its heading."""
-    # Over infinite traces the ways are short, but shorter ones may do.
+    """Return the sections. The heading of the first one is the spec's name."""
+    # Over infinite traces, the traces that are found are short, but there may be shorter ones.
     which = "A way" if explained.semantics == "infinite" else "The shortest way"
     return (
         Section(explained.name, tuple(filter(None, (explained.doc, explained.english)))),
@@ -56,18 +59,18 @@ def document(explained: Explanation) -> tuple[Section, ...]:
 
 
 def _asked(explained: Explanation) -> tuple[Section, ...]:
-    found = explained.outline
-    if found is None:
+    outline = explained.outline
+    if outline is None:
         return ()
-    rows = [[f"{'now or later, ' if goal.together else ''}{goal.text}" for goal in goals] for goals in found.goals]
+    rows = [[f"{'now or later, ' if goal.together else ''}{goal.text}" for goal in goals] for goals in outline.goals]
     lists = [List("Reach, in this order:", tuple(row), numbered=True) for row in rows if len(row) > 1]
     single = tuple(row[0] for row in rows if len(row) == 1)
     if single:
         lists.append(List("Reach, in any order:" if len(single) > 1 else "Reach:", single))
     for title, items in (
-        ("Throughout:", found.throughout),
-        ("Again and again, for ever:", found.recurring),
-        ("And:" if lists or found.throughout or found.recurring else "Do this:", found.others),
+        ("Throughout:", outline.throughout),
+        ("Again and again, for ever:", outline.recurring),
+        ("And:" if lists or outline.throughout or outline.recurring else "Do this:", outline.others),
         ("At most one of these holds at a time:", tuple(", ".join(group) for group in explained.exclusive)),
     ):
         if items:
@@ -82,7 +85,10 @@ def _failures(explained: Explanation) -> tuple[str | List, ...]:
 
 
 def failure_texts(explained: Explanation) -> tuple[str, ...]:
-    """What breaks the spec for good and in which states, and of much of it the beginning."""
+    """Return what breaks the spec for good, and in which states.
+
+    If there are many failures, the rest is only counted.
+    """
     texts = [_failure(failure) for failure in explained.failures[:_MOST_FAILURES]]
     rest = len(explained.failures) - len(texts)
     return (*texts, *([f"and {rest} more"] if rest else ()))
@@ -97,11 +103,14 @@ def _failure(failure: Failure) -> str:
 
 
 def _states(explained: Explanation) -> tuple[str | Table, ...]:
-    """A row for each state, and one for all that differ in a count alone."""
+    """Return a table with a row for each state.
+
+    States that differ only in a count share a row.
+    """
     runs = {run[0]: run for run in explained.counting}
     inside = {state for run in explained.counting for state in run[1:]}
     rows = [
-        tuple(explained.states[each] for each in runs.get(state.id, (state.id,)))
+        tuple(explained.states[number] for number in runs.get(state.id, (state.id,)))
         for state in explained.states
         if state.id not in inside
     ]
@@ -131,14 +140,17 @@ def _to_go(state: StateRow) -> str:
 
 
 def _numbers(states: list[int]) -> str:
-    """``2, 4–101``; of many the first ones and the last."""
+    """Return state numbers as ranges: ``2, 4–101``.
+
+    If there are many ranges, this shows the first ones and the last.
+    """
     ranges: list[list[int]] = []
     for state in sorted(states):
         if ranges and state == ranges[-1][-1] + 1:
             ranges[-1][1:] = [state]
         else:
             ranges.append([state])
-    texts = ["–".join(map(str, each)) for each in ranges]
+    texts = ["–".join(map(str, range_)) for range_ in ranges]
     return ", ".join(texts if len(texts) <= _MOST_RANGES else [*texts[: _MOST_RANGES - 1], "…", texts[-1]])
 
 

@@ -1,4 +1,4 @@
-"""An explanation as plain text, at most 100 columns wide where no word is longer."""
+"""Write an explanation as plain text, at most 100 columns wide unless a word is longer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _NARROWEST = 16
 
 
 def text(explained: Explanation) -> str:
-    """The explanation, ended by a newline."""
+    """Return the explanation as text that ends with a newline."""
     lines: list[str] = []
     for number, section in enumerate(document(explained)):
         lines += [*([""] if number else []), section.heading, *(["=" * len(section.heading)] if not number else [])]
@@ -43,12 +43,12 @@ def _list(block: List) -> Iterator[str]:
 
 
 def _table(table: Table) -> Iterator[str]:
-    """The columns side by side; the last two share what the others leave."""
+    """Yield the lines of a table. The last two columns share the width that the others leave."""
     rows = (table.header, *table.rows)
     widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]
     left = _WIDTH - len(_GAP) * len(widths) - sum(widths[:-2])
     if sum(widths[-2:]) > left:
-        # Neither takes more than it needs, and what is left over is the other's.
+        # Neither column takes more than it needs, and the other one gets the rest.
         last = min(widths[-1], max(left - widths[-2], left // 2 - _NARROWEST // 2))
         widths[-2:] = [left - last, last]
     for row in rows:

@@ -1,4 +1,4 @@
-"""An explanation as values that JSON has."""
+"""Convert an explanation to JSON values."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from tltlc.tools.explain.explanation import Explanation
 
 
 def values(explained: Explanation) -> dict[str, Any]:
-    """The fields of an explanation by their names, and so on inside."""
-    found: dict[str, Any] = _value(explained)
-    return found
+    """Return the fields of an explanation by name, recursively as JSON values."""
+    fields: dict[str, Any] = _value(explained)
+    return fields
 
 
-def _value(given: Any) -> Any:
-    if isinstance(given, tuple):
-        return [_value(each) for each in given]
-    if hasattr(given, "__match_args__"):
-        return {name: _value(getattr(given, name)) for name in given.__match_args__}
-    return given
+def _value(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_value(element) for element in value]
+    if hasattr(value, "__match_args__"):
+        return {name: _value(getattr(value, name)) for name in value.__match_args__}
+    return value

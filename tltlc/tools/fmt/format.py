@@ -54,7 +54,7 @@ _EVERYTHING: Final = 1 << 62
 def _written(module: tree.Module, style: Style) -> str:
     """Return the layout in which comments allow the same as before.
 
-    It keeps as much of the source as that takes.
+    It leaves as much of the source unchanged as this requires.
     """
     kept = NOTHING
     while True:
