@@ -1,1 +1,1 @@
-"""What has changed from one version of specs to another: the traces they accept, and what else a host would notice."""
+"""Compare versions of specs: the traces they accept, and other changes that a host would notice."""

@@ -1,4 +1,7 @@
-"""Which atoms of two specs are taken never to hold together, beside those of which the specs themselves say so."""
+"""Find the ``exclusive`` groups that a comparison of two specs assumes.
+
+These can be more groups than the specs themselves use.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +15,19 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Vocabulary
 
 Declared = tuple["Vocabulary | None", "Vocabulary | None"]
-"""Of the files A and B the atoms and groups of ``exclusive``, used or not; None of an artefact, which does not say."""
+"""The atoms and ``exclusive`` groups that the files A and B declare, used or not.
+
+An entry is None for an artefact, which does not have unused groups.
+"""
 
 
 def assumed(a: Fspa, b: Fspa, declared: Declared, *, by_name: bool = False) -> tuple[Group, ...]:
-    """The groups by which two specs are compared, whatever these use of them.
+    """Return the groups that two specs are compared with, whether or not the specs use them.
 
-    Of two sources both have to declare that atoms are exclusive.  An artefact has the groups of which its spec uses two
-    atoms, and does not know the others: there the source decides.  Atoms that are others in B than in A are in no
-    group; ``by_name`` as of :func:`~tltlc.tools.diff.relation.compare`.
+    If both files are sources, both must declare that atoms are exclusive. An artefact only has the
+    groups of which its spec uses at least two atoms. For other groups, the source decides. Atoms
+    that are different in A and B are in no group. ``by_name`` is as in
+    :func:`~tltlc.tools.diff.relation.compare`.
     """
     in_a, in_b = declared
     if in_a is not None and in_b is not None:
@@ -32,23 +39,26 @@ def assumed(a: Fspa, b: Fspa, declared: Declared, *, by_name: bool = False) -> t
     return ()
 
 
-def _of_both(in_a: Vocabulary, in_b: Vocabulary, others: tuple[str, ...]) -> Iterator[Group]:
-    for one in _groups(in_a):
-        for other in _groups(in_b):
-            names = tuple(name for name in one if name in other and name not in others)
+def _of_both(in_a: Vocabulary, in_b: Vocabulary, different: tuple[str, ...]) -> Iterator[Group]:
+    for group_a in _groups(in_a):
+        for group_b in _groups(in_b):
+            names = tuple(name for name in group_a if name in group_b and name not in different)
             if len(names) > 1:
                 yield Group(names, True, True)
 
 
 def _unknown(artefact: Fspa, source: Vocabulary, *, by_name: bool) -> Iterator[tuple[str, ...]]:
-    """The groups of a source that an artefact does not rule out: one of which it uses two atoms it would have."""
+    """Yield the groups of a source that an artefact does not contradict.
+
+    If the artefact used two atoms of a group, it would have the group itself.
+    """
     known = {atom.name for atom in artefact.atoms}
     own = [set(group) for group in _groups(artefact)]
-    others = () if by_name else different_atoms(artefact, source)
+    different = () if by_name else different_atoms(artefact, source)
     for group in _groups(source):
-        names = tuple(name for name in group if name not in others)
+        names = tuple(name for name in group if name not in different)
         used = known.intersection(names)
-        if len(names) > 1 and (len(used) < 2 or any(used <= each for each in own)):
+        if len(names) > 1 and (len(used) < 2 or any(used <= own_group for own_group in own)):
             yield names
 
 

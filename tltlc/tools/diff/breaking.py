@@ -1,8 +1,8 @@
-"""What changed from one version of a file to another that a host or a recorded baseline notices.
+"""Find the changes between two versions of a file that a host or a recorded baseline notices.
 
-A host is a game that supplies signals and runs a monitor; a baseline is anything recorded earlier that a spec has
-judged.  Findings are diagnostics: what breaks one of the two is an error, what changes numbers alone a warning, and
-what both can ignore a note.
+A host is a game that supplies signals and runs a monitor. A baseline is any earlier recording that
+a spec has judged. The findings are diagnostics: a change that breaks a host or a baseline is an
+error, a change of numbers alone is a warning, and a change that both can ignore is a note.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.rules import Rules
 
 _OF_ALL: Final = ("clock", "signal", "param", "atom")
-"""What the specs of a file share."""
+"""The kinds of differences that the specs of a file share."""
 
 
 @record
 class Version:
-    """A file at one time: its automata, where its specs are declared, and what it offers if it has no specs.
+    """A file at one time: its automata, the places of its specs, and its offers if it has no specs.
 
-    ``rules`` are of a file without specs that is there.
+    ``rules`` is set only for a file that exists and has no specs.
     """
 
     automata: tuple[Fspa, ...] = ()
@@ -43,7 +43,7 @@ class Version:
 
 @record
 class Move:
-    """A spec that has another file or another name: as it was and where, as it is and where."""
+    """A spec that moved to another file or has another name, with its old and new place."""
 
     old: Fspa
     new: Fspa
@@ -53,9 +53,9 @@ class Move:
 
 @record
 class Change:
-    """A file at a path as it was and as it is, where there is none with an empty version; ``moves`` came to it.
+    """Two versions of the file at a path. If the file does not exist, its version is empty.
 
-    Specs that moved are in neither version.
+    ``moves`` are the specs that moved into the file. Specs that moved are in neither version.
     """
 
     path: str
@@ -65,9 +65,10 @@ class Change:
 
 
 def breaking(change: Change, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
-    """Everything that changed, in the order of the specs, and then of what they use.
+    """Return everything that changed: first the specs, in order, then what they use.
 
-    Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 where a comparison takes more than ``work``.
+    Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
+    than ``work``.
     """
     old, new = change.old, change.new
     if not (old.automata or new.automata or change.moves):
@@ -111,33 +112,38 @@ def _specs(old: Version, new: Version, moves: Sequence[Move], work: int) -> Iter
 
 
 def compared(old: Fspa, new: Fspa, work: int) -> Pair:
-    """What is different, with atoms of one name for one: what became of their values is said beside.
+    """Return the differences between two versions of a spec.
 
-    An atom or signal that has another name is a difference, too, of the old name.  Error as of :func:`breaking`.
+    Atoms with the same name are treated as the same atom, and changes of their values are
+    differences of their own. A renamed atom or signal is also a difference, under its old name.
+    Errors are as in :func:`breaking`.
     """
-    known = with_names_of(old, new)
-    names = renamed_signals(old, known)
-    found = diff(with_signals(old, names), known, True, work)
+    renamed_atoms = with_names_of(old, new)
+    names = renamed_signals(old, renamed_atoms)
+    pair = diff(with_signals(old, names), renamed_atoms, True, work)
     of_old, of_new = ({signal.name: signal for signal in fspa.signals} for fspa in (old, new))
-    renamed = [Difference("signal", name, of_old[name], of_new[now]) for name, now in names.items()]
-    renamed += [
+    renamings = [Difference("signal", name, of_old[name], of_new[now]) for name, now in names.items()]
+    renamings += [
         Difference("atom", before.name, before, now)
-        for before, now in zip(known.atoms, new.atoms, strict=True)
+        for before, now in zip(renamed_atoms.atoms, new.atoms, strict=True)
         if before.name != now.name
     ]
-    return replace(found, differences=(*renamed, *found.differences))
+    return replace(pair, differences=(*renamings, *pair.differences))
 
 
 def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
-    """What changed of the clock, signals, params and atoms, each said once for all specs that use it."""
+    """Yield the changes of the clock, signals, params and atoms.
+
+    Each change comes once for all specs that use it.
+    """
     users: dict[Difference, list[Pair]] = {}
     for pair in pairs:
         for difference in pair.differences:
             if difference.what in _OF_ALL:
                 users.setdefault(difference, []).append(pair)
     new_names = renamed_params(users)
-    alike: dict[tuple[str, bool], list[Difference]] = {}
-    called: dict[str, list[Difference]] = {}
+    by_predicate: dict[tuple[str, bool], list[Difference]] = {}
+    renamed: dict[str, list[Difference]] = {}
     for difference, using in users.items():
         place, specs = places[using[0].b.name], [pair.b.name for pair in using]
         if difference.what == "clock":
@@ -147,14 +153,14 @@ def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diag
         elif difference.what == "param" and difference.name not in new_names.values():
             yield say.param(difference, new_names.get(difference.name), place)
         elif isinstance(difference.b, Atom) and difference.b.name != difference.name:
-            called.setdefault(difference.name.partition("(")[0], []).append(difference)
+            renamed.setdefault(difference.name.partition("(")[0], []).append(difference)
         elif difference.apart is not None:
             predicate = difference.name.partition("(")[0]
-            alike.setdefault((predicate, difference.apart.is_judged_otherwise), []).append(difference)
-    for several in called.values():
-        yield say.atoms_called(several, places[users[several[0]][0].b.name])
-    for first, *others in alike.values():
+            by_predicate.setdefault((predicate, difference.apart.is_judged_otherwise), []).append(difference)
+    for same_predicate in renamed.values():
+        yield say.atoms_called(same_predicate, places[users[same_predicate[0]][0].b.name])
+    for first, *rest in by_predicate.values():
         using = users[first]
-        # Specs that call signals otherwise find other samples of one atom.
-        names = list(dict.fromkeys(each.name for each in others if each.name != first.name))
+        # Specs with different names for signals have different samples for the same atom.
+        names = list(dict.fromkeys(other.name for other in rest if other.name != first.name))
         yield say.atom(first, names, using[0], places[using[0].b.name])

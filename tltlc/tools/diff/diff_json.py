@@ -1,4 +1,4 @@
-"""What is different from one file to another, as JSON: ``diff.schema.json`` beside this file says of what form."""
+"""Write the differences between two files as JSON, in the form of ``diff.schema.json``."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.pairs import FileDiff, Pair
 
 
-def document(found: FileDiff) -> dict[str, Any]:
-    """The report as a JSON object."""
+def document(report: FileDiff) -> dict[str, Any]:
+    """Return the report as a JSON object."""
     return {
-        "a": found.a,
-        "b": found.b,
-        "same": found.is_same,
-        "specs": [_pair(pair) for pair in found.pairs],
-        "only_in_a": list(found.only_a),
-        "only_in_b": list(found.only_b),
+        "a": report.a,
+        "b": report.b,
+        "same": report.is_same,
+        "specs": [_pair(pair) for pair in report.pairs],
+        "only_in_a": list(report.only_a),
+        "only_in_b": list(report.only_b),
     }
 
 
@@ -38,27 +38,36 @@ def _pair(pair: Pair) -> dict[str, Any]:
         "only_a": _trace(pair, comparison.only_a),
         "only_b": _trace(pair, comparison.only_b),
         "different_atoms": list(comparison.split),
-        "left_out": [[{"atom": name, "holds": holds} for name, holds in each] for each in comparison.impossible],
-        "exclusive": [
-            {"atoms": list(each.names), "in_a": each.in_a, "in_b": each.in_b} for each in comparison.exclusive
+        "left_out": [
+            [{"atom": name, "holds": holds} for name, holds in literals] for literals in comparison.impossible
         ],
-        "differences": [_difference(each) for each in pair.differences],
+        "exclusive": [
+            {"atoms": list(group.names), "in_a": group.in_a, "in_b": group.in_b} for group in comparison.exclusive
+        ],
+        "differences": [_difference(difference) for difference in pair.differences],
     }
 
 
 def _beginnings(pair: Pair) -> dict[str, Any] | None:
-    """How what does not break the two for good relates, where traces of two kinds do not."""
-    found = pair.comparison.beginnings
-    if found is None:
+    """Return how the traces relate that do not break the specs for good; None if not compared.
+
+    They are compared if one spec is over finite traces and the other over infinite traces.
+    """
+    comparison = pair.comparison.beginnings
+    if comparison is None:
         return None
     only_a, only_b = (
-        trace and [in_order(pair, letter) for letter in trace.prefix] for trace in (found.only_a, found.only_b)
+        trace and [in_order(pair, letter) for letter in trace.prefix]
+        for trace in (comparison.only_a, comparison.only_b)
     )
-    return {"relation": found.relation, "only_a": only_a, "only_b": only_b}
+    return {"relation": comparison.relation, "only_a": only_a, "only_b": only_b}
 
 
 def _trace(pair: Pair, trace: Trace | None) -> Any:
-    """A finite trace as a list of samples, each the atoms that hold; an infinite one as its prefix and cycle."""
+    """Return a finite trace as a list of samples, an infinite one as its prefix and cycle.
+
+    Each sample is the list of atoms that hold.
+    """
     if trace is None:
         return None
     prefix, cycle = ([in_order(pair, letter) for letter in letters] for letters in (trace.prefix, trace.cycle))
@@ -66,7 +75,7 @@ def _trace(pair: Pair, trace: Trace | None) -> Any:
 
 
 def _difference(difference: Difference) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    fields: dict[str, Any] = {
         "what": difference.what,
         "name": difference.name or None,
         "a": _value(difference.a),
@@ -74,8 +83,8 @@ def _difference(difference: Difference) -> dict[str, Any]:
     }
     if difference.apart is not None:
         first, second = difference.apart.values
-        found["sample"] = {"signals": dict(difference.apart.sample), "a": first, "b": second}
-    return found
+        fields["sample"] = {"signals": dict(difference.apart.sample), "a": first, "b": second}
+    return fields
 
 
 def _value(value: object) -> Any:

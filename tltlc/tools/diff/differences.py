@@ -1,4 +1,4 @@
-"""What differs between two automata beside the traces that they accept."""
+"""Find the differences between two automata other than the traces that they accept."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ _SETTINGS: Final[tuple[tuple[What, str], ...]] = (
     ("level", "level"),
     ("clock", "clock_s"),
 )
-"""What is said of a spec as a whole, and its field."""
+"""The settings of a whole spec, each with its field."""
 
 
 @record
 class Difference:
-    """One thing that differs: what it is of, its name where there may be several, and what A and B have.
+    """One difference between two automata: what differs, and the values in A and B.
 
-    None where one of them has none.  ``a`` and ``b`` are the records of signals, params and atoms, the names of the
-    atoms of an ``exclusive``, and else the plain value.  ``apart`` is of atoms.
+    ``name`` is empty if there is only one such thing. A value is None if that side has none. ``a``
+    and ``b`` are records for signals, params and atoms, the names of the atoms for an ``exclusive``
+    group, and plain values otherwise. ``apart`` is set only for atoms.
     """
 
     what: What
@@ -41,13 +42,19 @@ class Difference:
 
 
 def differences(a: Fspa, b: Fspa) -> tuple[Difference, ...]:
-    """All that differs beside the language: how a spec is judged, what its atoms mean, and what it reads."""
+    """Return all differences other than the traces.
+
+    They concern how a spec is judged, what its atoms mean, and what it reads.
+    """
     return tuple(_all(a, b))
 
 
-def renamed_params(found: Iterable[Difference]) -> dict[str, str]:
-    """The new names of params that are gone: those of new ones that differ in name and documentation alone."""
-    params = [difference for difference in found if difference.what == "param"]
+def renamed_params(all_differences: Iterable[Difference]) -> dict[str, str]:
+    """Return the new names of params that are gone.
+
+    A gone param was renamed if a new one differs from it only in name and documentation.
+    """
+    params = [difference for difference in all_differences if difference.what == "param"]
     names: dict[str, str] = {}
     for gone in params:
         for added in params:
@@ -60,8 +67,8 @@ def renamed_params(found: Iterable[Difference]) -> dict[str, str]:
 def named(
     what: What, ours: Iterable[Signal] | Iterable[Param], theirs: Iterable[Signal] | Iterable[Param]
 ) -> Iterator[Difference]:
-    """What differs in signals or params, by their names."""
-    one, other = ({each.name: each for each in values} for values in (ours, theirs))
+    """Yield the differences between two lists of signals or params, matched by name."""
+    one, other = ({value.name: value for value in values} for values in (ours, theirs))
     for name in dict.fromkeys((*one, *other)):
         before, after = one.get(name), other.get(name)
         if plain(before) != plain(after):
@@ -69,7 +76,10 @@ def named(
 
 
 def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> bool:
-    """Whether groups of ``exclusive`` say that no two of these atoms hold together, each two in one of them."""
+    """Whether ``exclusive`` groups imply that no two of these atoms hold together.
+
+    Each two atoms must share a group.
+    """
     wanted = frozenset(names)
     of_name: dict[str, set[frozenset[str]]] = {name: set() for name in wanted}
     for group in groups:
@@ -80,7 +90,7 @@ def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> 
 
 
 def plain(value: Value) -> object:
-    """A signal or param without its name and documentation."""
+    """Return a signal or param as a tuple without its name and documentation."""
     if not isinstance(value, (Signal, Param)):
         return None
     return (value.type, value.low, value.high, value.value if isinstance(value, Param) else None)
@@ -98,14 +108,14 @@ def _all(a: Fspa, b: Fspa) -> Iterator[Difference]:
     for index, atom in enumerate(a.atoms):
         if atom.name in places:
             place = places[atom.name]
-            found = apart(meaning(a, index), meaning(b, place))
-            if found is not None or atom.expression != b.atoms[place].expression:
-                yield Difference("atom", atom.name, atom, b.atoms[place], found)
+            sample = apart(meaning(a, index), meaning(b, place))
+            if sample is not None or atom.expression != b.atoms[place].expression:
+                yield Difference("atom", atom.name, atom, b.atoms[place], sample)
     yield from named("signal", a.signals, b.signals)
     yield from named("param", a.params, b.params)
 
 
 def _groups(fspa: Fspa) -> list[tuple[str, ...]]:
-    """The groups of ``exclusive``, each once, with its names in order."""
+    """Return the ``exclusive`` groups without duplicates, as names in order."""
     names = [tuple(fspa.atoms[atom].name for atom in group) for group in fspa.exclusive]
     return list({frozenset(group): group for group in names}.values())

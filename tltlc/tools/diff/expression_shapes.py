@@ -1,4 +1,4 @@
-"""Expressions with other signals, params and constants in the same places."""
+"""Replace the signals, params and constants of expressions."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ Leaf = Union[Const, Signal, Param]
 
 
 def with_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:
-    """The expression with each of its leaves changed."""
+    """Return the expression with ``change`` applied to each leaf."""
     match node:
         case Op():
-            return Op(node.op, tuple(with_leaves(each, change) for each in node.args))
+            return Op(node.op, tuple(with_leaves(arg, change) for arg in node.args))
         case When():
             cases = tuple((_condition(when, change), with_leaves(then, change)) for when, then in node.cases)
             return When(cases, with_leaves(node.otherwise, change))
@@ -25,7 +25,5 @@ def with_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:
 def _condition(node: Condition, change: Callable[[Leaf], Leaf]) -> Condition:
     return Condition(
         node.op,
-        tuple(
-            _condition(each, change) if isinstance(each, Condition) else with_leaves(each, change) for each in node.args
-        ),
+        tuple(_condition(arg, change) if isinstance(arg, Condition) else with_leaves(arg, change) for arg in node.args),
     )

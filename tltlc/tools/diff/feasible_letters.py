@@ -1,4 +1,7 @@
-"""Which traces over the atoms of two specs a game can show: atoms of the same signals may imply each other."""
+"""Find the traces over the atoms of two specs that a game can produce.
+
+Atoms over the same signals may imply each other, so some traces are impossible.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +18,14 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Atom, Signal
 
 _MOST: Final = 30
-"""Traces that are found to be impossible in one comparison."""
+"""The most impossible traces that one comparison may find."""
 
 
 class Reality:
-    """Looks for samples of the letters over the atoms of two automata; ``impossible`` is what none was found for.
+    """Searches samples for the letters over the atoms of two automata.
 
-    ``never`` is what is known to be impossible, and is not said.
+    ``impossible`` collects the literals for which no sample was found. ``never`` has literals that
+    are known to be impossible. They are not reported.
     """
 
     def __init__(self, a: Fspa, b: Fspa, never: tuple[Literals, ...]) -> None:
@@ -32,7 +36,11 @@ class Reality:
         self._realiser = None if self._both is None else Realiser(self._both)
 
     def real(self, trace: Trace | None, one: Fspa, other: Fspa, work: int) -> Trace | None:
-        """The trace, which ``one`` alone accepts, if samples are found for it, else another such trace, or None."""
+        """Return ``trace``, which only ``one`` accepts, if samples are found for it.
+
+        Otherwise return another such trace with samples, or None. If the limit of impossible traces
+        is reached, the result may be a trace without samples.
+        """
         while trace is not None and self._left and (found := self._obstacles(trace)):
             self._left -= 1
             self.impossible |= dict.fromkeys(found)
@@ -40,28 +48,28 @@ class Reality:
         return trace
 
     def _obstacles(self, trace: Trace) -> list[Literals]:
-        """Literals of the trace's letters that nothing gives together."""
+        """Return literals of the trace's letters that no sample makes true together."""
         if self._both is None or self._realiser is None:
             return []
-        found = []
+        obstacles = []
         for letter in dict.fromkeys((*trace.prefix, *trace.cycle)):
             for obstacle in self._realiser.obstacles(letter):
                 named = [(self._both.atoms[atom].name, holds) for atom, holds in obstacle.literals]
-                found.append(tuple(sorted(named, key=lambda literal: not literal[1])))
-        return found
+                obstacles.append(tuple(sorted(named, key=lambda literal: not literal[1])))
+        return obstacles
 
 
 def _both(a: Fspa, b: Fspa) -> Fspa | None:
-    """An automaton that has the atoms of both, with their params at their values, and nothing else of use.
+    """Return an automaton with the atoms of both automata and their params replaced by values.
 
-    None where a signal is another thing in B than in A.
+    Its other parts have no meaning. Returns None if a signal is different in B and in A.
     """
     signals = {signal.name: signal for signal in a.signals}
     for signal in b.signals:
-        found = _common(signals.get(signal.name, signal), signal)
-        if found is None:
+        common = _common(signals.get(signal.name, signal), signal)
+        if common is None:
             return None
-        signals[signal.name] = found
+        signals[signal.name] = common
     atoms: dict[str, Atom] = {}
     for atom in (*_atoms(a), *_atoms(b)):
         atoms.setdefault(atom.name, atom)
@@ -77,17 +85,20 @@ def _both(a: Fspa, b: Fspa) -> Fspa | None:
 
 
 def _common(one: Signal, other: Signal) -> Signal | None:
-    """The signal in the range of both; None where that is empty, or one of them alone is a bool."""
+    """Return the signal with the range that both share.
+
+    Returns None if that range is empty, or if only one of the two is a bool.
+    """
     lows = [low for low in (one.low, other.low) if low is not None]
     highs = [high for high in (one.high, other.high) if high is not None]
-    found = replace(one, low=max(lows, default=None), high=min(highs, default=None))
+    common = replace(one, low=max(lows, default=None), high=min(highs, default=None))
     if (one.type == "bool") != (other.type == "bool"):
         return None
-    return None if found.low is not None and found.high is not None and found.low > found.high else found
+    return None if common.low is not None and common.high is not None and common.low > common.high else common
 
 
 def _atoms(fspa: Fspa) -> list[Atom]:
-    """The atoms with the values of params in their places."""
+    """Return the atoms with params replaced by their values."""
     values = {param.name: param.value for param in fspa.params}
 
     def bound(leaf: Leaf) -> Leaf:

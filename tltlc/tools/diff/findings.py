@@ -1,4 +1,4 @@
-"""The findings of ``tltlc breaking`` as messages, each with one way out."""
+"""The findings of ``tltlc breaking`` as diagnostics, each with one suggestion."""
 
 from __future__ import annotations
 
@@ -17,35 +17,35 @@ from tltlc.tools.diff.traces import step_lines
 from tltlc.tools.diff.values import Apart
 
 BREAKING: Final[Severity] = "error"
-"""A host must be changed, or what was recorded is judged otherwise."""
+"""The host must be changed, or recordings are judged differently."""
 CHANGED: Final[Severity] = "warning"
-"""Numbers or behaviour differ, and nothing stops working."""
+"""Numbers or behaviour differ, but everything still works."""
 COMPATIBLE: Final[Severity] = "note"
-"""Nothing needs to be done."""
+"""Nothing has to be done."""
 
 _MOST_LINES: Final = 8
-"""Of a trace in a message."""
+"""The most lines of a trace in a message."""
 _ANEW: Final = "if this is meant, record baselines anew"
 
 
 def spec_gone(name: str, place: Label) -> Diagnostic:
-    """TLT0752: a spec is no longer there."""
-    way_out = "keep it, or tell those who load its artefact or monitor"
-    return Diagnostic("TLT0752", f"the spec `{name}` is gone", (was(place),), way_out, BREAKING)
+    """TLT0752: a spec was removed."""
+    suggestion = "keep it, or tell those who load its artefact or monitor"
+    return Diagnostic("TLT0752", f"the spec `{name}` is gone", (was(place),), suggestion, BREAKING)
 
 
 def spec_renamed(old: str, new: str, before: Label, place: Label) -> Diagnostic:
-    """TLT0752: a spec has another name, and accepts the same traces."""
+    """TLT0752: a spec has another name, but accepts the same traces."""
     title = f"the spec `{old}` is called `{new}` now"
-    way_out = "keep the old name, or tell those who load its artefact or monitor by it"
-    return Diagnostic("TLT0752", title, (place, was(before)), way_out, BREAKING)
+    suggestion = "keep the old name, or tell those who load its artefact or monitor by it"
+    return Diagnostic("TLT0752", title, (place, was(before)), suggestion, BREAKING)
 
 
 def spec_moved(name: str, before: Label, place: Label) -> Diagnostic:
-    """TLT0752: a spec is in another file."""
+    """TLT0752: a spec moved to another file."""
     title = f"the spec `{name}` has moved here from `{before.source.name}`"
-    way_out = "name this file where that one is named; artefacts and monitors are called as before"
-    return Diagnostic("TLT0752", title, (place,), way_out, COMPATIBLE)
+    suggestion = "name this file where that one is named; artefacts and monitors are called as before"
+    return Diagnostic("TLT0752", title, (place,), suggestion, COMPATIBLE)
 
 
 def spec_added(name: str, place: Label) -> Diagnostic:
@@ -54,30 +54,30 @@ def spec_added(name: str, place: Label) -> Diagnostic:
 
 
 def other_traces(pair: Pair, place: Label) -> Diagnostic:
-    """TLT0753: a spec accepts other traces than before."""
+    """TLT0753: a spec accepts different traces than before."""
     name, comparison = pair.b.name, pair.comparison
     if comparison.only_a is None:
         assert comparison.only_b is not None
         title = f"`{name}` is looser: it accepts traces that it did not"
-        way_out = f"if this is not meant, it must rule out:{_trace(pair, comparison.only_b)}"
-        return Diagnostic("TLT0753", title, (place,), way_out, CHANGED)
+        suggestion = f"if this is not meant, it must rule out:{_trace(pair, comparison.only_b)}"
+        return Diagnostic("TLT0753", title, (place,), suggestion, CHANGED)
     title = f"`{name}` is stricter: traces that it accepted are not accepted now"
     if comparison.relation == "incomparable":
         title = f"`{name}` accepts other traces: some that it accepted are not accepted now, and others are"
     if pair.b.states[0].verdict == "violated":
         title = f"`{name}` is stricter: no trace satisfies it any more"
-    way_out = f"if this is not meant, it must accept:{_trace(pair, comparison.only_a)}"
-    return Diagnostic("TLT0753", title, (place,), way_out, BREAKING)
+    suggestion = f"if this is not meant, it must accept:{_trace(pair, comparison.only_a)}"
+    return Diagnostic("TLT0753", title, (place,), suggestion, BREAKING)
 
 
 def signal(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0754 and TLT0755: what a host must supply to the monitors of some specs."""
+    """TLT0754 and TLT0755: a host must supply other signals to the monitors of some specs."""
     name, used_by = difference.name, listed(specs)
     if difference.a is None:
         assert isinstance(difference.b, Signal)
         title = f"the signal `{name}` must be supplied now, to {used_by}"
-        way_out = f"have the game supply it: {type_text(difference.b)}"
-        return Diagnostic("TLT0754", title, (place,), way_out, BREAKING)
+        suggestion = f"have the game supply it: {type_text(difference.b)}"
+        return Diagnostic("TLT0754", title, (place,), suggestion, BREAKING)
     if difference.b is None:
         title = f"the signal `{name}` is no longer read, by {used_by}"
         return Diagnostic("TLT0754", title, (place,), "the game may stop supplying it", COMPATIBLE)
@@ -96,14 +96,14 @@ def signal_type(old: Signal, new: Signal, place: Label) -> Diagnostic:
         return Diagnostic("TLT0755", title, (place,), f"have the game supply it as {type_text(new)}", BREAKING)
     title = f"the signal `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
     if _is_within(old, new):
-        way_out = "nothing needs to be done for hosts; atoms that are scaled by the range are reported themselves"
-        return Diagnostic("TLT0755", title, (place,), way_out, COMPATIBLE)
-    way_out = "what the game supplies beyond an end counts as that end: look whether it does"
-    return Diagnostic("TLT0755", title, (place,), way_out, BREAKING)
+        suggestion = "nothing needs to be done for hosts; atoms that are scaled by the range are reported themselves"
+        return Diagnostic("TLT0755", title, (place,), suggestion, COMPATIBLE)
+    suggestion = "what the game supplies beyond an end counts as that end: look whether it does"
+    return Diagnostic("TLT0755", title, (place,), suggestion, BREAKING)
 
 
 def param(difference: Difference, new_name: str | None, place: Label) -> Diagnostic:
-    """TLT0756: a param is gone, new, renamed, or has another value or range."""
+    """TLT0756: a param was removed, added or renamed, or has another value or range."""
     name, old, new = difference.name, difference.a, difference.b
     if not isinstance(old, Param):
         assert isinstance(new, Param)
@@ -123,8 +123,8 @@ def param(difference: Difference, new_name: str | None, place: Label) -> Diagnos
         title = f"the param `{name}` is {now} now, and was {before}"
         if not _is_within(old, new):
             title += f", and its range is {ends_text(new)}, and was {ends_text(old)}"
-        way_out = f"where the old value is needed, set it: `{name}={before}`"
-        return Diagnostic("TLT0756", title, (place,), way_out, CHANGED if _is_within(old, new) else BREAKING)
+        suggestion = f"where the old value is needed, set it: `{name}={before}`"
+        return Diagnostic("TLT0756", title, (place,), suggestion, CHANGED if _is_within(old, new) else BREAKING)
     title = f"the param `{name}` has the range {ends_text(new)} now, and had {ends_text(old)}"
     if _is_within(old, new):
         return Diagnostic("TLT0756", title, (place,), "nothing needs to be done", COMPATIBLE)
@@ -132,57 +132,59 @@ def param(difference: Difference, new_name: str | None, place: Label) -> Diagnos
 
 
 def atom(difference: Difference, others: Sequence[str], pair: Pair, place: Label) -> Diagnostic:
-    """TLT0757: an atom has other values; ``others`` are atoms of the same predicate that have, too."""
+    """TLT0757: an atom has other values, and so do ``others``, atoms of the same predicate."""
     assert difference.apart is not None
-    types: dict[str, ValueType] = {each.name: each.type for each in (*pair.a.signals, *pair.b.signals)}
+    types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
     return values(f"`{difference.name}`", others, difference.apart, types, place)
 
 
-def atoms_called(several: Sequence[Difference], place: Label) -> Diagnostic:
-    """TLT0757: atoms of a predicate have other names, and are the same."""
-    names = [each.b.name for each in several if isinstance(each.b, Atom)]
+def atoms_called(renamings: Sequence[Difference], place: Label) -> Diagnostic:
+    """TLT0757: atoms of a predicate have other names, but the same meaning."""
+    names = [renaming.b.name for renaming in renamings if isinstance(renaming.b, Atom)]
     are = "is" if len(names) == 1 else "are"
-    title = f"{listed([each.name for each in several])} {are} called {listed(names)} now"
-    way_out = "nothing needs to be done, unless the game looks for the name in what a monitor says"
-    return Diagnostic("TLT0757", title, (place,), way_out, COMPATIBLE)
+    title = f"{listed([renaming.name for renaming in renamings])} {are} called {listed(names)} now"
+    suggestion = "nothing needs to be done, unless the game looks for the name in what a monitor says"
+    return Diagnostic("TLT0757", title, (place,), suggestion, COMPATIBLE)
 
 
 def values(
-    what: str, others: Sequence[str], apart: Apart, types: dict[str, ValueType], place: Label, kind: str = "atom"
+    subject: str, others: Sequence[str], apart: Apart, types: dict[str, ValueType], place: Label, kind: str = "atom"
 ) -> Diagnostic:
-    """TLT0757: an atom or predicate has other values, with a sample that shows it."""
-    title = f"the {kind} {what} is {'judged' if apart.is_judged_otherwise else 'scaled'} otherwise"
+    """TLT0757: an atom or predicate has other values; the message shows a sample."""
+    title = f"the {kind} {subject} is {'judged' if apart.is_judged_otherwise else 'scaled'} otherwise"
     if others:
         title += f", as {'is' if len(others) == 1 else 'are'} {listed(others)}"
     before, now = values_text(apart)
     where = sample_text(apart.sample, types)
-    way_out = f"{where} it is {now}, and was {before}; {_ANEW}"
+    suggestion = f"{where} it is {now}, and was {before}; {_ANEW}"
     if not apart.is_judged_otherwise:
-        way_out = f"{where} it is {now}, and was {before}: progress and rewards differ, and no verdict does"
-    return Diagnostic("TLT0757", title, (place,), way_out, BREAKING if apart.is_judged_otherwise else CHANGED)
+        suggestion = f"{where} it is {now}, and was {before}: progress and rewards differ, and no verdict does"
+    return Diagnostic("TLT0757", title, (place,), suggestion, BREAKING if apart.is_judged_otherwise else CHANGED)
 
 
 def clock(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0758: the clock of specs is another one."""
+    """TLT0758: specs have another clock."""
     are, were = ("is", "was") if len(specs) == 1 else ("are", "were")
     title = f"{listed(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
     return Diagnostic("TLT0758", title, (place,), _as_often(difference.b), BREAKING)
 
 
 def clock_of_all(old: float | None, new: float | None, place: Label) -> Diagnostic:
-    """TLT0758: the clock that a library declares is another one."""
+    """TLT0758: a library declares another clock."""
     title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
     return Diagnostic("TLT0758", title, (place,), _as_often(new), BREAKING)
 
 
 def exclusive_now(names: Sequence[str], place: Label) -> Diagnostic:
     """TLT0758: a library declares atoms to be exclusive."""
-    way_out = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
-    return Diagnostic("TLT0758", f"{listed(names)} are exclusive now", (place,), way_out, BREAKING)
+    suggestion = (
+        "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
+    )
+    return Diagnostic("TLT0758", f"{listed(names)} are exclusive now", (place,), suggestion, BREAKING)
 
 
 def no_longer_exclusive(names: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0758: a library no longer does."""
+    """TLT0758: a library no longer declares atoms to be exclusive."""
     title = f"{listed(names)} are no longer exclusive"
     return Diagnostic(
         "TLT0758", title, (was(place),), "steps may be skipped, so progress and rewards may differ", CHANGED
@@ -190,57 +192,60 @@ def no_longer_exclusive(names: Sequence[str], place: Label) -> Diagnostic:
 
 
 def judged_otherwise(name: str, difference: Difference, place: Label) -> Diagnostic:
-    """TLT0758: a spec has another limit, judge, level, meaning of traces, or other ``exclusive`` atoms."""
+    """TLT0758: a spec has another limit, judge, level, semantics, or ``exclusive`` group."""
     old, new = difference.a, difference.b
-    severity, way_out = BREAKING, _ANEW
+    severity, suggestion = BREAKING, _ANEW
     match difference.what:
         case "semantics":
             title = f"`{name}` is about {_traces(new)} now, and was about {_traces(old)}"
         case "judge":
             title = f"`{name}` is judged at the {new} now, and was judged at the {old}"
-            way_out = f"if this is not meant, write `judge at {old}`"
+            suggestion = f"if this is not meant, write `judge at {old}`"
         case "limit":
             title = f"`{name}` has {_limit(new)} now, and had {_limit(old)}"
         case "level":
             title = f"`{name}` is about {_level(new)} now, and was about {_level(old)}"
-            severity, way_out = CHANGED, "look whether what loads it picks the level by this"
+            severity, suggestion = CHANGED, "look whether what loads it picks the level by this"
         case _:
             names = new if isinstance(new, tuple) else old if isinstance(old, tuple) else ()
             if old is None:
                 title = f"{listed(names)} are exclusive in `{name}` now"
-                way_out = "a sample in which two of them hold is an error now: look whether the game has such"
+                suggestion = "a sample in which two of them hold is an error now: look whether the game has such"
             else:
                 title = f"{listed(names)} are no longer exclusive in `{name}`"
-                severity, way_out = CHANGED, "steps may be skipped, so progress and rewards may differ"
-    return Diagnostic("TLT0758", title, (place,), way_out, severity)
+                severity, suggestion = CHANGED, "steps may be skipped, so progress and rewards may differ"
+    return Diagnostic("TLT0758", title, (place,), suggestion, severity)
 
 
 def offer_gone(kind: str, name: str, place: Label) -> Diagnostic:
     """TLT0759: a library no longer declares a name."""
-    way_out = "keep it, at least as another name for what took its place"
-    return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (was(place),), way_out, BREAKING)
+    suggestion = "keep it, at least as another name for what took its place"
+    return Diagnostic("TLT0759", f"the {kind} `{name}` is gone", (was(place),), suggestion, BREAKING)
 
 
 def other_parameters(kind: str, name: str, place: Label, why: str) -> Diagnostic:
-    """TLT0759: what used a declaration of a library can no longer be written so."""
-    way_out = "add parameters behind the others, with a default, and leave the others as they are"
-    return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), way_out, BREAKING)
+    """TLT0759: existing uses of a library declaration are no longer valid."""
+    suggestion = "add parameters behind the others, with a default, and leave the others as they are"
+    return Diagnostic("TLT0759", f"the {kind} `{name}` takes other parameters: {why}", (place,), suggestion, BREAKING)
 
 
 def reads(predicate: str, signals: Sequence[str], place: Label) -> Diagnostic:
-    """TLT0754: a predicate of a library reads signals that it did not."""
+    """TLT0754: a predicate of a library reads additional signals."""
     title = f"the predicate `{predicate}` reads {listed(signals)} now"
-    way_out = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
-    return Diagnostic("TLT0754", title, (place,), way_out, BREAKING)
+    suggestion = f"have the game supply {'it' if len(signals) == 1 else 'them'} wherever the predicate is used"
+    return Diagnostic("TLT0754", title, (place,), suggestion, BREAKING)
 
 
 def was(place: Label) -> Label:
-    """The place of something that is gone, with that remark."""
+    """Return the label of something that was removed, with a message that says so."""
     return replace(place, message="it was here")
 
 
 def _trace(pair: Pair, trace: Trace) -> str:
-    """A trace behind a colon: of one line on the same line, else on lines of their own, as far as it is short."""
+    """Return a trace after a colon.
+
+    One line stays on the same line. Several lines get lines of their own, up to ``_MOST_LINES``.
+    """
     lines = step_lines(pair, trace.prefix)
     if trace.cycle:
         lines.append(f"{'then ' if lines else ''}again and again:")
@@ -254,7 +259,7 @@ def _trace(pair: Pair, trace: Trace) -> str:
 
 
 def _is_within(old: Union[Signal, Param], new: Union[Signal, Param]) -> bool:
-    """Whether the new range has all of the old one in it."""
+    """Whether the new range contains the old one."""
     low = new.low is None or (old.low is not None and new.low <= old.low)
     return low and (new.high is None or (old.high is not None and old.high <= new.high))
 

@@ -1,4 +1,4 @@
-"""What a library offers to those who import it: its declarations, and the values of its predicates."""
+"""The declarations that a library offers to its importers, and the values of its predicates."""
 
 from __future__ import annotations
 
@@ -23,11 +23,13 @@ Kind = Literal["signal", "param", "predicate", "let", "entity"]
 
 @record
 class Offer:
-    """What a name of a library stands for.
+    """The declaration behind a name that a library offers.
 
-    ``is_own``: the library declares it itself, and does not import it.  ``value`` is that of a signal or param.
-    ``meanings`` are of an own predicate, by how many of its parameters are given; the others have their defaults.
-    Numbers that are given count as signals named after their parameters.
+    ``is_own`` is true if the library declares it itself instead of importing it. ``value`` is set
+    for a signal or param. ``meanings`` is set for a predicate of the library itself. It maps the
+    number of given parameters to the meaning of the predicate, where the other parameters have
+    their defaults. Given parameters that are numbers count as signals with the names of the
+    parameters.
     """
 
     name: str
@@ -40,7 +42,7 @@ class Offer:
 
 
 def offers(env: Env) -> Mapping[str, Offer]:
-    """What a module that was resolved without errors offers, by name."""
+    """Return what a module that resolved without errors offers, by name."""
     return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
 
 
@@ -48,27 +50,30 @@ def _offer(name: str, binding: Binding, env: Env) -> Offer:
     declaration, context = binding.declaration, env.context
     parameters = declaration.parameters if isinstance(declaration, (SignalDecl, PredicateDecl, LetDecl)) else ()
     place = Label(binding.scope.source, binding.span)
-    found = Offer(name, binding.kind, parameters, place, binding.scope is env.scope)
+    offer = Offer(name, binding.kind, parameters, place, binding.scope is env.scope)
     if binding.kind == "signal":
         info = context.signal_infos[binding.name]
-        return replace(found, value=info.of(info.parameters))
+        return replace(offer, value=info.of(info.parameters))
     if binding.kind == "param":
-        return replace(found, value=context.params[binding.name])
-    if binding.kind == "predicate" and found.is_own:
-        return replace(found, meanings=dict(_meanings(binding, parameters, env)))
-    return found
+        return replace(offer, value=context.params[binding.name])
+    if binding.kind == "predicate" and offer.is_own:
+        return replace(offer, meanings=dict(_meanings(binding, parameters, env)))
+    return offer
 
 
 def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> Iterator[tuple[int, Meaning]]:
-    needed = max((place for place, each in enumerate(parameters, start=1) if each.default is None), default=0)
+    needed = max((place for place, parameter in enumerate(parameters, start=1) if parameter.default is None), default=0)
     for count in range(needed, len(parameters) + 1):
-        found = _meaning(binding, parameters[:count], env)
-        if found is not None:
-            yield count, found
+        meaning = _meaning(binding, parameters[:count], env)
+        if meaning is not None:
+            yield count, meaning
 
 
 def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meaning | None:
-    """The meaning with these parameters left open; None where a predicate has none, such as one of units unknown."""
+    """Return the meaning of a predicate with these parameters left open.
+
+    Returns None if the predicate has none, for example because of unknown units.
+    """
     local: dict[str, Value] = {}
     open_: list[Signal] = []
     for parameter in given:
@@ -79,7 +84,7 @@ def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meanin
         type_ = cast(ValueType, parameter.type or "number")
         signal = Signal(parameter.name, type_, 0.0 if bounded else None, 1.0 if bounded else None)
         open_.append(signal)
-        # Any kind of number fits where no type is written.
+        # Without a type, the parameter accepts a number of any dimension.
         dimension = units.TYPES[type_] if parameter.type else None
         low, high = (0.0, 1.0) if bounded else (-inf, inf)
         local[parameter.name] = Quantity(

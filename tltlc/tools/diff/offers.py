@@ -1,4 +1,4 @@
-"""What changed in what a library offers to those who import it."""
+"""Find the changes in what a library offers to its importers."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 
 def changed_offers(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterator[Diagnostic]:
-    """What changed, in the order of the old declarations.
+    """Yield the changes, in the order of the old declarations.
 
-    What is new breaks nothing, and of what both import only the file that declares it tells.
+    New declarations break nothing. Changes of imported declarations are reported only for the file
+    that declares them.
     """
     yield from _params(old, new)
     for name, before in old.items():
@@ -33,10 +34,12 @@ def changed_offers(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterat
 
 
 def _params(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterator[Diagnostic]:
-    ours, theirs = ([each.value for each in offers.values() if isinstance(each.value, Param)] for offers in (old, new))
-    found = tuple(named("param", ours, theirs))
-    new_names = renamed_params(found)
-    for difference in found:
+    old_params, new_params = (
+        [offer.value for offer in offers.values() if isinstance(offer.value, Param)] for offers in (old, new)
+    )
+    params = tuple(named("param", old_params, new_params))
+    new_names = renamed_params(params)
+    for difference in params:
         name = difference.name
         if difference.a is None:
             continue
@@ -47,7 +50,7 @@ def _params(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterator[Diag
 
 
 def _changed(before: Offer, after: Offer) -> Iterator[Diagnostic]:
-    """What changed of a signal, predicate or let."""
+    """Yield the changes of a signal, predicate or let."""
     why = _other_parameters(before, after)
     if why:
         yield say.other_parameters(after.kind, after.name, after.place, why)
@@ -55,7 +58,7 @@ def _changed(before: Offer, after: Offer) -> Iterator[Diagnostic]:
     old, new = before.value, after.value
     if isinstance(old, Signal) and isinstance(new, Signal) and plain(old) != plain(new):
         yield say.signal_type(old, new, after.place)
-    # Uses with as few arguments as could be, and with as many.
+    # Compare the uses with the fewest and with the most arguments.
     for count in (min(before.meanings, default=0), len(before.parameters)):
         if count in before.meanings and count in after.meanings:
             one, other = before.meanings[count], after.meanings[count]
@@ -63,16 +66,16 @@ def _changed(before: Offer, after: Offer) -> Iterator[Diagnostic]:
             needed = [signal.name for signal in other.signals if signal.name not in known]
             if needed:
                 yield say.reads(after.name, needed, after.place)
-            found = apart(one, other)
-            if found is not None:
-                types: dict[str, ValueType] = {each.name: each.type for each in (*one.signals, *other.signals)}
-                yield say.values(f"`{after.name}`", (), found, types, after.place, "predicate")
-            if needed or found is not None:
+            sample = apart(one, other)
+            if sample is not None:
+                types: dict[str, ValueType] = {signal.name: signal.type for signal in (*one.signals, *other.signals)}
+                yield say.values(f"`{after.name}`", (), sample, types, after.place, "predicate")
+            if needed or sample is not None:
                 return
 
 
 def _other_parameters(before: Offer, after: Offer) -> str | None:
-    """Why a use that was right is no longer; None where every one still is."""
+    """Return why a formerly valid use is no longer valid; None if all uses still are."""
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)
         return None if count == now else f"{now} where there were {count}"

@@ -1,4 +1,4 @@
-"""Two files of specs: which belong together, and how they compare."""
+"""Pair the specs of two files and compare each pair."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @record
 class Pair:
-    """A spec of A and one of B, and what is different in B."""
+    """A spec of A and a spec of B, and what is different in B."""
 
     a: Fspa
     b: Fspa
@@ -27,14 +27,17 @@ class Pair:
 
     @property
     def is_same(self) -> bool:
-        """Whether both accept the same traces, even such as no sample was found for, and nothing else differs."""
-        found = self.comparison
-        return found.relation == "equivalent" and not found.impossible and not self.differences
+        """Whether both accept the same traces and nothing else differs.
+
+        Traces count even if they need samples that were not found.
+        """
+        comparison = self.comparison
+        return comparison.relation == "equivalent" and not comparison.impossible and not self.differences
 
 
 @record
 class FileDiff:
-    """What is different in the file B: of each pair of specs, and the names of the specs of A or B alone."""
+    """The differences of file B from file A: the pairs of specs, and the specs in A or B alone."""
 
     a: str
     b: str
@@ -44,7 +47,7 @@ class FileDiff:
 
     @property
     def is_same(self) -> bool:
-        """Whether no spec differs, and none is in one of the files alone."""
+        """Whether no spec differs, and no spec is in one file only."""
         return not (self.only_a or self.only_b) and all(pair.is_same for pair in self.pairs)
 
 
@@ -57,12 +60,14 @@ def diff_files(
     work: int = DEFAULT_WORK,
     declared: Declared = (None, None),
 ) -> FileDiff:
-    """What is different from the specs of A to those of B, each file with its name.
+    """Return the differences from the specs of A to those of B. Each file comes with its name.
 
-    Specs are paired by their names, in the order of A; ``one_each`` pairs the first of each whatever their names.
-    ``by_name`` as of :func:`tltlc.tools.diff.relation.compare`, ``declared`` as of
+    Specs are paired by name, in the order of A. ``one_each`` pairs the first spec of A with the
+    first of B regardless of their names. ``by_name`` is as in
+    :func:`tltlc.tools.diff.relation.compare`, ``declared`` as in
     :func:`tltlc.tools.diff.assumed_exclusive.assumed`.
-    Errors: TLT0750 where a comparison takes more than ``work``.
+
+    Errors: TLT0750 if a comparison takes more than ``work``.
     """
     ours, theirs = a[1], b[1]
 
@@ -91,7 +96,10 @@ def diff(
     *,
     real: bool = False,
 ) -> Pair:
-    """What is different from one spec to another, as of :func:`compare`; errors as of :func:`diff_files`."""
+    """Return the differences from one spec to another, with the arguments of :func:`compare`.
+
+    Errors are as in :func:`diff_files`.
+    """
     try:
         comparison = compare(a, b, by_name=by_name, real=real, work=work, exclusive=exclusive)
         return Pair(a, b, comparison, differences(a, b))
@@ -99,5 +107,5 @@ def diff(
         title = f"comparing the two versions of `{a.name}` takes too long"
         if a.name != b.name:
             title = f"comparing `{a.name}` with `{b.name}` takes too long"
-        way_out = "allow more by a greater `--state-budget N` (by default 50000)"
-        raise TltlError([Diagnostic("TLT0750", title, help=way_out)]) from None
+        suggestion = "allow more by a greater `--state-budget N` (by default 50000)"
+        raise TltlError([Diagnostic("TLT0750", title, help=suggestion)]) from None

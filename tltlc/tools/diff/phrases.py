@@ -1,4 +1,4 @@
-"""What messages and reports say of signals, params, atoms and samples."""
+"""Phrases about signals, params, atoms and samples for messages and reports."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _KINDS: Final = {"finite": "traces that end", "infinite": "traces that never end
 
 
 def unrelated(a: Fspa, b: Fspa) -> str:
-    """Why a spec over finite traces and one over infinite ones do not relate, with a way out."""
+    """Return why a spec over finite traces and one over infinite traces cannot be compared.
+
+    The text includes a suggestion.
+    """
     return (
         f"B is of another kind than A: A is about {_KINDS[a.semantics]}, B about {_KINDS[b.semantics]}, so no trace is "
         "one of both. To compare what they ask for, give both the same `semantics`."
@@ -26,7 +29,10 @@ def unrelated(a: Fspa, b: Fspa) -> str:
 
 
 def listed(names: Sequence[str], most: int = 4) -> str:
-    """Names in backquotes, the last one behind ``and``; of many, the first ones and how many more."""
+    """Return names in backquotes, with ``and`` before the last one.
+
+    If there are more than ``most``, it has the first ones and the number of the others.
+    """
     quoted = [f"`{name}`" for name in names]
     if len(quoted) > most:
         quoted = [*quoted[: most - 1], f"{len(quoted) - most + 1} more"]
@@ -34,20 +40,23 @@ def listed(names: Sequence[str], most: int = 4) -> str:
 
 
 def type_text(of: Union[Signal, Param]) -> str:
-    """The type of a signal or param, with its range unless it has none: ``length in [0 m, inf]``."""
+    """Return the type of a signal or param: ``length in [0 m, inf]``.
+
+    The range is left out if there is none.
+    """
     if of.type == "bool" or (of.low is None and of.high is None):
         return of.type
     return f"{of.type} in {ends_text(of)}"
 
 
 def ends_text(of: Union[Signal, Param]) -> str:
-    """The range of a signal or param: ``[0 m, inf]``."""
+    """Return the range of a signal or param: ``[0 m, inf]``."""
     low, high = -inf if of.low is None else of.low, inf if of.high is None else of.high
     return range_text(low, high, units.TYPES[of.type])
 
 
 def value_text(value: float, type_: ValueType) -> str:
-    """A value with the unit of its type: ``3 m``; of a bool ``true`` or ``false``."""
+    """Return a value with the unit of its type: ``3 m``. A bool is ``true`` or ``false``."""
     if type_ == "bool":
         return "true" if value else "false"
     unit = units.si_unit(units.TYPES[type_])
@@ -55,13 +64,20 @@ def value_text(value: float, type_: ValueType) -> str:
 
 
 def sample_text(sample: Iterable[tuple[str, float]], types: Mapping[str, ValueType]) -> str:
-    """A sample as ``at distance(s1) = 3 m, seen = true``; where no signal is read, that it is so at every one."""
+    """Return a sample in words: ``at distance(s1) = 3 m, seen = true``.
+
+    If no signal is read, it is ``at every sample``.
+    """
     shown = [f"{name} = {value_text(value, types.get(name, 'number'))}" for name, value in sample]
     return f"at {', '.join(shown)}" if shown else "at every sample"
 
 
 def values_text(apart: Apart) -> tuple[str, str]:
-    """The two values of an atom at a sample; with whether it holds, where only one does; or why there is none."""
+    """Return the two values of an atom at a sample in words.
+
+    They include whether the atom holds if it does so in only one version, and the reason if there
+    is no value.
+    """
     first, second = (_value(apart, side) for side in (0, 1))
     return first, second
 

@@ -1,4 +1,4 @@
-"""How the traces that two specs accept relate, with shortest traces that tell them apart."""
+"""Compare the traces that two specs accept, with shortest traces that distinguish them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 Relation = Literal["equivalent", "stricter", "looser", "incomparable"]
 
 _STEPS_OF_A_PAIR: Final = 100
-"""Steps of work that a pair of atoms takes at least of which one excludes the other."""
+"""The least number of work steps for a pair of atoms that exclude each other."""
 
 OF_A: Final = " of A"
 OF_B: Final = " of B"
-"""What stands behind the names of two atoms that share theirs."""
+"""Suffixes for two different atoms that have the same name."""
 
 
 @record
 class Group:
-    """Atoms of which at most one holds at a time, and which of the two say so."""
+    """Atoms of which at most one holds at a time, and which of the two specs declare this."""
 
     names: tuple[str, ...]
     in_a: bool
@@ -36,14 +36,18 @@ class Group:
 
 @record
 class Comparison:
-    """What became of A in B.  ``stricter``: every trace that B accepts A accepts, too, and not the other way round.
+    """How B relates to A.
 
-    ``only_a`` is a trace that A alone accepts, ``only_b`` one that B alone accepts, over finite traces shortest ones.
-    The names in ``split`` stand for two atoms, which are called ``NAME of A`` and ``NAME of B`` in traces.
-    ``impossible`` are literals that no sample was found to make true together: traces with such samples are left out,
-    and so are those with samples at which two atoms of a group of ``exclusive`` hold.
-    ``relation`` is None where one is over finite traces and the other over infinite ones.  Then ``beginnings`` compares
-    the beginnings of traces that do not break them for good, each as if it accepted these.
+    ``stricter`` means that A accepts every trace that B accepts, but not vice versa. ``only_a`` is
+    a trace that only A accepts, ``only_b`` one that only B accepts. Over finite traces they are
+    shortest. Each name in ``split`` stands for two atoms, called ``NAME of A`` and ``NAME of B`` in
+    traces. ``impossible`` are literals for which no sample was found that makes them true together.
+    Traces with such samples are left out, and so are traces in which two atoms of an ``exclusive``
+    group hold together.
+
+    ``relation`` is None if one spec is over finite traces and the other over infinite ones. Then
+    ``beginnings`` compares the finite beginnings that do not break A or B for good, as if each spec
+    accepted its own.
     """
 
     relation: Relation | None
@@ -64,20 +68,21 @@ def compare(
     work: int = DEFAULT_WORK,
     exclusive: Iterable[Group] = (),
 ) -> Comparison:
-    """How the traces that B accepts relate to those that A does, over the atoms of both.
+    """Return how the traces that B accepts relate to the traces that A accepts.
 
-    Atoms of one name are one if their expressions are equal, and no sample in the ranges of both was found at which
-    only one of them holds, by other params; with ``by_name``, always.  With ``real``, traces count only if samples were
-    found that are such: ``fuel > 30`` does not hold without ``fuel > 20``.  ``exclusive`` are groups beside those that
-    the automata have.
+    Traces are over the atoms of both. Atoms with the same name are the same atom if their
+    expressions are equal, and no sample in the ranges of both was found at which only one of them
+    holds because of different params. With ``by_name``, they are always the same atom. With
+    ``real``, traces count only if samples were found for them: ``fuel > 30`` does not hold without
+    ``fuel > 20``. ``exclusive`` are groups in addition to the groups of the automata.
 
     Raises:
-        OutOfWork: the comparison takes more than ``work`` steps, each way.
+        OutOfWork: the comparison takes more than ``work`` steps in one direction.
     """
     if a.semantics != b.semantics:
         one, other = _unbroken(a), _unbroken(b)
-        found = compare(one, other, by_name=by_name, real=real, work=work, exclusive=exclusive)
-        return replace(found, relation=None, only_a=None, only_b=None, beginnings=found)
+        beginnings = compare(one, other, by_name=by_name, real=real, work=work, exclusive=exclusive)
+        return replace(beginnings, relation=None, only_a=None, only_b=None, beginnings=beginnings)
     split = () if by_name else different_atoms(a, b)
     one, other = _renamed(a, split, OF_A), _renamed(b, split, OF_B)
     own = _own_groups(one, other)
@@ -102,13 +107,13 @@ def compare(
 
 
 def _unbroken(fspa: Fspa) -> Fspa:
-    """An automaton over finite traces that accepts what does not break another one for good."""
+    """Return an automaton over finite traces that accepts what does not break ``fspa`` for good."""
     states = tuple(replace(state, accepting=state.verdict != "violated") for state in fspa.states)
     return replace(fspa, semantics="finite", acceptance=(), states=states)
 
 
 def _own_groups(one: Fspa, other: Fspa) -> list[Group]:
-    """The groups that the automata have."""
+    """Return the groups of the automata."""
     return [
         Group(tuple(fspa.atoms[atom].name for atom in group), fspa is one, fspa is other)
         for fspa in (one, other)
@@ -117,36 +122,39 @@ def _own_groups(one: Fspa, other: Fspa) -> list[Group]:
 
 
 def _together(groups: Iterable[Group], known: set[str]) -> tuple[Group, ...]:
-    """The groups as far as their atoms are known, each once; one that is split is called otherwise, and not known."""
+    """Return the groups restricted to known atoms, without duplicates.
+
+    A split atom has another name and so is not known.
+    """
     of_known = [replace(group, names=tuple(name for name in group.names if name in known)) for group in groups]
-    found: dict[frozenset[str], Group] = {}
+    merged: dict[frozenset[str], Group] = {}
     for group in of_known:
-        wider = [each for each in of_known if set(group.names) <= set(each.names)]
-        in_a, in_b = any(each.in_a for each in wider), any(each.in_b for each in wider)
+        wider = [wide for wide in of_known if set(group.names) <= set(wide.names)]
+        in_a, in_b = any(wide.in_a for wide in wider), any(wide.in_b for wide in wider)
         if len(group.names) > 1:
-            found.setdefault(frozenset(group.names), Group(group.names, in_a, in_b))
-    return tuple(found.values())
+            merged.setdefault(frozenset(group.names), Group(group.names, in_a, in_b))
+    return tuple(merged.values())
 
 
 def _never(groups: Iterable[Group], own: Iterable[Group]) -> Iterator[Literals]:
-    """The pairs of atoms in groups that the automata do not have themselves."""
+    """Yield the pairs of atoms in groups that the automata do not have themselves."""
     known = [set(group.names) for group in own]
     for group in groups:
-        if not any(each.issuperset(group.names) for each in known):
+        if not any(known_group.issuperset(group.names) for known_group in known):
             yield from (((first, True), (second, True)) for first, second in combinations(group.names, 2))
 
 
 def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ...]:
-    """The names that stand for different atoms in two automata or vocabularies, in the order of A."""
+    """Return the names that stand for different atoms in ``a`` and ``b``, in the order of ``a``."""
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
-    found = []
+    names = []
     for index, atom in enumerate(a.atoms):
         if atom.name not in places:
             continue
         one, other = meaning(a, index), meaning(b, places[atom.name])
         if one.expression != other.expression or ((sample := apart(one, other)) and sample.is_judged_otherwise):
-            found.append(atom.name)
-    return tuple(found)
+            names.append(atom.name)
+    return tuple(names)
 
 
 def _renamed(fspa: Fspa, names: tuple[str, ...], ending: str) -> Fspa:

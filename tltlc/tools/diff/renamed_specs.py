@@ -1,4 +1,4 @@
-"""Specs that are in another file now, or are called otherwise and mean the same."""
+"""Find specs that moved to another file, or were renamed but mean the same."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
 _SOURCE: Final = ".tltl"
-"""An artefact that is elsewhere is not found where its host looks for it: only specs in sources move."""
+"""Only specs in source files can move: a host does not find an artefact that is elsewhere."""
 _MOST_RENAMED: Final = 6
-"""With so many new specs, at most, one that is gone is compared."""
+"""The most new specs that a removed spec is compared with."""
 
 
 @record
 class _Side:
-    """A spec in the file of a change; ``number`` is that of the change."""
+    """A spec in the file of a change; ``number`` is the index of the change."""
 
     number: int
     fspa: Fspa
 
 
 def followed(changes: Sequence[Change], work: int = DEFAULT_WORK) -> tuple[Change, ...]:
-    """The changes, in which specs that moved from file to file, or were renamed, are told apart from others.
+    """Return the changes with moved and renamed specs recorded as moves.
 
-    One that is gone moved to where one of its name is new; else it was renamed to a new one that accepts the same
-    traces, of the same file rather than of another.
+    A removed spec moved to a file where a spec of its name is new. Otherwise it was renamed to a
+    new spec that accepts the same traces, preferably in the same file.
     """
-    gone = [each for number, change in enumerate(changes) for each in _only(change.old, change.new, number, change)]
-    added = [each for number, change in enumerate(changes) for each in _only(change.new, change.old, number, change)]
-    found: list[tuple[_Side, _Side]] = []
+    gone = [side for number, change in enumerate(changes) for side in _only(change.old, change.new, number, change)]
+    added = [side for number, change in enumerate(changes) for side in _only(change.new, change.old, number, change)]
+    matches: list[tuple[_Side, _Side]] = []
     for is_same in (_has_its_name, lambda old, new: _means_the_same(old, new, work)):
         for old in list(gone):
-            new = next((each for each in _candidates(old, added) if is_same(old, each)), None)
+            new = next((candidate for candidate in _candidates(old, added) if is_same(old, candidate)), None)
             if new is not None:
-                found.append((old, new))
+                matches.append((old, new))
                 gone.remove(old)
                 added.remove(new)
-    return tuple(_with(change, number, found, changes) for number, change in enumerate(changes))
+    return tuple(_with(change, number, matches, changes) for number, change in enumerate(changes))
 
 
-def _only(these: Version, those: Version, number: int, change: Change) -> Iterator[_Side]:
-    """The specs of one version of a source that the other one does not have."""
-    names = {fspa.name for fspa in those.automata}
+def _only(version: Version, other_version: Version, number: int, change: Change) -> Iterator[_Side]:
+    """Yield the specs of one version of a source file that the other version does not have."""
+    names = {fspa.name for fspa in other_version.automata}
     if change.path.endswith(_SOURCE):
-        yield from (_Side(number, fspa) for fspa in these.automata if fspa.name not in names)
+        yield from (_Side(number, fspa) for fspa in version.automata if fspa.name not in names)
 
 
 def _candidates(old: _Side, added: Iterable[_Side]) -> list[_Side]:
-    """The new specs that an old one may be by now, the likeliest first."""
-    return sorted(added, key=lambda each: (each.fspa.name != old.fspa.name, each.number != old.number))[:_MOST_RENAMED]
+    """Return the new specs that an old one may have become, the most likely first."""
+    return sorted(added, key=lambda side: (side.fspa.name != old.fspa.name, side.number != old.number))[:_MOST_RENAMED]
 
 
 def _has_its_name(old: _Side, new: _Side) -> bool:
@@ -69,18 +69,18 @@ def _means_the_same(old: _Side, new: _Side, work: int) -> bool:
         return False
 
 
-def _with(change: Change, number: int, found: Sequence[tuple[_Side, _Side]], changes: Sequence[Change]) -> Change:
-    """A change without the specs that moved away or came, which are listed as moves where they came."""
-    away = [old.fspa for old, _ in found if old.number == number]
-    came = [(old, new) for old, new in found if new.number == number]
+def _with(change: Change, number: int, matches: Sequence[tuple[_Side, _Side]], changes: Sequence[Change]) -> Change:
+    """Return a change without the specs that moved; specs that moved here are listed as moves."""
+    moved_away = [old.fspa for old, _ in matches if old.number == number]
+    moved_here = [(old, new) for old, new in matches if new.number == number]
     moves = (
         Move(old.fspa, new.fspa, changes[old.number].old.places[old.fspa.name], change.new.places[new.fspa.name])
-        for old, new in came
+        for old, new in moved_here
     )
     return replace(
         change,
-        old=_without(change.old, away),
-        new=_without(change.new, [new.fspa for _, new in came]),
+        old=_without(change.old, moved_away),
+        new=_without(change.new, [new.fspa for _, new in moved_here]),
         moves=tuple(moves),
     )
 

@@ -1,4 +1,4 @@
-"""Atoms and signals that have another name and are the same all the same."""
+"""Find atoms and signals that have another name but the same meaning."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 def with_names_of(old: Fspa, new: Fspa) -> Fspa:
-    """The new automaton, in which atoms that changed their names alone are called as in the old one.
+    """Return the new automaton in which renamed atoms have their old names.
 
-    Of such an atom the expression is the same but for the names of params.
+    An atom counts as renamed if its expression is the same except for the names of params.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
     gone: dict[object, str] = {}
@@ -33,8 +33,10 @@ def with_names_of(old: Fspa, new: Fspa) -> Fspa:
 
 
 def renamed_signals(old: Fspa, new: Fspa) -> dict[str, str]:
-    """The new names of signals that are gone: an atom that read the one reads the other, of its type, and is the same
-    but for such names and those of params.
+    """Return the new names of signals that are gone.
+
+    A signal was renamed if an atom that read it now reads a new signal of the same type, and is the
+    same except for the names of such signals and of params.
     """
     types, new_types = ({signal.name: signal.type for signal in fspa.signals} for fspa in (old, new))
     of_new = {atom.name: atom.expression for atom in new.atoms}
@@ -55,7 +57,7 @@ def renamed_signals(old: Fspa, new: Fspa) -> dict[str, str]:
 
 
 def with_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
-    """The automaton with other names of signals."""
+    """Return the automaton with signals renamed."""
     return replace(
         fspa,
         atoms=tuple(replace(atom, expression=_with_signals(atom.expression, names)) for atom in fspa.atoms),
@@ -71,13 +73,13 @@ def _with_signals(expression: Expression, names: Mapping[str, str]) -> Expressio
 
 
 def _form(expression: Expression, of: Fspa) -> object:
-    """What two expressions share that differ in the names of params alone."""
+    """Return a key that is equal for expressions that differ only in the names of params."""
     params = {param.name: param for param in of.params}
     return tuple(_token(node, params) for node in nodes(expression))
 
 
 def _token(node: Expression | Condition, params: Mapping[str, ParamValue]) -> object:
-    """A node without its parts, of which it says how many there are."""
+    """Return a key for a node without its children, except for their number."""
     if isinstance(node, Param):
         return "param", plain(params[node.name])
     if isinstance(node, (Const, Signal)):

@@ -1,4 +1,4 @@
-"""The files as they were: in a git revision, or in another folder."""
+"""Access earlier versions of files, in a git revision or in another folder."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _PROJECT: Final = "tltl.toml"
 
 @record
 class Tree:
-    """Files of old below ``root``, beside those of now below ``here``; messages call ``root/x`` ``{shown}x``."""
+    """Old files below ``root``, next to the current files below ``here``.
+
+    Messages call ``root/x`` ``{shown}x``.
+    """
 
     root: Path
     here: Path
@@ -32,10 +35,10 @@ class Tree:
     is_revision: bool
 
     def at(self, path: str) -> str | None:
-        """Where the old file, or folder, of a path of now is; None where there is none.
+        """Return the old file or folder for a current path, or None if there is none.
 
-        In a folder it lies at the same place or higher: ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for ``specs/x.tltl``.
-        Raises TltlError, TLT0001, where the system does not tell whether it is there.
+        In a folder, it is at the same place or higher: ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for
+        ``specs/x.tltl``. Error TLT0001 if the system does not say whether the path exists.
         """
         inside = _inside(path, self.here)
         if inside is None and self.is_revision:
@@ -43,23 +46,26 @@ class Tree:
         parts = inside.parts if inside is not None else Path(path).absolute().parts[1:]
         is_there = is_dir if is_dir(path) else is_file
         candidates = (self.root.joinpath(*parts[first:]) for first in range(1 if self.is_revision else len(parts) + 1))
-        return next((str(each) for each in candidates if _is_told(each) and is_there(each)), None)
+        return next(
+            (str(candidate) for candidate in candidates if _is_accessible(candidate) and is_there(candidate)), None
+        )
 
     def libraries(self, folders: Iterable[Path]) -> tuple[Path, ...]:
-        """Folders of libraries as they were; where they were not, as they are."""
+        """Return the old library folders. Folders without an old version stay as they are."""
         return tuple(Path(self.at(str(folder)) or folder) for folder in folders)
 
     def holds(self, path: Path) -> bool:
-        """Whether a path lies in the tree itself."""
+        """Whether a path is inside the tree."""
         return _inside(str(path), self.root) is not None
 
-    def placed(self, found: Iterable[Diagnostic], path: str, before: str | None) -> tuple[Diagnostic, ...]:
-        """Messages that point at files of old, at the same files of now: services know no others.
+    def placed(self, diagnostics: Iterable[Diagnostic], path: str, before: str | None) -> tuple[Diagnostic, ...]:
+        """Return diagnostics with labels on old files moved to the same current files.
 
-        ``before`` is the old file of ``path``.
+        Services know only current files. ``before`` is the old file of ``path``.
         """
         return tuple(
-            replace(each, labels=tuple(self._placed(label, path, before) for label in each.labels)) for each in found
+            replace(diagnostic, labels=tuple(self._placed(label, path, before) for label in diagnostic.labels))
+            for diagnostic in diagnostics
         )
 
     def _placed(self, label: Label, path: str, before: str | None) -> Label:
@@ -73,44 +79,46 @@ class Tree:
             return Label(SourceFile(now, label.source.text), label.span, message)
         return Label(SourceFile(now, ""), Span(0, 0), message)
 
-    def renamed(self, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Messages on files of old, with the names that those have for their readers."""
-        before = f"{self.root}{os.sep}"
+    def renamed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Return diagnostics in which old files have the names that readers know."""
+        prefix = f"{self.root}{os.sep}"
 
         def text(of: str) -> str:
-            return of.replace(before, self.shown)
+            return of.replace(prefix, self.shown)
 
         def label(of: Label) -> Label:
             return replace(of, source=SourceFile(text(of.source.name), of.source.text), message=text(of.message))
 
         return tuple(
             replace(
-                each,
-                title=text(each.title),
-                labels=tuple(map(label, each.labels)),
-                help=each.help and text(each.help),
+                diagnostic,
+                title=text(diagnostic.title),
+                labels=tuple(map(label, diagnostic.labels)),
+                help=diagnostic.help and text(diagnostic.help),
             )
-            for each in found
+            for diagnostic in diagnostics
         )
 
 
 @contextmanager
 def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
-    """The tree in which the old files of ``paths`` are: the folder of that name, or else a git revision.
+    """Yield the tree with the old files of ``paths``.
 
-    That revision is one of the repository in which the first path lies; its specs, artefacts and project files are
-    put into a folder that is gone at the end.
+    ``against`` names a folder or else a git revision. The revision is looked up in the repository
+    of the first path. Its specs, artefacts and project files are written to a temporary folder that
+    is removed at the end.
 
-    Errors: TLT0751 neither a folder nor a revision, TLT0730 git is not installed, TLT0005 no temporary folder.
+    Errors: TLT0751 if ``against`` is neither a folder nor a revision, TLT0730 if git is not
+    installed, TLT0005 if there is no temporary folder.
     """
     if is_dir(against):
         yield Tree(Path(against), Path.cwd(), os.path.join(against, ""), is_revision=False)  # noqa: PTH118 (with a slash)
         return
     repository, commit = _revision(against, _folder(next(iter(paths))))
-    named = {_inside_of(repository, path) for path in paths}
+    inside_paths = {_inside_of(repository, path) for path in paths}
 
     def is_wanted(path: str) -> bool:
-        return path.endswith(SOURCE_ENDINGS) or path.rpartition("/")[2] == _PROJECT or path in named
+        return path.endswith(SOURCE_ENDINGS) or path.rpartition("/")[2] == _PROJECT or path in inside_paths
 
     with temporary_folder() as root:
         git.write_out(repository, commit, against, is_wanted, root)
@@ -118,7 +126,10 @@ def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
 
 
 def _revision(name: str, folder: Path) -> tuple[Path, str]:
-    """The repository of a folder, and the commit of a revision in it; error TLT0751 where there is none."""
+    """Return the repository of a folder, and the commit of a revision in it.
+
+    Error TLT0751 if there is none.
+    """
     repository = git.repository(folder)
     if repository is not None:
         try:
@@ -134,8 +145,8 @@ def _revision(name: str, folder: Path) -> tuple[Path, str]:
     raise git.no_version(title, "name a folder that is there, or a file of the repository")
 
 
-def _is_told(path: Path) -> bool:
-    """True; raises TltlError, TLT0001, where we may not even know if there is something at a path."""
+def _is_accessible(path: Path) -> bool:
+    """Return True. Error TLT0001 if permissions hide whether the path exists."""
     try:
         os.stat(path)  # noqa: PTH116
     except PermissionError as error:
@@ -146,7 +157,10 @@ def _is_told(path: Path) -> bool:
 
 
 def _inside_of(repository: Path, path: str) -> str:
-    """A path, relative to the repository, as git has it; error TLT0751 where it lies outside."""
+    """Return a path relative to the repository, as git writes it.
+
+    Error TLT0751 if the path is outside.
+    """
     inside = _inside(path, repository)
     if inside is None:
         title = f"`{path}` does not lie in the repository `{repository}`"
@@ -155,10 +169,11 @@ def _inside_of(repository: Path, path: str) -> str:
 
 
 def _inside(path: str, folder: Path) -> Path | None:
-    """A path, relative to a folder; None if it lies outside.
+    """Return a path relative to a folder, or None if it is outside.
 
-    A link to a file stands for itself: in another revision it may lead elsewhere.  A link from outside stands for what
-    it leads to, and so does a link to a folder, which revisions are read without.
+    A link to a file stands for itself, because it may have another target in another revision. A
+    link from outside stands for its target. So does a link to a folder, because links to folders
+    are left out of revisions.
     """
     parent, name = os.path.split(os.path.abspath(path))  # noqa: PTH100
     places = [os.path.realpath(path)]
@@ -169,6 +184,6 @@ def _inside(path: str, folder: Path) -> Path | None:
 
 
 def _folder(path: str) -> Path:
-    """The nearest folder above a path, or at it, that is there."""
+    """Return the path itself if it is a folder that exists, else the nearest folder above it."""
     place = Path(os.path.realpath(path))
-    return next(each for each in (place, *place.parents) if each.is_dir())
+    return next(folder for folder in (place, *place.parents) if folder.is_dir())

@@ -1,4 +1,4 @@
-"""What a library says of all specs that import it, without a name: atoms that are exclusive, and the clock."""
+"""Compare what a library sets for all specs that import it: exclusive atoms and the clock."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @record
 class Rules:
-    """The groups of ``exclusive`` that a file itself declares, each by its atoms and with its place, and its clock.
+    """The ``exclusive`` groups that a file itself declares, with their places, and its clock.
 
-    ``clock_s`` is None where it declares none.
+    ``clock_s`` is None if the file declares no clock.
     """
 
     exclusive: Mapping[tuple[str, ...], Label] = EMPTY
@@ -30,21 +30,21 @@ class Rules:
 
 
 def rules(module: Module, program: Program) -> Rules:
-    """The rules of a module that was resolved without errors."""
-    own = [each for each in module.declarations if isinstance(each, ExclusiveDecl)]
+    """Return the rules of a module that resolved without errors."""
+    own = [declaration for declaration in module.declarations if isinstance(declaration, ExclusiveDecl)]
     words = program.exclusive
-    # Those that it imports come first.
+    # The groups of imported files come first.
     groups = words.exclusive[len(words.exclusive) - len(own) :]
     names = [tuple(sorted(words.atoms[atom].name for atom in group)) for group in groups]
-    places = {group: Label(module.source, each.span) for group, each in zip(names, own, strict=True)}
-    clock = next((each for each in module.declarations if isinstance(each, ClockDecl)), None)
+    places = {group: Label(module.source, declaration.span) for group, declaration in zip(names, own, strict=True)}
+    clock = next((declaration for declaration in module.declarations if isinstance(declaration, ClockDecl)), None)
     if clock is None:
         return Rules(places)
     return Rules(places, words.clock_s, Label(module.source, clock.span))
 
 
 def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
-    """What changed for all specs that import the file."""
+    """Yield the changes for all specs that import the file."""
     for names, place in old.exclusive.items():
         if not are_exclusive(names, new.exclusive):
             yield say.no_longer_exclusive(names, place)

@@ -1,4 +1,4 @@
-"""What is different from one file to another, in words."""
+"""Write the differences between two files in words."""
 
 from __future__ import annotations
 
@@ -31,26 +31,29 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
     "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
 }
-"""By the relation of the beginnings that do not."""
+"""By the relation of the beginnings that do not break the specs."""
 
 _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
 _MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
-"""Of the tests that B passes, by which of the two accepts the trace, or is not broken by it."""
+"""Titles of the tests that B passes.
+
+The key is the spec that accepts the trace, or that the trace does not break.
+"""
 
 
-def text(found: FileDiff) -> str:
-    """The whole report, which ends in a newline."""
-    paragraphs = [f"A is {found.a}\nB is {found.b}"]
-    paragraphs += ["\n\n".join(_pair(pair)) for pair in found.pairs]
-    for side, names in (("A", found.only_a), ("B", found.only_b)):
+def text(report: FileDiff) -> str:
+    """Return the whole report, which ends in a newline."""
+    paragraphs = [f"A is {report.a}\nB is {report.b}"]
+    paragraphs += ["\n\n".join(_pair(pair)) for pair in report.pairs]
+    for side, names in (("A", report.only_a), ("B", report.only_b)):
         if names:
             paragraphs.append(f"only in {side}: {listed(names, len(names))}")
-    if found.only_a and found.only_b:
-        a, b = (STDIN if name == STDIN_NAME else name for name in (found.a, found.b))
-        both = f"`{a}:{found.only_a[0]}` and `{b}:{found.only_b[0]}`"
+    if report.only_a and report.only_b:
+        a, b = (STDIN if name == STDIN_NAME else name for name in (report.a, report.b))
+        both = f"`{a}:{report.only_a[0]}` and `{b}:{report.only_b[0]}`"
         paragraphs.append(f"to compare specs of different names, name both, e.g. {both}")
     if len(paragraphs) == 1:
         paragraphs.append("there is no spec in either of them")
@@ -58,7 +61,7 @@ def text(found: FileDiff) -> str:
 
 
 def _pair(pair: Pair) -> Iterator[str]:
-    """The paragraphs on a pair of specs."""
+    """Yield the paragraphs about a pair of specs."""
     comparison = pair.comparison
     name = pair.a.name if pair.a.name == pair.b.name else f"{pair.a.name} and {pair.b.name}"
     if comparison.relation is None:
@@ -66,10 +69,10 @@ def _pair(pair: Pair) -> Iterator[str]:
         yield f"{name}\n  {fill(unrelated(pair.a, pair.b), _WIDTH, subsequent_indent='  ')}"
         yield f"  {_BREAKING[comparison.beginnings.relation]}"
     else:
-        said, meaning = _RELATIONS[comparison.relation]
+        summary, meaning = _RELATIONS[comparison.relation]
         if comparison.relation == "equivalent":
-            said += ", but not all else is the same" if pair.differences else ", and nothing else differs"
-        yield f"{name}\n  {said}{f': {meaning}' if meaning else ''}."
+            summary += ", but not all else is the same" if pair.differences else ", and nothing else differs"
+        yield f"{name}\n  {summary}{f': {meaning}' if meaning else ''}."
     one_sided = [group for group in comparison.exclusive if not (group.in_a and group.in_b)]
     if one_sided:
         yield _exclusive(one_sided)
@@ -84,7 +87,7 @@ def _pair(pair: Pair) -> Iterator[str]:
         yield from _trace(pair, shown.only_b, "B", "A")
     if pair.differences:
         lines = ["  what else differs:"] if comparison.relation != "equivalent" else ["  what differs:"]
-        yield "\n".join([*lines, *(f"    {sentence(each, pair)}" for each in pair.differences)])
+        yield "\n".join([*lines, *(f"    {sentence(difference, pair)}" for difference in pair.differences)])
 
 
 def _exclusive(groups: Sequence[Group]) -> str:
@@ -104,37 +107,37 @@ def _split(names: tuple[str, ...]) -> str:
     )
 
 
-def _left_out(several: Sequence[Literals]) -> str:
+def _left_out(impossible: Sequence[Literals]) -> str:
     lines = ["  no sample of the signals was found that gives these, so traces with them are left out:"]
-    for literals in several[:_MOST_LEFT_OUT]:
-        said = [f"{'' if holds else 'not '}`{name}`" for name, holds in literals]
-        lines.append(f"    {' and '.join(said)}")
-    if len(several) > _MOST_LEFT_OUT:
-        lines.append(f"    and {len(several) - _MOST_LEFT_OUT} more")
+    for literals in impossible[:_MOST_LEFT_OUT]:
+        terms = [f"{'' if holds else 'not '}`{name}`" for name, holds in literals]
+        lines.append(f"    {' and '.join(terms)}")
+    if len(impossible) > _MOST_LEFT_OUT:
+        lines.append(f"    and {len(impossible) - _MOST_LEFT_OUT} more")
     return "\n".join(lines)
 
 
 def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
-    """A trace in words and, where a test can tell, as a block."""
-    found = told(pair, trace)
+    """Yield a trace in words and, if a test can show the difference, as a ``test`` block."""
+    outcome = told(pair, trace)
     is_whole = pair.comparison.relation is not None
-    what = (
+    heading = (
         f"a trace that {by} accepts and {other} does not"
         if is_whole
         else f"a beginning that breaks {other} and not {by}"
     )
-    lines = [f"  {what} (atoms that are not named do not hold):"]
+    lines = [f"  {heading} (atoms that are not named do not hold):"]
     lines += [f"    {line}" for line in step_lines(pair, trace.prefix)]
     if trace.cycle:
         lines.append(f"    {'then ' if trace.prefix else ''}again and again:")
         lines += [f"      {line}" for line in step_lines(pair, trace.cycle)]
-    states = {"A": found.a, "B": found.b}
+    states = {"A": outcome.a, "B": outcome.b}
     after = "after one round" if trace.cycle else "after these" if len(trace.prefix) > 1 else "after it"
     lines += [f"    {after}, {side} is {_state(states[side])}" for side in (by, other)]
     yield "\n".join(lines)
-    written = block(pair, found, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
-    if written is not None:
-        side, lines_of_test = written
+    test = block(pair, outcome, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
+    if test is not None:
+        side, lines_of_test = test
         yield f"  as a test of {side}:\n\n{_indented(lines_of_test)}"
 
 
@@ -149,7 +152,7 @@ def _indented(text: str) -> str:
 
 
 def sentence(difference: Difference, pair: Pair) -> str:
-    """One difference in words."""
+    """Return one difference in words."""
     a, b, name = difference.a, difference.b, difference.name
     match difference.what:
         case "semantics":

@@ -1,4 +1,4 @@
-"""Traces that tell two specs apart: what each says of them, in words and as ``test`` blocks."""
+"""Show traces that distinguish two specs, in words and as ``test`` blocks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 @record
 class Told:
-    """A trace that one spec alone accepts, and the state in which each is after it, the cycle taken once."""
+    """A trace that only one spec accepts, and the state of each spec after it.
+
+    The cycle of an infinite trace is taken once.
+    """
 
     trace: Trace
     a: State
@@ -28,39 +31,43 @@ class Told:
 
 
 def told(pair: Pair, trace: Trace) -> Told:
-    """What the two specs of a pair say of a trace over the atoms of both."""
+    """Return the states that the two specs of a pair reach by a trace over the atoms of both."""
     letters = (*trace.prefix, *trace.cycle)
     split = pair.comparison.split
     a = _state(pair.a, [own_letter(letter, split, pair.a, OF_A) for letter in letters])
     return Told(trace, a, _state(pair.b, [own_letter(letter, split, pair.b, OF_B) for letter in letters]))
 
 
-def block(pair: Pair, found: Told, title: str) -> tuple[str, str] | None:
-    """A ``test`` block of what one of the two says of a trace, and which one: B, or A where it alone has all atoms.
+def block(pair: Pair, outcome: Told, title: str) -> tuple[str, str] | None:
+    """Return a ``test`` block for a trace, and which spec it tests.
 
-    None where no test can tell the two apart: their verdicts are the same, or an atom is another one by its expression
-    alone.  An infinite trace is taken as far as the end of its first cycle.
+    It tests B, or A if only A has all atoms of the trace. Returns None if no test can show the
+    difference: the verdicts are the same, or an atom has the same name but another expression. An
+    infinite trace is taken up to the end of its first cycle.
     """
-    letters = (*found.trace.prefix, *found.trace.cycle)
+    letters = (*outcome.trace.prefix, *outcome.trace.cycle)
     named = frozenset[str]().union(*letters)
     atoms_a, atoms_b = ({atom.name for atom in fspa.atoms} for fspa in (pair.a, pair.b))
-    side, fspa, state = "B", pair.b, found.b
+    side, fspa, state = "B", pair.b, outcome.b
     if not atoms_b or (named <= atoms_a and not named <= atoms_b):
-        side, fspa, state = "A", pair.a, found.a
-    if found.a.verdict == found.b.verdict or not fspa.atoms or not named <= atoms_a | atoms_b:
+        side, fspa, state = "A", pair.a, outcome.a
+    if outcome.a.verdict == outcome.b.verdict or not fspa.atoms or not named <= atoms_a | atoms_b:
         return None
     return side, test_block(title, fspa, letters, {len(letters): (state.verdict,)})
 
 
 def own_letter(letter: Letter, split: Iterable[str], fspa: Fspa, ending: str) -> Letter:
-    """The names of the atoms of one of the specs that hold, as it calls them."""
+    """Return the atoms of one spec that hold, with the names that the spec uses."""
     of_both = {name + ending: name for name in split}
     known = {atom.name for atom in fspa.atoms} - set(split)
     return frozenset(of_both.get(name, name) for name in letter if name in known or name in of_both)
 
 
 def step_lines(pair: Pair, letters: Sequence[Letter]) -> list[str]:
-    """What holds at each step, equal ones in a row on one line: ``step 1: alive``, ``steps 2 to 9: nothing holds``."""
+    """Return lines with what holds at each step; equal consecutive steps share a line.
+
+    Lines look like ``step 1: alive`` and ``steps 2 to 9: nothing holds``.
+    """
     lines = []
     for letter, run in groupby(enumerate(letters, start=1), lambda step: step[1]):
         numbers = [number for number, _ in run]
@@ -70,7 +77,7 @@ def step_lines(pair: Pair, letters: Sequence[Letter]) -> list[str]:
 
 
 def in_order(pair: Pair, letter: Letter) -> list[str]:
-    """The atoms of a letter, those of A first, in their order there."""
+    """Return the atoms of a letter: atoms of A in their order, then other atoms of B."""
     split = pair.comparison.split
     names = [atom.name + (OF_A if atom.name in split else "") for atom in pair.a.atoms]
     names += [atom.name + (OF_B if atom.name in split else "") for atom in pair.b.atoms]
@@ -78,10 +85,10 @@ def in_order(pair: Pair, letter: Letter) -> list[str]:
 
 
 def _state(fspa: Fspa, letters: Iterable[Letter]) -> State:
-    """The state after a trace that no ``exclusive`` rules out."""
+    """Return the state after a trace that respects all ``exclusive`` groups."""
     leaving = tables(fspa).edges
     state = 0
     for letter in letters:
-        given = values(fspa, letter)
-        state = next(edge.target for edge in leaving[state] if holds(edge.guard, given))
+        atom_values = values(fspa, letter)
+        state = next(edge.target for edge in leaving[state] if holds(edge.guard, atom_values))
     return fspa.states[state]

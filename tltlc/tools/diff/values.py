@@ -1,4 +1,4 @@
-"""Whether two expressions have the same value at all samples, by a search for one at which they have not."""
+"""Search for a sample at which two expressions have different values."""
 
 from __future__ import annotations
 
@@ -17,19 +17,22 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Param, Signal, Vocabulary
 
 _ROUNDING: Final = 1e-9
-"""How far apart two values may be that count as one."""
+"""Values that differ by no more than this count as equal."""
 
 
 @record
 class Meaning:
-    """What the value of an atom is computed from; ``signals`` and ``params`` are those that the expression uses."""
+    """What the value of an atom is computed from.
+
+    ``signals`` and ``params`` are those that the expression uses.
+    """
 
     expression: Expression
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
 
     def at(self, sample: Mapping[str, float]) -> tuple[float | None, str]:
-        """The value at a sample, as a monitor has it; None, and why, where it has none."""
+        """Return the value at a sample, as a monitor computes it, or None and the reason."""
         from tltlc.resolve.range_proof.witness import value_at
 
         point: dict[Variable, float] = {ParamNode(param.name): param.value for param in self.params}
@@ -37,13 +40,16 @@ class Meaning:
             low = -inf if signal.low is None else signal.low
             high = inf if signal.high is None else signal.high
             point[SignalNode(signal.name)] = min(max(sample[signal.name], low), high)
-        found = value_at(self.expression, point)
-        return (None if found.value is None else min(max(found.value, -1.0), 1.0)), found.reason
+        witness = value_at(self.expression, point)
+        return (None if witness.value is None else min(max(witness.value, -1.0), 1.0)), witness.reason
 
 
 @record
 class Apart:
-    """A sample of signals at which two atoms have different values, or one of them has none, and then why."""
+    """A sample at which two atoms have different values.
+
+    If one of the atoms has no value there, its reason says why.
+    """
 
     sample: tuple[tuple[str, float], ...]
     values: tuple[float | None, float | None]
@@ -51,18 +57,21 @@ class Apart:
 
     @property
     def is_judged_otherwise(self) -> bool:
-        """Whether one of the atoms holds there and the other does not."""
+        """Whether one of the atoms holds at the sample and the other does not."""
         one, other = (None if value is None else value > 0.0 for value in self.values)
         return one != other
 
 
 def meaning(of: Fspa | Vocabulary, atom: int) -> Meaning:
-    """What the value of an atom of an automaton or vocabulary is computed from."""
+    """Return what the value of an atom of an automaton or vocabulary is computed from."""
     return meaning_of(of.atoms[atom].expression, of.signals, of.params)
 
 
 def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tuple[Param, ...]) -> Meaning:
-    """What the value of an expression is computed from; of the signals and params those that it uses."""
+    """Return what the value of an expression is computed from.
+
+    It has only those of the signals and params that the expression uses.
+    """
     used = {(type(node), node.name) for node in nodes(expression) if isinstance(node, (SignalNode, ParamNode))}
     return Meaning(
         expression,
@@ -72,8 +81,10 @@ def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tupl
 
 
 def apart(one: Meaning, other: Meaning) -> Apart | None:
-    """A sample at which the two have different values, one at which only one holds if there is such; None if none was
-    found.  The search is deterministic and of bounded work, so it may miss one.
+    """Return a sample at which the two have different values, or None if none was found.
+
+    A sample at which only one of them holds is preferred. The search is deterministic and its work
+    is bounded, so it may miss a sample.
     """
     if _is_computed_alike(one, other):
         return None
@@ -81,19 +92,20 @@ def apart(one: Meaning, other: Meaning) -> Apart | None:
 
     box, bools = _shared(one, other)
     values = [Const(param.value) for param in (*one.params, *other.params)]
-    found: Apart | None = None
+    fallback: Apart | None = None
     for point in points(Op("+", (one.expression, other.expression, *values)), box, bools):
         here = _at({variable.name: value for variable, value in point.items()}, one, other)
         if here is not None and here.is_judged_otherwise:
             return _shortened(here, one, other, box)
-        found = found or here
-    return found and _shortened(found, one, other, box)
+        fallback = fallback or here
+    return fallback and _shortened(fallback, one, other, box)
 
 
 def _shared(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, float]], frozenset[Variable]]:
-    """The values of signals that are in the ranges of both, and the signals that are bools.
+    """Return the signal values in the ranges of both, and which signals are bools.
 
-    Where ranges have nothing in common, it is what lies between them: there, each of the two takes its own end.
+    If two ranges do not overlap, the values between them are used: there, each of the two clamps a
+    value to its own end.
     """
     ends: dict[SignalNode, list[tuple[float, float]]] = {}
     numbers: set[SignalNode] = set()
@@ -111,15 +123,15 @@ def _shared(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, f
     return box, frozenset(node for node in ends if node not in numbers)
 
 
-def _shortened(found: Apart, one: Meaning, other: Meaning, box: Box) -> Apart:
-    """The same with shorter numbers, if they lie in the box and show the same."""
+def _shortened(difference: Apart, one: Meaning, other: Meaning, box: Box) -> Apart:
+    """Return the same result with shorter numbers, if they are in the box and show the same."""
     for digits in (2, 3, 4, 6):
-        sample = {name: float(f"{value:.{digits}g}") for name, value in found.sample}
+        sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}
         is_inside = all(low <= sample[node.name] <= high for node, (low, high) in box.items())
         here = _at(sample, one, other) if is_inside else None
-        if here is not None and here.is_judged_otherwise == found.is_judged_otherwise:
+        if here is not None and here.is_judged_otherwise == difference.is_judged_otherwise:
             return here
-    return found
+    return difference
 
 
 def _at(sample: Mapping[str, float], one: Meaning, other: Meaning) -> Apart | None:
@@ -131,7 +143,7 @@ def _at(sample: Mapping[str, float], one: Meaning, other: Meaning) -> Apart | No
 
 
 def _is_computed_alike(one: Meaning, other: Meaning) -> bool:
-    """Whether nothing differs by which a value could."""
+    """Whether the two have the same expression, ranges and param values."""
 
     def computed(of: Meaning) -> object:
         ranges = {signal.name: (signal.low, signal.high) for signal in of.signals}
