@@ -1,1 +1,4 @@
-"""Traces that show what a spec means: as ``test`` blocks, as samples of signals, shortest or covering every edge."""
+"""Find traces that show what a spec means, as ``test`` blocks or as samples of signals.
+
+The traces are shortest ones, or together take every edge.
+"""

@@ -1,4 +1,4 @@
-"""A small set of traces that together take every edge that samples can take."""
+"""Find a small set of traces that together take every edge that samples can take."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from tltlc.tools.witness.transitions import Move, Moves
 
 @record
 class Untaken:
-    """An edge, by its index, that no trace takes: for want of samples or, without obstacles, of a way to its source."""
+    """An edge, by index, that no trace takes.
+
+    If there are no obstacles, its source cannot be reached. Otherwise no sample takes the edge.
+    """
 
     edge: int
     obstacles: tuple[Obstacle, ...]
@@ -28,12 +31,15 @@ class Cover:
 
 
 def cover(moves: Moves) -> Cover:
-    """Traces that take every edge which samples take: each goes on to the nearest edge that is not taken yet.
+    """Return traces that take every edge that samples can take.
 
-    A trace ends where no such edge is ahead.  Over infinite traces these are the beginnings of traces.
+    Each trace continues to the nearest edge that is not taken yet, and ends if it can reach no such
+    edge. Over infinite traces, these are beginnings of traces.
     """
     edges = moves.fspa.edges
-    nearest = Nearest([[(edge, edges[edge].target) for edge in there if moves.move(edge)] for there in moves.leaving])
+    nearest = Nearest(
+        [[(edge, edges[edge].target) for edge in leaving if moves.move(edge)] for leaving in moves.leaving]
+    )
     traces: list[tuple[Move, ...]] = []
     while trace := tuple(_trace(moves, nearest)):
         traces.append(trace)
@@ -44,7 +50,10 @@ def cover(moves: Moves) -> Cover:
 
 
 def _trace(moves: Moves, nearest: Nearest) -> Iterator[Move]:
-    """A trace from the initial state that takes edges which no trace has taken; without moves where there is none."""
+    """Yield the moves of a trace from the initial state that takes edges which no trace has taken.
+
+    It yields nothing if there is no such trace.
+    """
     state = 0
     while way := nearest.take(state):
         for edge in way:
@@ -55,7 +64,7 @@ def _trace(moves: Moves, nearest: Nearest) -> Iterator[Move]:
 
 
 def _with_news(traces: Iterable[tuple[Move, ...]]) -> Iterator[Witness]:
-    """The traces as witnesses, each with the steps that are the first to take their edge."""
+    """Yield the traces as witnesses, each with the steps that are the first to take their edge."""
     seen: set[int] = set()
     for trace in traces:
         news = []

@@ -1,4 +1,4 @@
-"""The nearest edge that no trace has taken yet, found without searching the automaton again for each trace."""
+"""Find the nearest edge that no trace has taken, without searching the automaton anew each time."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from tltlc.automaton.infinite.graphs import components
 
 
 class Nearest:
-    """Ways to the nearest edge that is still wanted; edges only ever stop being wanted.
+    """Finds paths to the nearest wanted edge. Edges can only stop being wanted.
 
-    ``leaving`` gives for each state its edges as pairs of an index and a target, in the order in which they are tried.
-    At first every edge is wanted. A way is the one that a breadth-first search finds.
+    ``leaving`` has for each state its edges as pairs of an index and a target, in the order in
+    which they are tried. Initially every edge is wanted. The paths are the same as those of a
+    breadth-first search.
 
-    ``_bound`` is a lower bound on the number of edges between a state and the next state that a wanted edge leaves. It
-    only grows, so what one search learns stays true in all later ones. ``_next`` is the place of the first edge of a
-    state whose target may be nearer than the state. ``looks`` counts the edges that searches have looked at.
+    ``_bound`` is a lower bound on the number of edges between a state and the nearest state that a
+    wanted edge leaves. It never decreases, so what one search learns stays true in all later
+    searches. ``_next`` is the index of the first edge of a state whose target may be nearer than
+    the state. ``looks`` counts the edges that searches have looked at.
     """
 
     def __init__(self, leaving: Sequence[Sequence[tuple[int, int]]]) -> None:
@@ -31,7 +33,10 @@ class Nearest:
         self._find_components()
 
     def _find_components(self) -> None:
-        """Count what each strongly connected component can hope for: its wanted edges, and ways to others with hope."""
+        """Count the hopes of each strongly connected component.
+
+        These are its wanted edges, and its edges to other components with hopes.
+        """
         for group in components(range(len(self._leaving)), self._targets.__getitem__):
             number = len(self._hopes)
             for state in group:
@@ -47,7 +52,10 @@ class Nearest:
                         self._hopes[number] += 1
 
     def take(self, start: int) -> tuple[int, ...]:
-        """The edges of a way from a state whose last edge was wanted and no longer is; empty where there is none."""
+        """Return the edges of a path from a state to a wanted edge, which is then no longer wanted.
+
+        The path ends with the wanted edge. It is empty if no wanted edge can be reached.
+        """
         if not self._has_hope(start):
             return ()
         states = [start]
@@ -66,7 +74,7 @@ class Nearest:
         return (*(self._leaving[state][self._next[state]][0] for state in states[:-1]), last)
 
     def _nearer(self, state: int) -> int | None:
-        """The target of the first edge that may lead nearer, None where none does."""
+        """Return the target of the first edge that may lead nearer, or None if no edge does."""
         targets, bound = self._targets[state], self._bound[state]
         for place in range(self._next[state], len(targets)):
             self.looks += 1
@@ -80,7 +88,10 @@ class Nearest:
         return self._hopes[self._component[state]] > 0
 
     def _lose_hope(self, component: int) -> None:
-        """Count one hope of a component less; one without any is a hope less to those that lead to it."""
+        """Remove one hope of a component.
+
+        If none is left, each component that leads to it loses a hope, too.
+        """
         lost = [component]
         while lost:
             number = lost.pop()

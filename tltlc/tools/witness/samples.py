@@ -1,7 +1,7 @@
-"""From letters to samples: values of signals that give atoms a truth, found by a search of bounded work.
+"""Find samples for letters: values of signals that give atoms the wanted truth values.
 
-Atoms that share no signal are searched for apart (:mod:`tltlc.tools.witness.search`).  That nothing is found proves
-nothing.
+The search does a bounded amount of work. Atoms that share no signal are searched separately
+(:mod:`tltlc.tools.witness.search`). If nothing is found, that proves nothing.
 """
 
 from __future__ import annotations
@@ -20,34 +20,35 @@ if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
 
 Sample = dict[str, float]
-"""Values of all signals of an automaton by name, in SI units; of a bool, 0 or 1."""
+"""The values of all signals of an automaton by name, in SI units; 0 or 1 for a bool."""
 
 
 @record
 class Obstacle:
-    """Why there is no sample: literals, as few as were found, whose truth nothing was found to give together.
+    """The reason why there is no sample: literals that no sample was found to make true together.
 
-    ``literals`` are indices into the atoms, with the polarity that is asked for.
+    ``literals`` are indices of atoms with the wanted truth value. There are as few as could be
+    found.
     """
 
     literals: Implicant
 
     def text(self, fspa: Fspa) -> str:
-        """Such as ```near(s1)` and not `near(s1, close=3)```."""
-        said = [f"{'' if holds else 'not '}`{fspa.atoms[atom].name}`" for atom, holds in self.literals]
-        return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+        """Return the literals in words, such as ```near(s1)` and not `near(s1, close=3)```."""
+        terms = [f"{'' if holds else 'not '}`{fspa.atoms[atom].name}`" for atom, holds in self.literals]
+        return terms[0] if len(terms) == 1 else f"{', '.join(terms[:-1])} and {terms[-1]}"
 
 
 @record
 class Unrealised:
-    """The first step of a trace, from 1, for which no sample was found, and why."""
+    """The first step of a trace, from 1, for which no sample was found, and the reason."""
 
     step: int
     obstacle: Obstacle
 
 
 class Realiser:
-    """Finds samples for an automaton, with its params at their values; remembers what it found."""
+    """Finds samples for an automaton with its params at their values, and caches them."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
@@ -56,26 +57,32 @@ class Realiser:
         self._known: dict[Implicant, Sample | Obstacle] = {}
 
     def letter(self, letter: Letter) -> Sample | Obstacle:
-        """A sample at which the atoms of a letter hold, and no others."""
+        """Return a sample at which exactly the atoms of a letter hold."""
         return self.literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
 
     def literals(self, wanted: Implicant) -> Sample | Obstacle:
-        """A sample at which the literals are true; other atoms do not hold where that can be had."""
+        """Return a sample at which the literals are true.
+
+        Other atoms do not hold if possible.
+        """
         if wanted not in self._known:
             self._known[wanted] = self._found(wanted)
         return self._known[wanted]
 
     def obstacles(self, letter: Letter) -> tuple[Obstacle, ...]:
-        """Why there is no such sample, of all atoms that share signals at once; none where there is one."""
-        found = self.letter(letter)
-        if not isinstance(found, Obstacle):
+        """Return why a letter has no sample; empty if it has one.
+
+        There is an obstacle for each group of atoms that share signals and have no solution.
+        """
+        sample = self.letter(letter)
+        if not isinstance(sample, Obstacle):
             return ()
         polarity = {i: atom.name in letter for i, atom in enumerate(self._fspa.atoms)}
         points = [_point(group, polarity) for group in self._groups]
-        return tuple(each for each in points if isinstance(each, Obstacle)) or (found,)
+        return tuple(point for point in points if isinstance(point, Obstacle)) or (sample,)
 
     def letter_of(self, sample: Mapping[str, float]) -> Letter:
-        """The letter that a sample is."""
+        """Return the letter of a sample."""
         return self._letter(self._samples.atom_values(sample, 1))
 
     def _letter(self, values: tuple[float, ...]) -> Letter:
@@ -97,19 +104,22 @@ class Realiser:
 
 
 def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[Sample, ...] | Unrealised:
-    """The samples of a trace of letters, or its first letter for which there is none."""
+    """Return the samples of a trace of letters, or the first letter without a sample."""
     realiser = Realiser(fspa)
-    found: list[Sample] = []
+    trace_samples: list[Sample] = []
     for step, letter in enumerate(letters, start=1):
         sample = realiser.letter(letter)
         if isinstance(sample, Obstacle):
             return Unrealised(step, sample)
-        found.append(sample)
-    return tuple(found)
+        trace_samples.append(sample)
+    return tuple(trace_samples)
 
 
 def csv_text(fspa: Fspa, samples: Iterable[Sample]) -> str:
-    """The samples as a trace that ``tltlc monitor`` and generated monitors take: CSV under the names of the signals."""
+    """Return the samples as CSV with the names of the signals as columns.
+
+    ``tltlc monitor`` and generated monitors accept this format.
+    """
     import csv
     import io
 
@@ -128,14 +138,17 @@ def _cell(signal: Signal, value: float) -> str:
 
 
 def _point(group: Group, polarity: Mapping[int, bool]) -> Point | Obstacle:
-    """Values of a group's signals at which its atoms are as asked for; the others do not hold where that can be had."""
-    asked = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
-    point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(asked)
-    return Obstacle(_least(asked, group)) if point is None else point
+    """Return values of a group's signals at which its atoms have the wanted truth values.
+
+    Atoms without a wanted truth value do not hold if possible.
+    """
+    wanted = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
+    point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(wanted)
+    return Obstacle(_least(wanted, group)) if point is None else point
 
 
 def _least(literals: Implicant, group: Group) -> Implicant:
-    """Literals for which nothing is found, without those that need not be among them."""
+    """Return literals for which nothing is found, without those that are not needed."""
     for literal in literals:
         fewer = tuple(other for other in literals if other != literal)
         if fewer and group.find(fewer) is None:

@@ -1,4 +1,7 @@
-"""The search for points at which atoms have a truth: simple points, points between borders, then a climb."""
+"""Search for points at which atoms have wanted truth values.
+
+The search tries simple points, then points between the borders of atoms, and then climbs.
+"""
 
 from __future__ import annotations
 
@@ -21,24 +24,27 @@ from tltlc.resolve.spec import Signal
 Point = Mapping[str, float]
 
 Candidate = tuple[Point, tuple[float, ...]]
-"""A point, and the values of the atoms there."""
+"""A point with the values of the atoms at it."""
 
 _CLEAR = 0.05
-"""A point this far inside is taken at once: the first such point is the simplest."""
+"""A point with this margin is taken at once. The first such point is the simplest."""
 _STARTS = 3
 _ROUNDS = 100
 _HALVINGS = 60
 _FAR = tuple(
     sign * size for size in (1e9, 1e12, 1e20, 1e50, 1e100, 1e200, 1e300, 1e308, float_info.max) for sign in (1.0, -1.0)
 )
-"""Where simple points do not lead, along a signal without a range."""
+"""Values along a signal without a range, tried if simple points lead nowhere."""
 _LARGE = 1e6
-"""From here on, halving a range of values would take too long to find their size."""
+"""From this size on, plain bisection would take too long to find the order of magnitude."""
 _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
 
 
 class Group:
-    """Atoms that share signals, directly or through others; ``atoms`` are indices, and so are those in literals."""
+    """Atoms that share signals, directly or through other atoms.
+
+    ``atoms`` and the literals use indices into the atoms of the automaton.
+    """
 
     def __init__(self, fspa: Fspa, atoms: Sequence[int], signals: Sequence[Signal]) -> None:
         self.atoms = tuple(atoms)
@@ -54,23 +60,29 @@ class Group:
         self._known: dict[Implicant, Point | None] = {}
 
     def find(self, literals: Implicant) -> Point | None:
-        """Values of the group's signals at which the literals are true, and no two exclusive atoms of the group."""
+        """Return signal values at which the literals are true, or None.
+
+        No two exclusive atoms of the group hold there.
+        """
         if literals not in self._known:
             self._known[literals] = self._find(literals)
         return self._known[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """The best of the simple candidates, else what a climb from them finds, else the best of very large values."""
+        """Return a point at which the literals are true, or None.
+
+        It is the best simple candidate, else the result of a climb, else the best far candidate.
+        """
         inside = self._best(self._candidates, literals)
         if inside is not None:
             return inside
         outside = [(self._margin(values, literals), point) for point, values in self._candidates]
-        starts = sorted(outside, key=lambda each: -each[0])[:_STARTS]
-        climbed = next((found for _, start in starts if (found := self._climb(start, literals))), None)
+        starts = sorted(outside, key=lambda candidate: -candidate[0])[:_STARTS]
+        climbed = next((end for _, start in starts if (end := self._climb(start, literals))), None)
         return climbed or self._best(self._far_candidates, literals)
 
     def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
-        """The first candidate that is clearly inside, else the one furthest inside."""
+        """Return the first candidate that is clearly inside, else the one furthest inside."""
         inside: list[tuple[float, Point]] = []
         for point, values in candidates:
             if self._are_true(values, literals):
@@ -78,15 +90,15 @@ class Group:
                 if margin >= _CLEAR:
                     return point
                 inside.append((margin, point))
-        return max(inside, key=lambda each: each[0])[1] if inside else None
+        return max(inside, key=lambda candidate: candidate[0])[1] if inside else None
 
     # --- truth ------------------------------------------------------------------------------------
 
     def _values(self, point: Point) -> tuple[float, ...] | None:
-        """The values of the atoms, None where one has none."""
-        given = [point[name] for name in self._names]
+        """Return the values of the atoms, or None if one of them has no value."""
+        inputs = [point[name] for name in self._names]
         try:
-            values = tuple([function(given) for function in self._functions])
+            values = tuple([function(inputs) for function in self._functions])
         except _UNDEFINED:
             return None
         return values if all(map(isfinite, values)) else None
@@ -112,14 +124,14 @@ class Group:
 
     @cached_property
     def _simple(self) -> list[Point]:
-        """Simple points; none where there are no signals."""
+        """Simple points; empty if there are no signals."""
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
         return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
 
     def _points(self) -> Iterator[Point]:
-        """Simple points, then points between the borders of atoms along each signal."""
+        """Yield simple points, then points between the borders of atoms along each signal."""
         yield from self._simple
         for name in self._names:
             if name not in self._bools and self._simple:
@@ -127,7 +139,7 @@ class Group:
                 yield from self._between_borders(self._simple[0], name, ladder)
 
     def _far_points(self) -> Iterator[Point]:
-        """Points along each signal whose range has no end there, up to the largest numbers."""
+        """Yield points along each signal whose range is unbounded, up to the largest numbers."""
         for name in self._names:
             low, high = self._ranges[name]
             far = [value for value in _FAR if low <= value <= high]
@@ -138,7 +150,10 @@ class Group:
             yield from self._between_borders(self._simple[0], name, ladder)
 
     def _between_borders(self, start: Point, name: str, ladder: Sequence[float]) -> Iterator[Point]:
-        """Both sides of each border of an atom along one signal, and the middles between one border and the next."""
+        """Yield points around the borders of atoms along one signal.
+
+        These are both sides of each border, and the middles between one border and the next.
+        """
         borders: list[float] = []
         for index in range(len(self._functions)):
             signs = [self._sign({**start, name: value}, index) for value in ladder]
@@ -150,7 +165,7 @@ class Group:
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
-        """Two values, next to each other or nearly so, between which an atom's truth changes."""
+        """Return two values, adjacent or nearly so, between which an atom's truth changes."""
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
             middle = _middle(low, high)
@@ -168,7 +183,10 @@ class Group:
         return value > 0.0
 
     def _climb(self, start: Point, literals: Implicant) -> Point | None:
-        """A point where the literals are true, by steps along the signals: longer ones after one that helps."""
+        """Return a point where the literals are true, or None.
+
+        The climb takes steps along the signals. After a step that helps, the next one is longer.
+        """
         goals = [goal for literal in literals for goal in self._slopes(literal)]
         best, lack = dict(start), self._lack(start, goals)
         sides = {name: side for name, side in self._ranges.items() if name not in self._bools}
@@ -187,26 +205,32 @@ class Group:
         return None
 
     def _lack(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
-        """By how much, in all, a point misses what is to be positive or not to be."""
-        given = [point[name] for name in self._names]
+        """Return by how much, in total, a point misses the wanted signs."""
+        inputs = [point[name] for name in self._names]
         try:
-            # Beyond the border, where an atom has the value 0 and does not hold.
-            return sum(max(0.0, _CLEAR + (-goal(given) if holds else goal(given))) for goal, holds in goals)
+            # Aim beyond the border: at the border the value is 0 and the atom does not hold.
+            return sum(max(0.0, _CLEAR + (-goal(inputs) if holds else goal(inputs))) for goal, holds in goals)
         except _UNDEFINED:
             return inf
 
     def _slopes(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
-        """What is to be positive, or not, for a literal to be true, without the plateaus that `clamp` makes."""
+        """Return the functions that decide whether a literal is true.
+
+        Each comes with whether it must be positive. They leave out the plateaus that `clamp` makes.
+        """
         if literal not in self._goals:
             atom, holds = literal
             parts = list(_slopes(self._expressions[self._place[atom]], holds))
-            functions = compile_expressions([each for each, _ in parts], self._names, self._params)
+            functions = compile_expressions([expression for expression, _ in parts], self._names, self._params)
             self._goals[literal] = [(function, part[1]) for function, part in zip(functions, parts, strict=True)]
         return self._goals[literal]
 
 
 def _middle(low: float, high: float) -> float:
-    """The middle of two numbers; of large ones of different sizes, the one whose size lies between theirs."""
+    """Return the middle of two numbers.
+
+    For large numbers of different sizes, this is their geometric mean.
+    """
     least, most = sorted((abs(low), abs(high)))
     if (low > 0) != (high > 0) or least < _LARGE or most / least < 4:
         return midpoint(low, high)
@@ -214,7 +238,10 @@ def _middle(low: float, high: float) -> float:
 
 
 def _slopes(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
-    """The parts of an expression that decide its sign, each with the sign that it is to have."""
+    """Yield the parts of an expression that decide its sign.
+
+    Each comes with whether it must be positive.
+    """
     stack = [(expression, holds)]
     while stack:
         node, holds = stack.pop()
@@ -233,22 +260,22 @@ def _is_positive(node: Expression) -> bool:
 
 
 def groups(fspa: Fspa) -> tuple[Group, ...]:
-    """The atoms of an automaton in groups that share no signal, in the order of the atoms."""
+    """Return the atoms of an automaton in groups that share no signal, in order of the atoms."""
     used = [_signals(atom.expression) for atom in fspa.atoms]
-    found: list[tuple[list[int], set[str]]] = []
+    merged: list[tuple[list[int], set[str]]] = []
     for index, names in enumerate(used):
         joined: tuple[list[int], set[str]] = ([index], set(names))
         apart = []
-        for other in found:
+        for other in merged:
             if other[1] & joined[1]:
                 joined = ([*other[0], *joined[0]], other[1] | joined[1])
             else:
                 apart.append(other)
-        found = [*apart, joined]
-    found.sort(key=lambda each: min(each[0]))
+        merged = [*apart, joined]
+    merged.sort(key=lambda group: min(group[0]))
     signals = fspa.signals
     return tuple(
-        Group(fspa, sorted(atoms), [signal for signal in signals if signal.name in names]) for atoms, names in found
+        Group(fspa, sorted(atoms), [signal for signal in signals if signal.name in names]) for atoms, names in merged
     )
 
 

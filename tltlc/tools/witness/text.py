@@ -1,4 +1,4 @@
-"""Witnesses as text: ``test`` blocks and CSV, each run by the monitor before it is given out."""
+"""Write witnesses as ``test`` blocks and CSV. The monitor runs each one before it is returned."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from tltlc.tools.witness.traces import Witness
 
 
 def as_test(fspa: Fspa, witness: Witness, title: str, blocks: Blocks | None = None) -> str:
-    """A ``test`` block that passes: what is said at the end, and in a cover's trace behind each new change of state.
+    """Return a ``test`` block that passes.
 
-    ``blocks`` writes several of one automaton, in fewer steps than apart.
+    It expects what the monitor reports at the end and, in a trace of a cover, after each new change
+    of state. ``blocks`` writes several blocks of one automaton in fewer steps.
 
     Raises:
         ValueError: the spec has no atoms.
@@ -26,14 +27,15 @@ def as_test(fspa: Fspa, witness: Witness, title: str, blocks: Blocks | None = No
     edges = [fspa.edges[move.edge] for move in witness.moves]
     changes = [number for number in witness.news if edges[number - 1].source != edges[number - 1].target]
     block = blocks.block(title, letters, blocks.expectations(letters, {*changes, len(letters)}))
-    said = cycle_text(witness)
-    return f"// {said[0].upper()}{said[1:]}.\n{block}" if said else block
+    caption = cycle_text(witness)
+    return f"// {caption[0].upper()}{caption[1:]}.\n{block}" if caption else block
 
 
 def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
-    """A trace of samples, the cycle of an infinite one once, that takes the edges which it should.
+    """Return a trace of samples that takes the edges of the witness; a cycle is taken once.
 
-    ``monitor`` runs several traces of one automaton; making one takes a look at every edge.
+    Pass ``monitor`` to share one monitor between several traces of an automaton: making one visits
+    every edge.
     """
     text = csv_text(fspa, witness.samples)
     monitor = Monitor(fspa) if monitor is None else monitor
@@ -44,7 +46,7 @@ def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
 
 
 def cycle_text(witness: Witness) -> str:
-    """Which steps of an infinite trace repeat; empty where none do."""
+    """Return which steps of an infinite trace repeat; empty if none do."""
     if witness.cycle is None:
         return ""
     first, last = witness.cycle + 1, len(witness.moves)

@@ -1,4 +1,4 @@
-"""Shortest traces that a spec accepts and rejects, as samples of its signals."""
+"""Find shortest traces that a spec accepts and rejects, as samples of its signals."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ Kind = Literal["accepting", "rejecting", "cover"]
 
 @record
 class Witness:
-    """A trace: its moves, of which those from ``cycle`` on repeat for ever; None over finite traces.
+    """A trace, as a sequence of moves.
 
-    ``news`` are the steps of a cover's trace, from 1, whose edge no step before them takes, in this trace or another.
+    The moves from index ``cycle`` on repeat for ever. ``cycle`` is None over finite traces.
+    ``news`` are the steps of a cover's trace, from 1, that are the first of the whole cover to take
+    their edge.
     """
 
     kind: Kind
@@ -30,20 +32,22 @@ class Witness:
 
     @property
     def letters(self) -> tuple[Letter, ...]:
-        """The letters, the cycle once."""
+        """The letters, with the cycle once."""
         return tuple(move.letter for move in self.moves)
 
     @property
     def samples(self) -> tuple[Sample, ...]:
-        """The samples, the cycle once."""
+        """The samples, with the cycle once."""
         return tuple(move.sample for move in self.moves)
 
 
 def accepting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """A shortest trace of samples that is accepted; over infinite traces any one. None where there is none.
+    """Return a shortest trace of samples that is accepted, or None if there is none.
+
+    Over infinite traces it is any accepted trace.
 
     Raises:
-        OutOfWork: over infinite traces, where the search takes more than ``work`` steps.
+        OutOfWork: over infinite traces, the search takes more than ``work`` steps.
     """
     fspa = moves.fspa
     if fspa.semantics == "infinite":
@@ -52,9 +56,10 @@ def accepting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def rejecting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """A shortest trace of samples after which nothing can be accepted; where there is none, a shortest rejected one.
+    """Return a shortest trace of samples after which success is no longer possible.
 
-    Over infinite traces any one of the latter, and errors as of :func:`accepting`.
+    If there is none, return a shortest rejected trace. Over infinite traces this is any rejected
+    trace. Errors are as in :func:`accepting`.
     """
     fspa = moves.fspa
     broken = _to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
@@ -64,21 +69,24 @@ def rejecting(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def _to(moves: Moves, kind: Kind, is_wanted: list[bool]) -> Witness | None:
-    """A shortest trace to one of the states that are wanted."""
+    """Return a shortest trace to one of the wanted states."""
     edges = moves.fspa.edges
     way = moves.way(0, lambda edge: is_wanted[edges[edge].target])
     return None if way is None else Witness(kind, way)
 
 
 def _for_ever(moves: Moves, trace: Witness) -> Witness | None:
-    """The trace, which ends in a trap, with what stays there as its cycle."""
+    """Return the trace, which ends in a trap, with a loop in the trap as its cycle."""
     trap = moves.fspa.edges[trace.moves[-1].edge].target
     loop = moves.way(trap, lambda edge: moves.fspa.edges[edge].target == trap)
     return None if loop is None else Witness(trace.kind, (*trace.moves, *loop), len(trace.moves))
 
 
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
-    """A lasso of the edges that samples take: the others are closed one by one as they come up."""
+    """Return a lasso of edges that samples take.
+
+    Edges that no sample takes are closed one by one as they are found.
+    """
     from tltlc.automaton.compare import separating
 
     everything = _constant(moves.fspa, accepts=True)
@@ -91,28 +99,30 @@ def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> 
         if trace is None:
             return None
         edges = _edges(moves.fspa, (*trace.prefix, *trace.cycle))
-        taken = [moves.move(edge) for edge in edges]
-        missing = {edge for edge, move in zip(edges, taken, strict=True) if move is None}
+        edge_moves = [moves.move(edge) for edge in edges]
+        missing = {edge for edge, move in zip(edges, edge_moves, strict=True) if move is None}
         if not missing:
-            return Witness(kind, tuple(move for move in taken if move is not None), len(trace.prefix))
+            return Witness(kind, tuple(move for move in edge_moves if move is not None), len(trace.prefix))
         closed |= missing
 
 
 def _edges(fspa: Fspa, letters: tuple[Letter, ...]) -> list[int]:
-    """The edges that a trace takes."""
-    state, found = 0, []
+    """Return the edges that a trace takes."""
+    state, indices = 0, []
     for letter in letters:
         holds = [atom.name in letter for atom in fspa.atoms]
         for index, edge in enumerate(fspa.edges):
-            if edge.source == state and any(all(holds[a] == p for a, p in prime) for prime in edge.guard.primes):
-                found.append(index)
+            if edge.source == state and any(
+                all(holds[atom] == polarity for atom, polarity in prime) for prime in edge.guard.primes
+            ):
+                indices.append(index)
                 state = edge.target
                 break
-    return found
+    return indices
 
 
 def _constant(fspa: Fspa, accepts: bool) -> Fspa:
-    """An automaton over the same atoms that accepts every infinite trace, or none."""
+    """Return an automaton over the same atoms that accepts every infinite trace, or none."""
     state = replace(fspa.states[0], id=0)
     edge = Edge(0, 0, replace(fspa.edges[0].guard, text="true", primes=((),)))
     pairs = (Pair((), (0,)),) if accepts else ()
@@ -120,7 +130,10 @@ def _constant(fspa: Fspa, accepts: bool) -> Fspa:
 
 
 def _without(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
-    """The automaton with some edges led to a state of its own, from which on everything is accepted, or nothing is."""
+    """Return the automaton with the closed edges redirected to a new state.
+
+    From that state on, everything is accepted, or nothing is.
+    """
     if not closed:
         return fspa
     sink = len(fspa.states)
@@ -128,7 +141,10 @@ def _without(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
     edges = [replace(edge, target=sink) if index in closed else edge for index, edge in enumerate(fspa.edges)]
     loop = Edge(sink, sink, replace(fspa.edges[0].guard, text="true", primes=((),)))
     pairs = [
-        Pair(tuple(e for e in pair.fin if e not in closed), tuple(e for e in pair.inf if e not in closed))
+        Pair(
+            tuple(edge_index for edge_index in pair.fin if edge_index not in closed),
+            tuple(edge_index for edge_index in pair.inf if edge_index not in closed),
+        )
         for pair in fspa.acceptance
     ]
     if accepts:

@@ -1,4 +1,4 @@
-"""The edges of an automaton that samples can take: each with the letter and the sample that take it."""
+"""Find the edges of an automaton that samples can take, each with a letter and a sample."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
 
 _MOST_PRIMES = 500
-"""Of a guard, which are tried."""
+"""The most primes of a guard that are tried."""
 
 
 @record
 class Move:
-    """An edge, by its index, taken by a sample; ``prime`` is what of the letter makes it so."""
+    """An edge, by index, with a sample that takes it.
+
+    ``prime`` is the prime of the edge's guard that the sample satisfies.
+    """
 
     edge: int
     prime: Implicant
@@ -29,25 +32,28 @@ class Move:
 
 
 class Moves:
-    """What can be done in each state of an automaton; edges are looked at when they are asked for."""
+    """The possible moves in each state of an automaton. Edges are examined on demand."""
 
     def __init__(self, fspa: Fspa) -> None:
         self.fspa = fspa
         self.obstacles: dict[int, tuple[Obstacle, ...]] = {}
-        """Of each edge that was asked for and that no sample was found to take, what stands in the way."""
+        """For each examined edge that no sample was found to take, the obstacles."""
         self._realiser = Realiser(fspa)
         self._known: dict[int, Move | None] = {}
 
     @cached_property
     def leaving(self) -> tuple[tuple[int, ...], ...]:
-        """Of each state the edges that leave it, by their indices."""
-        found: list[list[int]] = [[] for _ in self.fspa.states]
+        """For each state, the indices of the edges that leave it."""
+        leaving: list[list[int]] = [[] for _ in self.fspa.states]
         for index, edge in enumerate(self.fspa.edges):
-            found[edge.source].append(index)
-        return tuple(map(tuple, found))
+            leaving[edge.source].append(index)
+        return tuple(map(tuple, leaving))
 
     def move(self, edge: int) -> Move | None:
-        """The simplest sample that takes an edge: by its first prime, in order, for which there is one."""
+        """Return the simplest sample that takes an edge, or None.
+
+        It satisfies the first prime of the guard, in order, for which a sample is found.
+        """
         if edge not in self._known:
             self._known[edge] = self._found(edge)
         return self._known[edge]
@@ -63,12 +69,15 @@ class Moves:
         return None
 
     def way(self, start: int, is_last: Callable[[int], bool]) -> tuple[Move, ...] | None:
-        """The moves of a shortest way from a state whose last edge, by its index, is wanted; at least one."""
+        """Return the moves of a shortest path from a state to a wanted last edge, or None.
+
+        ``is_last`` decides by index which edges are wanted. The path has at least one move.
+        """
         before: dict[int, tuple[int, Move] | None] = {start: None}
         queue = deque([start])
         while queue:
             state = queue.popleft()
-            # An edge that is wanted is taken before those that only lead on.
+            # Wanted edges are checked before edges that only lead on.
             for edge in self.leaving[state]:
                 if is_last(edge) and (move := self.move(edge)) is not None:
                     return (*_moves_to(state, before), move)
@@ -81,8 +90,8 @@ class Moves:
 
 
 def _moves_to(state: int, before: dict[int, tuple[int, Move] | None]) -> tuple[Move, ...]:
-    found: list[Move] = []
+    moves: list[Move] = []
     while (step := before[state]) is not None:
         state, move = step
-        found.append(move)
-    return tuple(reversed(found))
+        moves.append(move)
+    return tuple(reversed(moves))
