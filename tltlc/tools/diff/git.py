@@ -299,9 +299,9 @@ def _suggestion(repository: Path, revision: str) -> str:
     return "`git log` and `git tag` list revisions"
 
 
-def _too_large(revision: str, what: str) -> TltlError:
+def _too_large(revision: str, contents: str) -> TltlError:
     help_ = "take out the part to compare, and name its folder: `--against DIR`"
-    return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` holds {what}", help=help_)])
+    return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` holds {contents}", help=help_)])
 
 
 def no_version(title: str, suggestion: str) -> TltlError:

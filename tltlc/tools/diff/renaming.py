@@ -21,12 +21,12 @@ def with_names_of(old: Fspa, new: Fspa) -> Fspa:
     An atom counts as renamed if its expression is the same except for the names of params.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
-    gone: dict[object, str] = {}
+    removed: dict[object, str] = {}
     for atom in old.atoms:
         if atom.name not in new_names:
-            gone.setdefault(_form(atom.expression, old), atom.name)
+            removed.setdefault(_form(atom.expression, old), atom.name)
     atoms = tuple(
-        atom if atom.name in names else replace(atom, name=gone.pop(_form(atom.expression, new), atom.name))
+        atom if atom.name in names else replace(atom, name=removed.pop(_form(atom.expression, new), atom.name))
         for atom in new.atoms
     )
     return replace(new, atoms=atoms)

@@ -94,10 +94,10 @@ def apart(one: Meaning, other: Meaning) -> Apart | None:
     values = [Const(param.value) for param in (*one.params, *other.params)]
     fallback: Apart | None = None
     for point in points(Op("+", (one.expression, other.expression, *values)), box, bools):
-        here = _at({variable.name: value for variable, value in point.items()}, one, other)
-        if here is not None and here.is_judged_otherwise:
-            return _shortened(here, one, other, box)
-        fallback = fallback or here
+        difference = _at({variable.name: value for variable, value in point.items()}, one, other)
+        if difference is not None and difference.is_judged_otherwise:
+            return _shortened(difference, one, other, box)
+        fallback = fallback or difference
     return fallback and _shortened(fallback, one, other, box)
 
 
@@ -128,18 +128,18 @@ def _shortened(difference: Apart, one: Meaning, other: Meaning, box: Box) -> Apa
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}
         is_inside = all(low <= sample[node.name] <= high for node, (low, high) in box.items())
-        here = _at(sample, one, other) if is_inside else None
-        if here is not None and here.is_judged_otherwise == difference.is_judged_otherwise:
-            return here
+        shorter = _at(sample, one, other) if is_inside else None
+        if shorter is not None and shorter.is_judged_otherwise == difference.is_judged_otherwise:
+            return shorter
     return difference
 
 
 def _at(sample: Mapping[str, float], one: Meaning, other: Meaning) -> Apart | None:
     (first, why), (second, why_other) = one.at(sample), other.at(sample)
-    here = Apart(tuple(sample.items()), (first, second), (why, why_other))
+    difference = Apart(tuple(sample.items()), (first, second), (why, why_other))
     if first is None or second is None:
-        return None if first is second else here
-    return here if here.is_judged_otherwise or abs(first - second) > _ROUNDING else None
+        return None if first is second else difference
+    return difference if difference.is_judged_otherwise or abs(first - second) > _ROUNDING else None
 
 
 def _is_computed_alike(one: Meaning, other: Meaning) -> bool:

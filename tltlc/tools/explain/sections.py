@@ -98,8 +98,8 @@ def _failure(failure: Failure) -> str:
     if failure.everywhere:
         return f"{failure.when}, at any step"
     numbers = [str(state) for state in failure.states[:_MOST_STATES]]
-    more = ", …" if len(failure.states) > _MOST_STATES else ""
-    return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{more}"
+    ellipsis = ", …" if len(failure.states) > _MOST_STATES else ""
+    return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{ellipsis}"
 
 
 def _states(explained: Explanation) -> tuple[str | Table, ...]:

@@ -51,8 +51,8 @@ class Blocks:
         letters must respect the spec's ``exclusive`` groups.
 
         Raises:
-            ValueError: there is no letter or no expectation, or the spec has no atoms, so it can have
-                no test.
+            ValueError: there is no letter or no expectation, or the spec has no atoms, so it can
+                have no test.
         """
         steps = list(enumerate(letters, start=1))
         if not self._spec.atoms or not steps or not any(expects.get(number) for number, _ in steps):
