@@ -1,4 +1,4 @@
-"""A file at one time, ready to be compared with itself at another."""
+"""Build the version of a file that ``tltlc breaking`` compares."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def of_specs(program: Program, automata: tuple[Fspa, ...]) -> Version:
-    """The version of a compiled source."""
+    """Return the version of a compiled source."""
     return Version(automata, {spec.name: Label(spec.source, spec.name_span) for spec in program.specs})
 
 
 def of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
-    """The version of an artefact, which messages point into at the name of its spec."""
+    """Return the version of an artefact; messages point at the name of its spec."""
     from tltlc.artefact.locations import span_of
 
     source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
@@ -30,7 +30,7 @@ def of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
 
 
 def of_library(path: str, library_dirs: tuple[Path, ...], params: Mapping[str, str]) -> Version:
-    """The version of a source that compiles and has no specs."""
+    """Return the version of a source that compiles and has no specs."""
     from tltlc.grammar.parser import parse
     from tltlc.resolve.options import ResolveOptions
     from tltlc.resolve.program import resolution
@@ -38,5 +38,5 @@ def of_library(path: str, library_dirs: tuple[Path, ...], params: Mapping[str, s
     from tltlc.tools.diff.rules import rules
 
     module, _ = parse(read_source(path))
-    found = resolution(module, ResolveOptions(library_dirs=library_dirs, params=params))
-    return Version(offers=offers(found.env), rules=rules(module, found.program))
+    resolved = resolution(module, ResolveOptions(library_dirs=library_dirs, params=params))
+    return Version(offers=offers(resolved.env), rules=rules(module, resolved.program))

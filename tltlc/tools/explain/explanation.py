@@ -212,7 +212,7 @@ def _found(moves: Moves, accept: bool) -> Witness | None:
 
 
 def _way(fspa: Fspa, witness: Witness | None) -> Way | None:
-    """The witness in words, with steps in a row that say the same as one."""
+    """Return the witness in words; consecutive steps with the same text are one step."""
     if witness is None:
         return None
     steps: list[WayStep] = []

@@ -65,7 +65,7 @@ def words(path: str, text: str) -> Words:
 
 
 def used_elsewhere(path: str, others: Iterable[Words]) -> Container[str]:
-    """Return every name in those of the other files that import this one.
+    """Return every name in those ``others`` that import this file.
 
     This includes files that import it through others. Files with the same name in different folders
     are not distinguished, so the result may have names that are not really used from this file.

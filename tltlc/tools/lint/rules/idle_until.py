@@ -27,7 +27,7 @@ def check(view: View) -> Iterator[Remark]:
             label = Label(value.source, part.tree.span, f"this is `{clause.kind} {goal.text}` and no more")
             suggestion = f"say `require {operand(before)} until {operand(goal)}`"
             if clause.kind == "avoid":
-                # A forbidden b does not have to occur.
+                # `avoid` does not require its second formula to occur, hence `weak_until`.
                 suggestion = f"say `require (not {operand(before)}) weak_until {operand(goal)}`"
             if earlier:
                 suggestion = f"say `{operand(value.at(earlier[-1]))} and ({part.text})`, which counts from there on"
