@@ -12,7 +12,7 @@ from tltlc.tools.lint.rule import Remark, Rule
 def check(view: View) -> Iterator[Remark]:
     """Yield a remark for each spec that is judged at its limit without a clause that says so."""
     for spec in view.specs:
-        # Specs without a limit have a remark of their own, and settled specs a warning of the compiler.
+        # A block without a limit gets TLT0419 instead, and a settled spec gets a warning of the compiler.
         has_other_remark = spec.is_settled or spec.spec.limit_steps is None
         if _is_judged_at_limit(spec) and spec.spec.judge is None and not has_other_remark:
             label = spec.name_label("it rewards lasting: progress is the share of its limit that has passed")
