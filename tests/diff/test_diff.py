@@ -31,7 +31,7 @@ from tltlc.tools.diff.traces import block, told
 
 GOLDEN = Path(__file__).parent / "golden"
 CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
-SCHEMA = json.loads((ROOT / "tltlc/diff/diff.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((ROOT / "tltlc/tools/diff/diff.schema.json").read_text(encoding="utf-8"))
 SMALL = formulas(atoms=("a", "b"), max_leaves=4)
 Run = Callable[..., Outcome]
 

@@ -38,7 +38,7 @@ Run = Callable[..., Outcome]
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
 GOLDEN = Path(__file__).parent / "golden"
-SCHEMA = json.loads((ROOT / "tltlc/explain/explain.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((ROOT / "tltlc/tools/explain/explain.schema.json").read_text(encoding="utf-8"))
 FORMULAS = formulas(atoms=("a", "b", "c"), max_leaves=5)
 
 

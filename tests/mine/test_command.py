@@ -22,7 +22,7 @@ SPEC = Planted(
     ("reach near(s1) then near(s2) then near(exit)", "keep alive"),
     {"near(s1)": 0.1, "near(s2)": 0.1, "near(exit)": 0.1, "alive": 0.985, "seen": 0.3},
 )
-SCHEMA = json.loads((ROOT / "tltlc/mine/mine.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((ROOT / "tltlc/tools/mine/mine.schema.json").read_text(encoding="utf-8"))
 DECLARED = """\
 signal alive: bool
 signal seen: bool
