@@ -1,1 +1,1 @@
-"""Formulas become automata: diagrams, minimal machines, guards, distances, labels."""
+"""Automata from formulas: diagrams, minimal machines, guards, distances and labels."""

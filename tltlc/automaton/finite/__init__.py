@@ -1,1 +1,1 @@
-"""From a spec over finite traces to its minimal automaton."""
+"""Build the minimal automaton of a spec over finite traces."""

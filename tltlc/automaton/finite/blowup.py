@@ -1,4 +1,4 @@
-"""When an automaton outgrows its budget: which part of the spec is to blame."""
+"""Find the part of a spec that makes its automaton outgrow the budget."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from tltlc.resolve.spec import Part, Spec
 ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
 _RECURSION_ROOM = 10_000
 _PART_BUDGET = 2_000
-"""States tried for one part alone: enough to rank the parts, small enough to answer soon."""
+"""The state budget of one part alone: enough to rank the parts, small enough for a quick answer."""
 
 
 class Size(NamedTuple):
-    """How large the automaton of a part alone is: a number by which parts are compared, and words."""
+    """The size of a part's own automaton: a number to compare parts by, and its text in messages."""
 
     number: int
     words: str
@@ -32,7 +32,7 @@ class Size(NamedTuple):
 
 @contextmanager
 def recursion_room() -> Iterator[None]:
-    """Room for diagrams as deep as a spec has atoms and temporal subformulas; restored afterwards."""
+    """Raise Python's recursion limit for a while: diagrams are as deep as a spec has atoms and temporal subformulas."""
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(max(before, _RECURSION_ROOM))
     try:
@@ -42,24 +42,24 @@ def recursion_room() -> Iterator[None]:
 
 
 def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
-    """The error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
+    """Return the error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else why(reason)
     left = WORK["states of blamed parts"]
 
     def size(part: Part, spec: Spec) -> Size | None:
         nonlocal left
         if left < 0:
-            # The parts that were looked at are more than a message names.
+            # The parts measured so far are more than a message names.
             return Size(0, "")
-        found = _size(part, spec)
-        left -= found.number if found else 0
-        return found
+        measured = _size(part, spec)
+        left -= measured.number if measured else 0
+        return measured
 
     return blamed(spec, reason, too_large, size)
 
 
 def why(reason: Exception) -> str:
-    """What is the matter with the automaton where no budget of states or work is spent."""
+    """Say why the automaton failed when it was not the budget of states or work that ran out."""
     if isinstance(reason, LabelsTooLong):
         return f"needs labels of more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
@@ -68,27 +68,29 @@ def why(reason: Exception) -> str:
 def blamed(
     spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, Spec], Size | None], advice: str = ADVICE
 ) -> TltlError:
-    """The error, with the parts of the spec whose own automata are largest.
+    """Return the error, labelled with the parts of the spec whose own automata are largest.
 
-    ``too_large`` says what is the matter with the automaton where it is none of its guards; ``size`` is None of a part
-    that is too large alone.
+    ``too_large`` says why the automaton failed if its guards are not the reason.  ``size`` returns
+    None for a part that is too large alone.
     """
     sizes: dict[Part, Size | None] = {}
     alone: list[Part] = []
     for part in spec.parts:
         sizes[part] = size(part, spec)
         if sizes[part] is None:
-            # The first part that is too large alone is the one to blame.
+            # Blame the first part that is too large alone.
             alone.append(part)
             break
-    worst = sorted(((part, found) for part, found in sizes.items() if found), key=lambda each: -each[1].number)
+    worst = sorted(
+        ((part, measured) for part, measured in sizes.items() if measured), key=lambda sized: -sized[1].number
+    )
     if not sizes:
         labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
     elif alone or len(spec.parts) == 1:
         labels = (_cause(next(iter(alone or sizes))),)
     else:
         labels = tuple(
-            Label(part.source, part.span, f"{found.words} alone; the parts multiply") for part, found in worst[:3]
+            Label(part.source, part.span, f"{measured.words} alone; the parts multiply") for part, measured in worst[:3]
         )
     if isinstance(reason, TooManyPrimes):
         return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _fewer_guards(spec, reason))])
@@ -97,10 +99,10 @@ def blamed(
 
 
 def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
-    """What makes guards smaller, or fewer."""
+    """Suggest how to make the guards smaller or fewer."""
     pairs = sum(len(group) * (len(group) - 1) // 2 for group in spec.exclusive)
     if reason.whose == "a guard" and 2 * pairs > reason.limit:
-        # The guard is computed over these pairs, too.
+        # Prime implicants are computed of `guard or not D`, and `not D` has one for each pair.
         return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
     if reason.whose == "a guard":
         return "split the spec, or name the condition as a predicate"
@@ -109,7 +111,10 @@ def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
 
 
 def _cause(part: Part) -> Label:
-    """The part's longest bound, where it has one: a bound of n samples may have to be remembered n times over."""
+    """Label the part's longest bound, or the part if it has none.
+
+    An automaton may have to remember a bound of n samples n times over.
+    """
     bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
     if bound is None:
         return Label(part.source, part.span, "it is this part")
@@ -117,7 +122,7 @@ def _cause(part: Part) -> Label:
 
 
 def _size(part: Part, spec: Spec) -> Size | None:
-    """The states of one part's automaton, None for :data:`_PART_BUDGET` and more."""
+    """Return how many states one part's automaton has; None for :data:`_PART_BUDGET` or more."""
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], Diagrams(step_limit=100_000))
     successors.number_variables(normal)

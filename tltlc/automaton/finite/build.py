@@ -1,4 +1,4 @@
-"""From a resolved specification to its automaton: the stages of this package in order.
+"""Build the automaton of a resolved spec: run the stages of this package in order.
 
 formula -> normal form -> minimal machine -> states with acceptance -> distances, verdicts, guards,
 labels -> :class:`~tltlc.automaton.fspa.Fspa`.
@@ -30,15 +30,15 @@ from tltlc.resolve.spec import Atom, Signal, Spec
 DEFAULT_STATE_BUDGET = 50_000
 
 _LONGEST_IN_ENGLISH = 2_000
-"""Characters of a formula above which no sentence would be read."""
+"""Formulas with more characters get no English sentence: it would be too long to read."""
 
 
 def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
-    """The minimal complete automaton of a specification over finite traces (semantics, section 3).
+    """Return the minimal complete automaton of a spec over finite traces (semantics, section 3).
 
-    Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where more than ``state_budget``
-    states are needed on the way, or labels get too long, TLT0502 where there are too many edges or prime
-    implicants; both name the part of the spec that is to blame.
+    Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the construction needs more
+    than ``state_budget`` states or the labels get too long, TLT0502 if there are too many edges or
+    prime implicants.  Both name the part of the spec that is to blame.
     """
     with recursion_room():
         try:
@@ -54,7 +54,7 @@ def minimal_machine(
     exclusive: Iterable[Sequence[int]] = (),
     diagrams: Diagrams | None = None,
 ) -> tuple[Successors, Machine, int]:
-    """The minimal machine of a formula, with the tables it lives in and the letters that ``exclusive`` allows."""
+    """Return the tables of a formula's minimal machine, the machine, and the letters that ``exclusive`` allows."""
     normal = negation_normal_form(formula)
     diagrams = Diagrams() if diagrams is None else diagrams
     successors = Successors(atoms, diagrams)
@@ -64,7 +64,7 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
-    """The automaton, by way of another order of the atoms where theirs makes large diagrams."""
+    """Build the automaton; use another order of the atoms if the given order makes large diagrams."""
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     if order is None:
         return _built(spec, state_budget)
@@ -75,7 +75,11 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
 
 
 def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
-    """The automaton; raises :class:`OutOfSteps` where machine or guards take more than so many steps, if any."""
+    """Build the automaton in the given order of atoms.
+
+    Raises :class:`OutOfSteps` if the machine or the guards take more than ``steps`` steps (None:
+    the default limit).
+    """
     names = [atom.name for atom in spec.atoms]
     diagrams = Diagrams()
 
@@ -124,7 +128,7 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
 
 
 def allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:
-    """The letters with at most one atom of each group, as a transition to ``ACCEPT`` or ``REJECT``."""
+    """Return the letters with at most one atom of each group, as a transition to ``ACCEPT`` or ``REJECT``."""
     allowed = ACCEPT
     for group in exclusive:
         none, at_most_one = ACCEPT, ACCEPT
@@ -136,14 +140,14 @@ def allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> i
 
 
 # --- states ---------------------------------------------------------------------------------------
-# A state is a leaf: what remains, and whether the trace may end here.
+# A state is a leaf: the obligation that remains, and whether the trace may end here.
 
 
 def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
-    """The states of the automaton, the initial one first.
+    """Return the states of the automaton, the initial one first.
 
-    No trace is empty, so the initial state may accept or not: it is shared with a state that is
-    reached, the rejecting one where both are.
+    No trace is empty, so the initial state may accept or reject.  It is merged with the leaf of its
+    obligation that is reached; if both leaves are reached, or none, it is the rejecting one.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf(minimal.initial, 0), diagrams.leaf(minimal.initial, 1)
@@ -152,23 +156,26 @@ def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
 
 
 def _targets(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
-    """The states that each state leads to, the initial state first; one edge goes to each.
+    """Map each state, the initial one first, to the states that it leads to, with one edge to each.
 
-    Raises :class:`TooManyPrimes` where these are more edges than a spec may have.
+    Raises :class:`TooManyPrimes` if there are more edges than the row "edges" of ``WORK`` allows.
     """
-    found: dict[int, list[int]] = {}
+    targets: dict[int, list[int]] = {}
     left = WORK["edges"]
     for leaf in state_leaves(minimal, diagrams):
         reached = diagrams.leaves(minimal.transitions[diagrams.low[leaf]])
-        found[leaf] = [target for target in reached if target != IMPOSSIBLE]
-        left -= len(found[leaf])
+        targets[leaf] = [target for target in reached if target != IMPOSSIBLE]
+        left -= len(targets[leaf])
         if left < 0:
             raise TooManyPrimes("the automaton", WORK["edges"], "edges")
-    return found
+    return targets
 
 
 def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
-    """The least number of transitions to an accepting state, None for traps: backward breadth-first search."""
+    """Return the least number of transitions from each state to an accepting state, None for traps.
+
+    Searches backward, breadth-first.
+    """
     sources: dict[int, list[int]] = {state: [] for state in targets}
     for state, successors in targets.items():
         for target in successors:
@@ -186,7 +193,7 @@ def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]
 
 
 def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
-    """The states breadth-first; of several successors those nearer to acceptance first, traps last."""
+    """Return the states in breadth-first order; a state's successors are sorted by distance, traps last."""
     position = {state: index for index, state in enumerate(targets)}
 
     def rank(state: int) -> tuple[bool, int, int]:
@@ -206,7 +213,11 @@ def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapp
 def verdicts(
     targets: Mapping[int, list[int]], distance: Mapping[int, int | None], accepting: Callable[[int], bool]
 ) -> dict[int, Verdict]:
-    """``satisfied`` where no rejecting state is in reach, ``violated`` where no accepting one is."""
+    """Return the verdict of each state.
+
+    ``satisfied`` if no rejecting state can be reached, ``violated`` if no accepting state can be
+    reached, else ``holding`` for accepting states and ``pending`` for rejecting ones.
+    """
     to_rejection = distances(targets, lambda state: not accepting(state))
 
     def verdict(state: int) -> Verdict:
@@ -237,9 +248,10 @@ def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Dia
 def _labels(
     source: Formula, successors: Successors, minimal: Machine, order: Sequence[int], allowed: int
 ) -> dict[int, Text]:
-    """The label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
+    """Return the label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
 
-    Raises :class:`LabelsTooLong` where they have more nodes together than the row "label nodes" of ``WORK`` allows.
+    Raises :class:`LabelsTooLong` if all labels together have more nodes than the row "label nodes"
+    of ``WORK`` allows.
     """
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
@@ -258,10 +270,10 @@ def _labels(
 
 
 def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formula]:
-    """The parts of the source that are ``->`` or ``<->``, by their normal form.
+    """Map the normal form of each ``->`` and ``<->`` in the source to the formula as written.
 
-    Parts that nobody reads are left out, and the largest parts where all have more nodes than the row "arrow nodes" of
-    ``WORK``.
+    Leaves out parts that are too long to read.  If the others together have more nodes than the row
+    "arrow nodes" of ``WORK`` allows, the largest are left out too.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
     left = WORK["arrow nodes"]
@@ -275,21 +287,29 @@ def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formu
 
 
 def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
-    """The formula with every part that the source wrote with ``->`` or ``<->`` written so again."""
+    """Return the formula with every part that the source writes with ``->`` or ``<->`` written that way.
+
+    ``restored`` maps formulas to their results; it starts with the parts of the source, and results
+    are added to it.
+    """
     for node in formula.bottom_up(known=restored):
         restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
     return restored[formula]
 
 
 def text_of(formula: Formula) -> Text:
-    """A formula in the three notations."""
+    """Return a formula in the three notations."""
     plain = ascii_text(formula)
     english = english_text(formula) if len(plain) <= _LONGEST_IN_ENGLISH else f"Satisfy {plain}."
     return Text(plain, unicode_text(formula), english)
 
 
 def _at_the_end(label: Text, accepting: bool) -> Text:
-    """The label, where acceptance hangs on whether the trace ends here: ``X`` and ``N`` leave such states."""
+    """Return the label of a state, with its own sentence if acceptance depends on whether the trace ends here.
+
+    ``X`` leaves a state with label ``true`` that rejects; ``N`` leaves one with label ``false``
+    that accepts.
+    """
     if label.ascii == "true" and not accepting:
         return Text(label.ascii, label.unicode, "The trace must go on for one more step.")
     if label.ascii == "false" and accepting:
@@ -301,7 +321,7 @@ def _at_the_end(label: Text, accepting: bool) -> Text:
 
 
 def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[Iterable[str]] = ()) -> Spec:
-    """A spec over free atoms: each is a signal of the same name in [-1, 1], and its own robustness."""
+    """Return a spec whose atoms are signals: each has the atom's name, range [-1, 1], and is its own robustness."""
     groups = [tuple(group) for group in exclusive]
     names = tuple(dict.fromkeys((*formula.atoms(), *(atom for group in groups for atom in group))))
     return Spec(

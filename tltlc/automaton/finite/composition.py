@@ -1,8 +1,11 @@
-"""Large conjunctions and disjunctions part by part: build each, minimise, multiply the smallest two, and so on.
+"""Build large conjunctions and disjunctions part by part.
 
-Exploring a formula as a whole meets every combination of what its parts may still ask for, also
-those that minimisation would merge at once.  Specifications of game play are small enough for that;
-random conjunctions of dozens of clauses are not.
+Each part gets its own minimal machine.  Then the two smallest machines are multiplied and minimised
+until one is left.
+
+Exploring a formula as a whole visits every combination of the parts' obligations, even those that
+minimisation would merge at once.  Rules of games are small enough for that; random conjunctions of
+dozens of clauses are not.
 """
 
 from __future__ import annotations
@@ -17,21 +20,21 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
 WHOLE_STEPS = 5_000
-"""Steps that exploration as a whole may take before the parts are tried: a few thousandths of a second."""
+"""Steps that exploring the whole formula may take before the parts are tried: a few milliseconds."""
 
 
 def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
-    """The minimal machine of a formula in negation normal form, as a whole where that is cheap, else by parts.
+    """Return the minimal machine of a formula in negation normal form: as a whole if that is cheap, else by parts.
 
-    Raises as :func:`tltlc.automaton.finite.machine.machine` does, and :class:`OutOfStates` where all parts and
-    products together need more states than the row "states of parts" of :data:`~tltlc.io.limits.WORK`, or three times
-    the budget.
+    Raises the errors of :func:`tltlc.automaton.finite.machine.machine`, and :class:`OutOfStates` if
+    all parts and products together need more states than both the row "states of parts" of
+    :data:`~tltlc.io.limits.WORK` and three times the budget.
     """
     return _Composition(successors, state_budget, allowed).minimal(formula)
 
 
 class _Composition:
-    """Makes the machine of one formula; counts the states of all machines on the way to it."""
+    """Builds the machine of one formula; counts the states of all intermediate machines."""
 
     def __init__(self, successors: Successors, state_budget: int, allowed: int) -> None:
         self._successors = successors
@@ -53,9 +56,9 @@ class _Composition:
     def _machine(self, obligation: int) -> Machine:
         if self._left < 0:
             raise OutOfStates
-        made = machine(self._successors, obligation, self._state_budget, self._allowed)
-        self._left -= len(made.representative)
-        return made
+        minimal = machine(self._successors, obligation, self._state_budget, self._allowed)
+        self._left -= len(minimal.representative)
+        return minimal
 
     def _by_parts(self, formula: Formula) -> Machine:
         diagrams = self._successors.diagrams
@@ -63,27 +66,27 @@ class _Composition:
         machines = [self.minimal(part) for part in formula.args]
         if self._estimate.exceeds(machines, formula.op == "and", self._state_budget):
             raise OutOfStates
-        # The running number breaks ties, so that the order is the same everywhere.
-        heap = [(len(made.transitions), number, made) for number, made in enumerate(machines)]
+        # The running number breaks ties, so that the order is deterministic.
+        heap = [(len(minimal.transitions), number, minimal) for number, minimal in enumerate(machines)]
         heapify(heap)
         number = len(heap)
         while len(heap) > 1:
             (_, _, left), (_, _, right) = heappop(heap), heappop(heap)
-            made = self._machine(join(_embedded(self._successors, left), _embedded(self._successors, right)))
-            heappush(heap, (len(made.transitions), number, made))
+            minimal = self._machine(join(_embedded(self._successors, left), _embedded(self._successors, right)))
+            heappush(heap, (len(minimal.transitions), number, minimal))
             number += 1
         return heap[0][2]
 
 
-def _embedded(successors: Successors, made: Machine) -> int:
-    """An obligation for the machine's initial state: each state becomes a variable with a known transition."""
+def _embedded(successors: Successors, minimal: Machine) -> int:
+    """Return an obligation for the machine's initial state: each state becomes a variable with a known transition."""
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}
-    for state, transition in made.transitions.items():
+    for state, transition in minimal.transitions.items():
         settled = _settled(diagrams, state, transition)
         obligations[state] = successors.new_state(state) if settled is None else settled
     memo = {IMPOSSIBLE: IMPOSSIBLE}
-    for state, transition in made.transitions.items():
+    for state, transition in minimal.transitions.items():
         if obligations[state] not in (FALSE, TRUE):
             successors.define_state(
                 obligations[state],
@@ -93,12 +96,12 @@ def _embedded(successors: Successors, made: Machine) -> int:
                     memo,
                 ),
             )
-    return obligations[made.initial]
+    return obligations[minimal.initial]
 
 
 def _settled(diagrams: Diagrams, state: int, transition: int) -> int | None:
-    """TRUE or FALSE for a state that every possible letter leaves as it is, None for the others."""
-    # The letter without any atom is always possible: where it leads elsewhere, the rest need not be looked at.
+    """Return TRUE or FALSE for a state that every possible letter leads back to, None for the others."""
+    # The empty letter is always possible: if it leads elsewhere, the other letters do not matter.
     leaf = transition
     while diagrams.atom[leaf] != LEAF:
         leaf = diagrams.low[leaf]

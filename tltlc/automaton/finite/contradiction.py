@@ -1,4 +1,4 @@
-"""Which parts of a specification contradict each other, where no trace satisfies it."""
+"""Find the parts of an unsatisfiable spec that contradict each other."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from tltlc.resolve.spec import Part, Spec
 _MOST_PARTS = 40
 _STATES = 1_000
 _STEPS = 50_000
-"""Above these, parts are not told apart: a warning must not take longer than the compilation."""
+"""Limits of the search, above which it gives up: a warning must not take longer than the compilation."""
 
 
 Decision = Callable[[Sequence[Part], Spec], bool]
-"""Whether it is shown that no trace satisfies all of the parts."""
+"""Whether it can be proved that no trace satisfies all of the parts."""
 
 
 def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Part, ...]:
-    """Parts of an unsatisfiable spec that are unsatisfiable together, none of which could be left out.
+    """Return parts of an unsatisfiable spec that contradict each other and are all needed for that.
 
-    ``decision`` decides it, by default over finite traces.  Where the work gets too much, parts may be among them
-    that could.
+    ``decision`` decides whether parts contradict each other, by default over finite traces.  If
+    that takes too much work, some of the parts returned may not be needed.
     """
     decision = decision or unsatisfiable
     needed = list(spec.parts)
     for part in spec.parts if len(spec.parts) <= _MOST_PARTS else ():
-        others = [other for other in needed if other is not part]
-        if others and decision(others, spec):
-            needed = others
+        without_part = [other for other in needed if other is not part]
+        if without_part and decision(without_part, spec):
+            needed = without_part
     return tuple(needed)
 
 
 def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
-    """Whether it is shown that no finite trace satisfies all of the parts."""
+    """Whether it can be proved, within the limits, that no finite trace satisfies all of the parts."""
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]
     try:
@@ -46,6 +46,6 @@ def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
     except (OutOfStates, OutOfSteps, RecursionError):
         return False
     diagrams = successors.diagrams
-    # All that rejects is one state of a minimal machine: a trap that no possible letter leaves or accepts in.
+    # The minimal machine of `false` has one state: a trap that no possible letter leaves or accepts in.
     leaves = [leaf for leaf in diagrams.leaves(*machine.transitions.values()) if leaf != IMPOSSIBLE]
     return len(machine.transitions) == 1 and not any(diagrams.high[leaf] for leaf in leaves)

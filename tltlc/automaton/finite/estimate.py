@@ -1,10 +1,13 @@
-"""Tell early that a large conjunction or disjunction needs more states than its budget.
+"""Prove early that a large conjunction or disjunction needs more states than its budget.
 
-Two states differ where some word is accepted from one of them alone. So the states of the minimal machine are at
-least as many as there are different answers of the reached states to a list of words. Each part answers for itself:
-a conjunction accepts what all of its parts accept, a disjunction what one of them accepts.
+Two states differ if some word is accepted from one of them and not from the other.  Take a list of
+words, and for each reached state the set of these words that it accepts, its answer.  The minimal
+machine has at least as many states as there are different answers.  Each part computes its own
+answer: a conjunction accepts the words that all parts accept, a disjunction the words that at least
+one part accepts.
 
-Letters here have one atom or none. Others could only add states, so a count that is over the budget is right.
+The words use only letters with at most one atom.  Other letters could only add states, so a count
+over the budget is a proof.
 """
 
 from __future__ import annotations
@@ -19,21 +22,21 @@ from tltlc.automaton.diagrams import IMPOSSIBLE, LEAF, Diagrams
 from tltlc.automaton.finite.machine import Machine
 
 _NONE: Final = -1
-"""The letter without an atom; others are the indices of their atoms."""
+"""The letter without an atom; every other letter is the index of its atom."""
 _FEW: Final = 500
-"""After so many states at least half of them must have answers of their own, or else the words are too few."""
+"""The count gives up if, after more states than this, less than half of the answers are distinct."""
 
 Word = list[int]
 _Table = dict[int, dict[int, tuple[int, int]]]
-"""By letter and state: the state that the letter leads to, and 1 where the trace may end with it, else 0."""
+"""By letter and state: the state that the letter leads to, and 1 if the trace may end with it, else 0."""
 
 
 class _OutOfSteps(Exception):
-    """Raised when the count has taken all of its steps."""
+    """Raised when the count has used up its steps."""
 
 
 class Estimate:
-    """Counts states of products; ``steps`` bounds the look-ups of all counts together."""
+    """Counts the states of products; ``steps`` bounds the look-ups of all counts together."""
 
     def __init__(self, diagrams: Diagrams, steps: int) -> None:
         self._diagrams = diagrams
@@ -43,9 +46,9 @@ class Estimate:
     def exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
         """Whether the conjunction, or disjunction, of the machines certainly has more than ``budget`` states.
 
-        False where that is unknown: after the steps, or where the words do not tell enough states apart.
+        False also if that is unknown: the steps ran out, or the words tell too few states apart.
         """
-        if prod(len(made.transitions) for made in machines) <= budget:
+        if prod(len(machine.transitions) for machine in machines) <= budget:
             return False
         try:
             return self._exceeds(machines, conjunction, budget)
@@ -53,20 +56,22 @@ class Estimate:
             return False
 
     def _exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
-        tables = [self._table(made) for made in machines]
+        tables = [self._table(machine) for machine in machines]
         if any(_NONE not in table for table in tables):
             return False
-        words = _words([_settling(made, table, conjunction) for made, table in zip(machines, tables, strict=True)])
-        self._take(sum(map(len, words)) * sum(len(made.transitions) for made in machines))
+        words = _words(
+            [_settling(machine, table, conjunction) for machine, table in zip(machines, tables, strict=True)]
+        )
+        self._take(sum(map(len, words)) * sum(len(machine.transitions) for machine in machines))
         answers = [_answers(table, words) for table in tables]
-        found = set()
-        reached = self._reached([made.initial for made in machines], tables)
+        distinct = set()
+        reached = self._reached([machine.initial for machine in machines], tables)
         for count, states in enumerate(reached, 1):
-            own = [of_state[state] for of_state, state in zip(answers, states, strict=True)]
-            found.add(reduce(and_ if conjunction else or_, own))
-            if len(found) > budget:
+            part_answers = [of_state[state] for of_state, state in zip(answers, states, strict=True)]
+            distinct.add(reduce(and_ if conjunction else or_, part_answers))
+            if len(distinct) > budget:
                 return True
-            if count > _FEW and 2 * len(found) < count:
+            if count > _FEW and 2 * len(distinct) < count:
                 return False
         return False
 
@@ -75,46 +80,46 @@ class Estimate:
         if self._left < 0:
             raise _OutOfSteps
 
-    def _table(self, made: Machine) -> _Table:
-        """The moves of a machine, for the letters that ``exclusive`` allows."""
+    def _table(self, machine: Machine) -> _Table:
+        """Return the moves of a machine, for the letters that ``exclusive`` allows."""
         low, high = self._diagrams.low, self._diagrams.high
-        leaves = {state: self._leaves(transition) for state, transition in made.transitions.items()}
+        leaves = {state: self._leaves(transition) for state, transition in machine.transitions.items()}
         letters = sorted(set().union(*leaves.values()))
         self._take(len(letters) * len(leaves))
         table: _Table = {}
         for letter in letters:
             reached = {state: of_state.get(letter, of_state[_NONE]) for state, of_state in leaves.items()}
-            # The same letters are impossible for all machines.
+            # Impossible letters are left out; they are the same for all machines.
             if IMPOSSIBLE not in reached.values():
                 table[letter] = {state: (low[leaf], high[leaf]) for state, leaf in reached.items()}
         return table
 
     def _leaves(self, node: int) -> dict[int, int]:
-        """The leaf that each letter leads to from a transition; letters that are left out lead where ``_NONE`` does."""
+        """Map letters to the leaves of a transition; a missing letter leads to the leaf of ``_NONE``."""
         atom, low, high = self._diagrams.atom, self._diagrams.low, self._diagrams.high
-        found = {}
+        leaves = {}
         while atom[node] != LEAF:
             self._take(1)
-            found[atom[node]] = self._without_atoms(high[node])
+            leaves[atom[node]] = self._without_atoms(high[node])
             node = low[node]
-        return {_NONE: node, **found}
+        return {_NONE: node, **leaves}
 
     def _without_atoms(self, node: int) -> int:
-        """The leaf that no further atom leads to; remembered for all nodes on the way."""
+        """Return the leaf below a node for the letter without further atoms; cached for all nodes on the path."""
         atom, low, known = self._diagrams.atom, self._diagrams.low, self._known
-        way = []
+        path = []
         while node not in known and atom[node] != LEAF:
-            way.append(node)
+            path.append(node)
             node = low[node]
-        self._take(len(way))
+        self._take(len(path))
         leaf = known.get(node, node)
-        known.update(dict.fromkeys(way, leaf))
+        known.update(dict.fromkeys(path, leaf))
         return leaf
 
     def _reached(self, initial: Sequence[int], tables: Sequence[_Table]) -> Iterator[tuple[int, ...]]:
-        """The states of the product that words reach, breadth first, each with a state of every machine."""
+        """Yield the reachable states of the product, breadth-first: tuples with one state of each machine."""
         letters = sorted({letter for table in tables for letter in table} - {_NONE})
-        # Only these machines see the letter: for the others it is like that without an atom.
+        # The machines that distinguish a letter from the empty letter, each with its moves.
         seeing = {
             letter: [
                 (place, moves)
@@ -140,10 +145,13 @@ class Estimate:
             self._take(len(base) + sum(map(len, seeing.values())) + len(letters))
 
 
-def _settling(made: Machine, table: _Table, accepting: bool) -> Word | None:
-    """A shortest word that a machine accepts, or one that it rejects; None where there is none of such letters."""
-    queue: list[tuple[int, Word]] = [(made.initial, [])]
-    seen = {made.initial}
+def _settling(machine: Machine, table: _Table, accepting: bool) -> Word | None:
+    """Return a shortest word that a machine accepts or, if not ``accepting``, rejects.
+
+    None if no word over the letters of the table does.
+    """
+    queue: list[tuple[int, Word]] = [(machine.initial, [])]
+    seen = {machine.initial}
     for state, word in queue:
         for letter, moves in table.items():
             following, accepted = moves[state]
@@ -156,20 +164,25 @@ def _settling(made: Machine, table: _Table, accepting: bool) -> Word | None:
 
 
 def _words(settling: Sequence[Word | None]) -> list[Word]:
-    """Words that settle all machines but one, each with all ends of the word that settles that one."""
+    """Return words that leave the answer to one machine at a time.
+
+    ``settling`` has one word for each machine: for a conjunction one that it accepts, for a
+    disjunction one that it rejects.  For each machine, the words of all the others come first,
+    followed by every suffix of its own word.
+    """
     if None in settling:
         return []
-    own = [word for word in settling if word is not None]
-    found = []
-    for place, last in enumerate(own):
-        others = [letter for word in (*own[:place], *own[place + 1 :]) for letter in word]
-        found += [others + last[start:] for start in range(1, len(last) + 1)]
-    return found
+    settled = [word for word in settling if word is not None]
+    words = []
+    for place, last in enumerate(settled):
+        prefix = [letter for word in (*settled[:place], *settled[place + 1 :]) for letter in word]
+        words += [prefix + last[start:] for start in range(1, len(last) + 1)]
+    return words
 
 
 def _answers(table: _Table, words: Sequence[Word]) -> dict[int, int]:
-    """For each state of a machine which of the words it accepts, as bits."""
-    found = {}
+    """Return for each state of a machine the words that it accepts, as a bit set."""
+    answers = {}
     for start in table[_NONE]:
         bits = 0
         for number, word in enumerate(words):
@@ -177,5 +190,5 @@ def _answers(table: _Table, words: Sequence[Word]) -> dict[int, int]:
             for letter in word:
                 state, accepted = table.get(letter, table[_NONE])[state]
             bits |= accepted << number
-        found[start] = bits
-    return found
+        answers[start] = bits
+    return answers

@@ -1,8 +1,9 @@
-"""What remains to be done in a state, as a formula as short as can be proved.
+"""Label each state with a short formula that says what remains to be done there.
 
-From a state's obligation the temporal subformulas go that the automaton proves to be idle there.  What is left
-is written back as a formula, the named rewrites shorten it, and then every operand of an ``and`` or
-``or`` is tried: it goes where the automaton proves that the language stays the same without it.
+First the temporal subformulas are removed from the state's obligation that, by a proof on the
+automaton, make no difference there.  The rest is written back as a formula, and the named rewrites
+shorten it.  Then each operand of an ``and`` or ``or`` is tried: it is removed if the automaton
+proves that the language stays the same without it.
 """
 
 from __future__ import annotations
@@ -18,28 +19,32 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.rewrite import simplify
 
 _MEMBERS = 6
+"""A state stands for several obligations; at most this many, the smallest, are written as formulas."""
 _CANDIDATES = 3
-"""Of the smallest obligations that a state stands for, as many are written out, and of these as many shortened."""
+"""Of these formulas at most this many, the smallest, are shortened."""
 
 LONGEST_SIMPLIFIED = 200
+"""Labels with more nodes are not rewritten: they are too long to read."""
 _LONGEST_PROVED = 60
-"""Labels with more nodes than that are not rewritten, or not tried operand by operand: nobody reads them."""
+"""Labels with more nodes are not shortened operand by operand."""
 
 _PROOF_STEPS = 2_000
+"""A proof fails after this many steps of the diagrams."""
 _PROOF_PAIRS = 100
+"""A proof fails after this many pairs of an obligation and a state."""
 _COST_OF_GIVING_UP = 30
-"""A proof is given up after so many steps or pairs of states, and then counts as so many more."""
+"""How much a proof that ran into one of these limits costs, in proofs."""
 
 
 class LabelsTooLong(Exception):
-    """Raised when all labels together have more operators and atoms than anything could show."""
+    """Raised when all labels together have more operators and atoms than the row "label nodes" of ``WORK`` allows."""
 
 
 class Labels:
     """The labels of one machine's states.
 
-    ``work`` bounds the proofs tried for all labels together; when it is spent, labels stay as they
-    are.  A count and not a clock, so that equal input gives equal output.
+    ``work`` bounds the proofs tried for all labels together; when it is used up, the other labels
+    are not shortened.  It is a count and not a time, so that equal input gives equal output.
     """
 
     __slots__ = (
@@ -72,7 +77,7 @@ class Labels:
             self._members.setdefault(state, []).append(obligation)
 
     def label(self, state: int) -> Formula:
-        """The shortest label found for a state of the machine, in negation normal form."""
+        """Return the shortest label found for a state of the machine, in negation normal form."""
         members = self._members[state]
         if len(members) == 1 and (bound := self._writer.long_bound(members[0])) is not None:
             return self.simplified(bound)
@@ -83,13 +88,16 @@ class Labels:
         return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
 
     def size(self, formula: Formula) -> int:
-        """The number of nodes of the formula as it is written; remembered, since labels share their parts."""
+        """Return the number of nodes of the formula's text; cached, since labels share parts."""
         for node in formula.bottom_up(known=self._sizes):
             self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
         return self._sizes[formula]
 
     def _needed(self, obligation: int, state: int) -> int:
-        """The obligation without the variables that make no difference to its language, the largest tried first."""
+        """Return the obligation without the variables that make no difference to its language.
+
+        The variable with the largest formula is tried first.
+        """
         if obligation in (FALSE, TRUE):
             return obligation
         obligation = self._writer.without_shorter_bounds(obligation)
@@ -109,7 +117,7 @@ class Labels:
         return 0 if formula is None else self.size(formula)
 
     def simplified(self, formula: Formula) -> Formula:
-        """The formula after the named rewrites, unless it is too long for anybody to read."""
+        """Return the formula after the named rewrites; a formula too long to read is returned as it is."""
         return formula if self.size(formula) > LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
 
     def _shortened(self, formula: Formula, state: int) -> Formula:
@@ -128,7 +136,9 @@ class Labels:
         return formula
 
     def _proved(self, label: Formula | int, state: int) -> bool:
-        """Whether a formula or obligation is shown to have the language of a state, within the work that is left."""
+        """Whether a formula or obligation can be proved to have the language of a state, within the
+        work that is left.
+        """
         if self._work <= 0:
             return False
         successors = self._successors
@@ -150,7 +160,7 @@ class Labels:
 
 
 def _with_one_operand_less(formula: Formula) -> Iterator[Formula]:
-    """The formula with one operand of one ``and`` or ``or`` in it left out, for each such operand."""
+    """Yield, for each operand of an ``and`` or ``or`` anywhere in the formula, the formula without that operand."""
     args = formula.args
     if formula.op in ("and", "or"):
         for index in range(len(args)):

@@ -1,8 +1,9 @@
-"""From a formula to its minimal machine: explore the obligations, then merge those of equal language.
+"""Build the minimal machine of an obligation: explore the obligations, then merge those of equal language.
 
-A machine is a deterministic automaton with acceptance on transitions: its states are obligations
-(what remains after the samples seen), and the leaf that a letter leads to says whether the trace may
-end with that letter.  Acceptance is put on states only at the end (:mod:`tltlc.automaton.finite.build`).
+A machine is a deterministic automaton with acceptance on transitions.  Its states are obligations
+(what remains after the samples so far); the leaf that a letter leads to says whether the trace may
+end with that letter.  :mod:`tltlc.automaton.finite.build` moves acceptance to the states at the
+end.
 """
 
 from __future__ import annotations
@@ -22,9 +23,9 @@ class OutOfStates(Exception):
 class Machine:
     """The minimal machine of an obligation.
 
-    ``transitions`` maps each state, an obligation that stands for all of equal language, to its
-    transition, whose leaves lead to such representatives; the first key is the initial state.
-    ``representative`` maps every obligation that was explored to the state that stands for it.
+    A state is an obligation that represents all obligations of equal language.  ``transitions``
+    maps each state to its transition, whose leaves lead to states; the first key is the initial
+    state. ``representative`` maps every explored obligation to the state that represents it.
     """
 
     initial: int
@@ -33,23 +34,24 @@ class Machine:
 
 
 def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
-    """The minimal machine of an obligation over the letters that ``allowed`` (see ``Diagrams.constrain``) accepts.
+    """Return the minimal machine of an obligation over the letters that ``allowed`` accepts.
 
-    Raises :class:`OutOfStates` where more than ``state_budget`` obligations are reached and
-    :class:`OutOfSteps` where their transitions take too many steps.
+    ``allowed`` is a transition as in :meth:`Diagrams.constrain`.  Raises :class:`OutOfStates` if
+    more than ``state_budget`` obligations are reached, and :class:`OutOfSteps` if their transitions
+    take too many steps.
     """
     return minimise(successors, explore(successors, obligation, state_budget, allowed))
 
 
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
-    """The transition of every obligation that can be reached, in breadth-first order, the initial one first."""
+    """Return the transition of every reachable obligation in breadth-first order, the initial one first."""
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
     transition_of = successors.of_obligation
     transitions: dict[int, int] = {}
     seen = {initial}
     queue = [initial]
-    # Transitions share nodes: a node met before has had its leaves queued before.
+    # Transitions share nodes: the leaves below a node that was met before are already queued.
     met = {IMPOSSIBLE}
     for state in queue:
         if len(queue) > state_budget:
@@ -76,9 +78,10 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
 def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
     """Merge obligations of equal language by partition refinement.
 
-    A block splits where the transitions of its members, read up to blocks, differ.  The largest
-    part keeps the block's number, so only what leads into the smaller parts is looked at again:
-    each time that a state moves its block at least halves, as in Hopcroft's algorithm.
+    A block splits if the transitions of its members differ when each leaf is read as the block of
+    its obligation.  The largest part keeps the block's number, so only nodes that lead into the
+    smaller parts are visited again: each time a state moves, its block shrinks to at most half, as
+    in Hopcroft's algorithm.
     """
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
@@ -89,14 +92,14 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
         states_of.setdefault(transition, []).append(state)
     parents, leaves_of = _links(diagrams, states_of)
 
-    # The signature of a node is its diagram with leaves read up to blocks: negative for a leaf, else
+    # The signature of a node identifies its diagram with leaves read as blocks: negative for a leaf, else
     # the number of a triple (atom, signature, signature).
     signature: dict[int, int] = {}
     triples: dict[tuple[int, int, int], int] = {}
     changed = sorted(parents)
     while changed:
         touched: set[int] = set()
-        # A node is made after its children, so that ascending numbers visit children first.
+        # A node is made after its children, so ascending order visits children first.
         for node in changed:
             if atom[node] == LEAF:
                 new = -1 if node == IMPOSSIBLE else -2 - 2 * block[low[node]] - high[node]
@@ -131,19 +134,19 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
 
 
 def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
-    """The nodes and all above them."""
-    found = set(nodes)
-    stack = list(found)
+    """Return the nodes and all nodes above them."""
+    ancestors = set(nodes)
+    stack = list(ancestors)
     while stack:
         for parent in parents[stack.pop()]:
-            if parent not in found:
-                found.add(parent)
+            if parent not in ancestors:
+                ancestors.add(parent)
                 stack.append(parent)
-    return found
+    return ancestors
 
 
 def _links(diagrams: Diagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
-    """The parents of every node under ``roots``, and the leaves that lead to each state."""
+    """Return the parents of every node under ``roots``, and the leaves that lead to each state."""
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
     parents: dict[int, list[int]] = {root: [] for root in roots}
     leaves_of: dict[int, list[int]] = {}
@@ -164,7 +167,7 @@ def _links(diagrams: Diagrams, roots: Iterable[int]) -> tuple[dict[int, list[int
 
 
 def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[list[int]]) -> Machine:
-    """The machine whose states are the blocks, each represented by its member that was reached first."""
+    """Return the machine whose states are the blocks, each represented by the member that was reached first."""
     initial = next(iter(transitions))
     if len(blocks) == len(transitions):
         return Machine(initial, transitions, {state: state for state in transitions})
@@ -201,9 +204,10 @@ def stands_for(
 ) -> bool:
     """Whether an obligation has the language of a state of a minimal machine.
 
-    Reads both in step: since no two states of a minimal machine are equal, each obligation on the way must
-    stand for one state.  ``known`` says for which ones that is settled; what a successful comparison finds
-    is added to it.  Raises :class:`OutOfSteps` after ``pair_limit`` obligations.
+    Reads both in step: no two states of a minimal machine have the same language, so each
+    obligation reached must match exactly one state.  ``known`` maps obligations to the states that
+    they are known to match; a successful comparison adds its matches.  Raises :class:`OutOfSteps`
+    after ``pair_limit`` obligations.
     """
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
@@ -227,11 +231,11 @@ def stands_for(
                     continue
                 if IMPOSSIBLE in (m, n) or high[m] != high[n]:
                     return False
-                found = known.get(low[m], assumed.get(low[m]))
-                if found is None:
+                matched = known.get(low[m], assumed.get(low[m]))
+                if matched is None:
                     assumed[low[m]] = low[n]
                     queue.append(low[m])
-                elif found != low[n]:
+                elif matched != low[n]:
                     return False
                 continue
             lows = (low[m] if am <= an else m, low[n] if an <= am else n)

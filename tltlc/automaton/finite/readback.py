@@ -1,4 +1,4 @@
-"""An obligation written back as a formula: common factors first, operands in source order."""
+"""Write obligations back as formulas: common factors first, operands in source order."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from tltlc.logic.bounded import bounded, counted_down
 from tltlc.logic.formula import Formula
 
 _TERM_LIMIT = 64
-"""Sums of products with more terms are written as nested case distinctions instead."""
+"""Obligations whose sum of products has more terms are written as nested case distinctions."""
 
 _MOST_FACTORED = 40
-"""Obligations over more variables are written out as they are built, without a search for common factors."""
+"""Obligations with more variables are written without a search for common factors in all of them."""
 
 _Term = frozenset[tuple[int, bool]]
 _Placed = tuple[int, Formula]
-"""The place of a formula's first part in the source, and the formula."""
+"""The position of a formula's first part in the source, and the formula."""
 
 
 class Writer:
-    """Writes the obligations of one table; operands stand in the order in which ``source`` has them."""
+    """Writes the obligations of one table as formulas, with operands in the order of ``source``."""
 
     __slots__ = ("_long_bounds", "_position", "_successors", "_sums", "_without_shorter", "_written")
 
@@ -35,18 +35,19 @@ class Writer:
         self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
 
     def formula(self, obligation: int) -> Formula:
-        """The formula of an obligation."""
+        """Return an obligation as a formula."""
         return self._placed(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """The bounded operator of the source that the obligation says, with steps enough that none is shorter to write.
+        """Return the source's long bounded operator with this obligation; None if there is none.
 
-        Looking for parts of each obligation that can go would take n² steps for the n states that count it down.
+        Long means more than :data:`_MOST_FACTORED` steps.  No shorter formula exists, and the
+        search for one would take n² steps for the n states that count the bound down.
         """
         return self._long_bounds.get(obligation)
 
     def support(self, obligation: int) -> list[int]:
-        """The variables that the obligation depends on, ascending."""
+        """Return the variables that the obligation depends on, ascending."""
         diagrams = self._successors.diagrams
         seen, stack = {FALSE, TRUE, obligation}, [obligation]
         variables: set[int] = set()
@@ -62,7 +63,7 @@ class Writer:
         return sorted(variables)
 
     def restricted(self, obligation: int, variables: Collection[int], value: bool) -> int:
-        """The obligation where variables are known to hold, or known not to."""
+        """Return the obligation with all the variables set to ``value``."""
         diagrams = self._successors.diagrams
         last = max(variables)
         memo: dict[int, int] = {}
@@ -82,10 +83,11 @@ class Writer:
         return restrict(obligation)
 
     def without_shorter_bounds(self, obligation: int) -> int:
-        """The obligation with one ``next`` of each bound that is counted down, where that one says all of them.
+        """Return the obligation without the variables of bounds that a longer bound makes redundant.
 
-        The obligation of a longer bound has a variable for each shorter one, by which the two are compared; labels
-        would have to find out of each of these that it can go.
+        The obligation of a bound has a variable for each shorter bound, so that bounds can be
+        compared.  Without this method, labels would have to prove for each of these variables that
+        it can be removed.
         """
         known = self._without_shorter.get(obligation)
         if known is None:
@@ -94,30 +96,30 @@ class Writer:
 
     def _with_longest_bounds(self, obligation: int) -> int:
         diagrams, successors = self._successors.diagrams, self._successors
-        gone: set[int] = set()
+        removed: set[int] = set()
         for variable in self.support(obligation):
             formula = successors.formulas[variable]
-            if formula is None or variable in gone:
+            if formula is None or variable in removed:
                 continue
             shorter = counted_down(formula)
             if shorter is None:
                 continue
-            others = set()
+            shorter_variables = set()
             while shorter is not None:
-                others.add(successors.variable(shorter))
+                shorter_variables.add(successors.variable(shorter))
                 shorter = counted_down(shorter)
-            smaller = self.restricted(obligation, others, formula.args[0].op == "and")
+            smaller = self.restricted(obligation, shorter_variables, formula.args[0].op == "and")
             if smaller == obligation:
                 continue
-            # Obligations grow with their temporal variables.
+            # Obligations are monotone in their temporal variables.
             without, with_ = (self.restricted(smaller, (variable,), value) for value in (False, True))
             if diagrams.either(without, diagrams.both(successors.obligation(formula), with_)) == obligation:
                 obligation = smaller
-                gone |= others
+                removed |= shorter_variables
         return obligation
 
     def _placed(self, obligation: int) -> _Placed:
-        """The place of the formula's first part in the source, and the formula of the obligation."""
+        """Return the obligation as a formula, with the position of its first part in the source."""
         known = self._written.get(obligation)
         if known is None:
             known = self._written[obligation] = self._write(obligation)
@@ -152,7 +154,11 @@ class Writer:
         return _joined(build.or_, [present, self._placed(diagrams.absent[obligation])])
 
     def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
-        """The literals without (for TRUE: with) which the obligation is ``absorbing``, and what is left of it."""
+        """Return the common factors of the obligation, and the obligation without them.
+
+        If ``absorbing`` is FALSE, these are the literals without which the obligation is false; if
+        it is TRUE, the literals with which the obligation is true.
+        """
         factors: list[tuple[int, bool]] = []
         wanted = absorbing == FALSE
         support = self.support(obligation)
@@ -165,26 +171,27 @@ class Writer:
         return factors, obligation
 
     def _independent(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
-        """The literals of an ``and`` (``absorbing`` is FALSE) or ``or`` but those that the obligation of another says.
+        """Return the literals of an ``and`` (``absorbing`` is FALSE) or ``or`` that no other literal makes redundant.
 
-        ``F(a & X F b)`` has the obligation of its own variable and that of ``F b``: it need not be said beside it.
+        The obligation of ``F(a & X F b)`` already contains the variable of ``F b``, so ``F b``
+        beside it is redundant.
         """
         successors = self._successors
-        literals_there = {variable for variable, _ in literals}
-        said: set[int] = set()
+        variables = {variable for variable, _ in literals}
+        redundant: set[int] = set()
         for variable, polarity in literals:
             formula = successors.formulas[variable]
             if polarity and formula is not None and formula.is_temporal:
                 whole = successors.obligation(formula)
-                said.update(
+                redundant.update(
                     other
-                    for other in literals_there.intersection(self.support(whole))
+                    for other in variables.intersection(self.support(whole))
                     if other != variable and self.restricted(whole, (other,), absorbing == TRUE) == absorbing
                 )
-        return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in said)]
+        return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in redundant)]
 
     def _terms(self, obligation: int) -> list[_Term] | None:
-        """A sum of products of the obligation, or None where it has too many terms."""
+        """Return the obligation as a sum of products, or None if it has too many terms."""
         if obligation in self._sums:
             return self._sums[obligation]
         diagrams = self._successors.diagrams
@@ -192,7 +199,7 @@ class Writer:
         absent, present = diagrams.absent[obligation], diagrams.present[obligation]
         shared = diagrams.both(absent, present)
         common, alone = self._terms(shared), self._terms(present)
-        # A temporal variable only ever helps: then `shared` is `absent`, and no term asks for its absence.
+        # If the variable is temporal, the obligation is monotone in it: `shared` is `absent`, and no term negates it.
         without = common if shared == absent else self._terms(absent)
         terms: list[_Term] | None = None
         if common is not None and alone is not None and without is not None:
@@ -215,8 +222,8 @@ class Writer:
 
 
 def _is_long_bound(formula: Formula) -> bool:
-    found = bounded(formula)
-    return found is not None and found.steps > _MOST_FACTORED
+    operator = bounded(formula)
+    return operator is not None and operator.steps > _MOST_FACTORED
 
 
 def _joined(join: Callable[..., Formula], operands: list[_Placed]) -> _Placed:

@@ -1,9 +1,9 @@
-"""One-step semantics: from a formula, or an obligation, to its transition.
+"""Compute the transition of a formula or an obligation: the semantics of one step.
 
-Each temporal operator has a one-line rule, its expansion law on finite traces (semantics, section 2):
-``F p = p | X F p``, ``G p = p & N G p``, ``p U q = q | p & X(p U q)``, ``p W q = q | p & N(p W q)``,
-``p R q = q & (p | N(p R q))``, ``p M q = q & (p | X(p M q))``.  ``X p`` leaves the obligation p and
-rejects where the trace ends, ``N p`` accepts there.
+Each temporal operator has a rule, its expansion law on finite traces (semantics, section 2):
+``F p = p | X F p``, ``G p = p & N G p``, ``p U q = q | p & X(p U q)``,
+``p W q = q | p & N(p W q)``, ``p R q = q & (p | N(p R q))``, ``p M q = q & (p | X(p M q))``.
+``X p`` and ``N p`` leave the obligation p; if the trace ends, ``X p`` rejects and ``N p`` accepts.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from tltlc.logic.formula import Formula
 class Successors:
     """Transitions of formulas in negation normal form and of obligations, over one table of diagrams.
 
-    ``formulas[v]`` is the formula of the obligations' variable ``v``: an atom, or a formula whose
-    outermost operator is temporal; None where the variable is a state of a machine that was built
-    apart, which ``stands_for[v]`` gives back as an obligation.
+    ``formulas[v]`` is the formula of variable ``v``: an atom, or a formula whose outermost operator
+    is temporal.  It is None if the variable stands for a state of a separately built machine; then
+    ``stands_for[v]`` is the obligation that is this state.
     """
 
     __slots__ = (
@@ -47,20 +47,21 @@ class Successors:
         self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
 
     def number_variables(self, formula: Formula) -> None:
-        """Number the temporal subformulas in source order, so that what belongs together is tested together.
+        """Number the temporal subformulas in source order, so that related variables are tested together.
 
-        Obligations of ``G(a -> F b) & G(c -> F d)`` then share their tails, three times fewer steps for six such parts.
+        Obligations of ``G(a -> F b) & G(c -> F d)`` then share their tails: with six such parts, a
+        third of the steps.
         """
         for part in formula.walk():
             if part.is_temporal:
                 self.variable(part)
 
     def obligation(self, formula: Formula) -> int:
-        """The obligation of a formula: its Boolean function over atoms and temporal subformulas."""
+        """Return the obligation of a formula: its Boolean function over atoms and temporal subformulas."""
         known = self._obligation_of.get(formula)
         if known is not None:
             return known
-        # The shortest bound first, so that long ones need no deep stack; variables in source order all the same.
+        # Shortest bound first, so that long bounds need no deep recursion; variables still get numbers in source order.
         chain = [formula, *counted_down_from(formula, self._obligation_of)]
         for bound in chain[:-1]:
             self.variable(bound)
@@ -89,7 +90,7 @@ class Successors:
         return result
 
     def variable(self, formula: Formula) -> int:
-        """The obligations' variable of an atom or a temporal formula."""
+        """Return the variable of an atom or a temporal formula."""
         number = self._variables.get(formula)
         if number is None:
             number = self._variables[formula] = len(self.formulas)
@@ -97,7 +98,7 @@ class Successors:
         return number
 
     def new_state(self, stands_for: int) -> int:
-        """An obligation for a state of a machine that was built apart; :meth:`define_state` must follow."""
+        """Return an obligation for a state of a separately built machine; :meth:`define_state` must follow."""
         variable = len(self.formulas)
         self.formulas.append(None)
         self.stands_for[variable] = stands_for
@@ -108,12 +109,12 @@ class Successors:
         self._of_state[self.diagrams.variable[state]] = transition
 
     def of_obligation(self, obligation: int) -> int:
-        """The transition of an obligation."""
+        """Return the transition of an obligation."""
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
         absent, present = self.diagrams.absent, self.diagrams.present
-        # Obligations are as deep as bounds are long.
+        # No recursion: obligations are as deep as bounds are long.
         stack = [obligation]
         while stack:
             node = stack[-1]
@@ -127,7 +128,11 @@ class Successors:
         return known[obligation]
 
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
-        """The transition of an obligation, from those of what it is without its first variable and with it."""
+        """Return the transition of an obligation, given the transitions of its two cofactors.
+
+        ``absent`` and ``present`` are the transitions of the obligation with its first variable
+        false and true.
+        """
         diagrams = self.diagrams
         variable = diagrams.variable[obligation]
         formula = self.formulas[variable]
@@ -137,11 +142,11 @@ class Successors:
             holds = self.of_formula(formula)
             fails = diagrams.node(self._atom_index[formula.name], ACCEPT, REJECT)
             return diagrams.disjoin(diagrams.conjoin(holds, present), diagrams.conjoin(fails, absent))
-        # In negation normal form obligations grow with their temporal variables, so `absent` implies `present`.
+        # In negation normal form obligations are monotone in their temporal variables, so `absent` implies `present`.
         return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
-        """The transition of a formula in negation normal form, operands first, without deep recursion."""
+        """Return the transition of a formula in negation normal form; operands first, without deep recursion."""
         known = self._of_formula
         result = known.get(formula)
         if result is not None:
@@ -152,8 +157,8 @@ class Successors:
             if node in known:
                 stack.pop()
                 continue
-            # The operand of a next is an obligation of the following sample: nothing below it is needed now.
-            missing = [] if node.op in ("X", "N") else [a for a in node.args if a not in known]
+            # The operand of a next is an obligation for the next sample: its transition is not needed now.
+            missing = [] if node.op in ("X", "N") else [argument for argument in node.args if argument not in known]
             if missing:
                 stack.extend(missing)
             else:
@@ -193,13 +198,13 @@ class Successors:
         raise ValueError(f"not in negation normal form: {op}")
 
 
-# What temporal formulas imply of each other, said of their obligations where it costs no new variable: `p U q | q` and
-# `p U q` are then one obligation, and so are `F(p & X F q) | F q` and `F q`.  Nests of n untils, and sequences of n
-# goals, reach n obligations and not 2^n; of the bounds that `G(a -> F[0,n] b)` counts down at once, the shortest stays.
+# Implications between temporal formulas are part of their obligations if they need no new variable.  So `p U q | q` and
+# `p U q` are one obligation, and so are `F(p & X F q) | F q` and `F q`.  Nests of n untils and sequences of n goals
+# reach n obligations instead of 2^n.  Of the bounds that `G(a -> F[0,n] b)` counts down at once, the shortest stays.
 
 
 def _implied_by(formula: Formula) -> list[Formula]:
-    """Temporal subformulas that hold wherever the formula does."""
+    """Return temporal subformulas that the formula implies."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "and" and (shorter := counted_down(formula)):
         return [shorter]
@@ -212,7 +217,7 @@ def _implied_by(formula: Formula) -> list[Formula]:
 
 
 def _that_imply(formula: Formula) -> list[Formula]:
-    """Temporal subformulas wherever which the formula holds."""
+    """Return temporal subformulas that imply the formula."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "or" and (shorter := counted_down(formula)):
         return [shorter]
