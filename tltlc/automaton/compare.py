@@ -1,7 +1,7 @@
-"""Whether two automata accept the same traces, or one of them fewer, with a trace that tells them apart.
+"""Compare the languages of two automata: equivalence, inclusion, and a trace that only one of them accepts.
 
-Letters are read over the atoms of both, by their names; traces on which either one's ``exclusive`` atoms hold together
-are none.
+Atoms are matched by name; letters range over the atoms of both automata.  Traces on which atoms
+that either automaton declares ``exclusive`` hold together are ignored.
 """
 
 from __future__ import annotations
@@ -24,21 +24,25 @@ _ALLOWED, _RULED_OUT = "allowed", "ruled out"
 Letter = frozenset[str]
 """The names of the atoms that hold at a sample."""
 Literals = tuple[tuple[str, bool], ...]
-"""Names of atoms, each with whether it holds."""
+"""Names of atoms, each with its truth value."""
 Node = TypeVar("Node", bound=Hashable)
 
 
 @record
 class Trace:
-    """``prefix``, and over infinite traces ``cycle`` for ever; over finite ones that is empty."""
+    """A finite trace, ``prefix`` with an empty ``cycle``, or an infinite one that repeats ``cycle``
+    after ``prefix``.
+    """
 
     prefix: tuple[Letter, ...]
     cycle: tuple[Letter, ...] = ()
 
 
 def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[Literals] = ()) -> Trace | None:
-    """A trace that ``one`` accepts and ``other`` does not; None where there is none, and all that ``one`` accepts
-    ``other`` does.  Over finite traces it is a shortest one.  No letter of it has all of the ``impossible`` literals.
+    """Return a trace that ``one`` accepts and ``other`` does not; None if there is none.
+
+    Over finite traces it is a shortest one.  ``impossible`` lists conjunctions of literals; no
+    letter of the trace satisfies any of them.
 
     Raises:
         ValueError: one is over finite traces, and the other over infinite ones.
@@ -52,19 +56,27 @@ def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Ite
 
 
 def is_included(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
-    """Whether ``other`` accepts every trace that ``one`` does; ``work`` and errors as of :func:`separating`."""
+    """Whether ``other`` accepts every trace that ``one`` accepts.
+
+    ``work`` and errors are the same as in :func:`separating`.
+    """
     return separating(one, other, work) is None
 
 
 def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
-    """Whether both accept the same traces; ``work``, for each of both ways, and errors as of :func:`separating`."""
+    """Whether both accept the same traces.
+
+    ``work``, which each of the two directions may take, and errors are the same as in
+    :func:`separating`.
+    """
     return is_included(one, other, work) and is_included(other, one, work)
 
 
 def less_is_left(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
-    """Tells of two states, over finite traces, whether whatever mends the first mends the second, too.
+    """Return a predicate on two states of an automaton over finite traces.
 
-    Its errors are those of :func:`separating`; all questions together take no more than ``work`` steps.
+    The predicate is true if the second state accepts every continuation that the first accepts.  It
+    raises the errors of :func:`separating`; all its calls together take at most ``work`` steps.
     """
     product = _Product(fspa, fspa, Work(work))
 
@@ -76,7 +88,7 @@ def less_is_left(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], b
 
 
 class _Product:
-    """Two automata that are read in step."""
+    """The product of two automata that read the same trace in step."""
 
     def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
         self._pair, self._work = (one, other), work
@@ -84,9 +96,9 @@ class _Product:
         self._names = _in_order((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
         self._place = {name: index for index, name in enumerate(self._names)}
         self._letters: Letters[Any] = Letters(work)
-        groups = [[fspa.atoms[each].name for each in group] for fspa in self._pair for group in fspa.exclusive]
+        groups = [[fspa.atoms[atom].name for atom in group] for fspa in self._pair for group in fspa.exclusive]
         places = [[self._place[name] for name in group] for group in groups]
-        # Not True and False, which the table would take for indices of edges.
+        # Strings, since the table could not tell True and False from the indices 1 and 0 of edges.
         self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
         for literals in impossible:
             cube = self._cube([(self._place[name], holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
@@ -94,60 +106,64 @@ class _Product:
         self._steps: dict[tuple[int, int], int] = {}
         self._leaving = [_edges_by_source(fspa) for fspa in self._pair]
         self._known: dict[Both, list[tuple[Both, Marks, Letter]]] = {}
-        # The marks of the other one come behind those of the first.
+        # The marks of the second automaton are numbered after the marks of the first.
         firsts = (0, 2 * len(one.acceptance))
         self._marks = [
             [pair_marks(marks, first) for marks in fspa.marks()] for fspa, first in zip(self._pair, firsts, strict=True)
         ]
 
     def trace(self, start: Both = (0, 0)) -> Trace | None:
-        """A shortest finite trace that the first one accepts from its state and the other does not from its own."""
+        """Return a shortest finite trace that the first accepts from its state and the second rejects from its own."""
         one, other = self._pair
 
         def is_wanted(both: Both) -> bool:
             return one.states[both[0]].accepting and not other.states[both[1]].accepting
 
-        way = _way([start], self._moves, is_wanted, at_least=1)
-        return None if way is None else Trace(way)
+        path = _shortest_path([start], self._moves, is_wanted, at_least=1)
+        return None if path is None else Trace(path)
 
     def lasso(self) -> Trace | None:
-        """An infinite trace that the first one accepts and the other does not."""
+        """Return an infinite trace that the first automaton accepts and the second does not."""
         these, those = conditions(*(len(fspa.acceptance) for fspa in self._pair))
 
         def leaves(both: Both) -> list[Leaf]:
             return [(target, marks) for target, marks, _ in self._step(both)]
 
-        found = telling_apart([(0, 0)], leaves, [(these, those)], self._work)
-        return None if found is None else self._through(found, these, those)
+        part = telling_apart([(0, 0)], leaves, [(these, those)], self._work)
+        return None if part is None else self._through(part, these, those)
 
     def _through(self, part: Edges, these: Sequence[Clause], those: Sequence[Clause]) -> Trace:
-        """A lasso whose cycle takes of a part what makes it accepted by the one and not by the other."""
-        there = marks_of(part)
-        clause = next(each for each in these if each.accepts(there))
+        """Return a lasso whose cycle stays in a part of the product that the first accepts and the second rejects.
+
+        The cycle takes every mark that decides this: the ``inf`` marks of a clause of
+        the first automaton, and the ``fin`` marks in the part of all clauses of the second.
+        """
+        marks_in_part = marks_of(part)
+        clause = next(clause for clause in these if clause.accepts(marks_in_part))
         inside = sorted(part, key=lambda edge: (edge[0], edge[1], sorted(edge[2])))
-        letter = {edge: self._letter(edge) for edge in inside}
+        letter_of = {edge: self._letter(edge) for edge in inside}
         begin = inside[0][0]
-        into = _way([(0, 0)], self._moves, lambda both: both == begin)
+        into = _shortest_path([(0, 0)], self._moves, lambda both: both == begin)
         assert into is not None
         cycle: list[Letter] = []
         place = begin
-        left = set(clause.infs).union(*(each.fins & there for each in those))
+        missing = set(clause.infs).union(*(rejected.fins & marks_in_part for rejected in those))
 
         leaving: dict[Both, list[tuple[Both, Letter]]] = {}
-        for (source, target, _), each in letter.items():
-            leaving.setdefault(source, []).append((target, each))
+        for (source, target, _), edge_letter in letter_of.items():
+            leaving.setdefault(source, []).append((target, edge_letter))
 
-        while left or place != begin or not cycle:
-            edge = next((each for each in letter if left & each[2]), None)
+        while missing or place != begin or not cycle:
+            edge = next((edge for edge in letter_of if missing & edge[2]), None)
             goal = begin if edge is None else edge[0]
-            way = _way([place], leaving.__getitem__, goal.__eq__, at_least=int(edge is None and not cycle))
-            assert way is not None
-            cycle += way
+            path = _shortest_path([place], leaving.__getitem__, goal.__eq__, at_least=int(edge is None and not cycle))
+            assert path is not None
+            cycle += path
             place = goal
             if edge is not None:
-                cycle.append(letter[edge])
+                cycle.append(letter_of[edge])
                 place = edge[1]
-                left -= edge[2]
+                missing -= edge[2]
         return Trace(into, tuple(cycle))
 
     # --- steps ------------------------------------------------------------------------------------
@@ -156,19 +172,19 @@ class _Product:
         yield from ((target, letter) for target, _, letter in self._step(both))
 
     def _letter(self, edge: Edge) -> Letter:
-        return next(each for target, marks, each in self._step(edge[0]) if (target, marks) == edge[1:])
+        return next(letter for target, marks, letter in self._step(edge[0]) if (target, marks) == edge[1:])
 
     def _step(self, both: Both) -> list[tuple[Both, Marks, Letter]]:
-        """Where letters lead from two states, with which marks, and a letter that does."""
-        found = self._known.get(both)
-        if found is None:
+        """Return the successors of a pair of states, each with the marks on the way and a letter that leads there."""
+        successors = self._known.get(both)
+        if successors is None:
             left, right = (self._edges_by_letter(which, state) for which, state in enumerate(both))
             step = self._letters.combined(self._together, left, right, {})
             step = self._letters.combined(_if_allowed, step, self._allowed, {})
-            found = self._known[both] = [
+            successors = self._known[both] = [
                 (*leaf, frozenset(letter)) for leaf, letter in self._with_letters(step).items() if leaf is not None
             ]
-        return found
+        return successors
 
     def _together(self, left: int, right: int) -> tuple[Both, Marks]:
         one, other = self._pair
@@ -176,35 +192,39 @@ class _Product:
         return (one.edges[left].target, other.edges[right].target), marks
 
     def _edges_by_letter(self, which: int, state: int) -> int:
-        """The index of the edge that a state takes, as a function of the letter."""
-        found = self._steps.get((which, state))
-        if found is None:
+        """Return the index of the edge that a state takes, as a function of the letter."""
+        edge_taken = self._steps.get((which, state))
+        if edge_taken is None:
             fspa = self._pair[which]
             place = [self._place[atom.name] for atom in fspa.atoms]
             taken = [self._taken(index, fspa.edges[index].guard.primes, place) for index in self._leaving[which][state]]
-            found = self._steps[which, state] = self._greatest(taken)
-        return found
+            edge_taken = self._steps[which, state] = self._greatest(taken)
+        return edge_taken
 
     def _taken(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
-        """The index of an edge on letters that meet one of its primes, whose atoms have these places."""
+        """Return the function that is the edge's index on letters that satisfy one of its primes, else ``_NO_EDGE``.
+
+        ``place`` maps the atoms of the primes to atoms of the product.
+        """
         return self._greatest(
             [self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE) for prime in primes]
         )
 
     def _greatest(self, steps: list[int]) -> int:
-        """The greatest value on each letter.
+        """Return the greatest value on each letter.
 
-        Neighbours are combined first: small ones with small ones, so that no large one is walked once for each other.
+        Combines neighbours first, as in a balanced tree: a large function is not traversed once for
+        each small one.
         """
-        left = steps or [self._letters.leaf(_NO_EDGE)]
-        while len(left) > 1:
-            pairs = zip(left[::2], left[1::2], strict=False)
-            odd = left[-1:] if len(left) % 2 else []
-            left = [*(self._letters.combined(max, one, other, {}) for one, other in pairs), *odd]
-        return left[0]
+        level = steps or [self._letters.leaf(_NO_EDGE)]
+        while len(level) > 1:
+            pairs = zip(level[::2], level[1::2], strict=False)
+            odd = level[-1:] if len(level) % 2 else []
+            level = [*(self._letters.combined(max, one, other, {}) for one, other in pairs), *odd]
+        return level[0]
 
     def _cube(self, literals: Iterable[tuple[int, bool]], inside: Any, outside: Any) -> int:
-        """One value where all literals are true, another one elsewhere."""
+        """Return the function that is ``inside`` where all literals are true, and ``outside`` elsewhere."""
         letters = self._letters
         no, cube = letters.leaf(outside), letters.leaf(inside)
         for atom, holds in sorted(literals, reverse=True):
@@ -212,42 +232,48 @@ class _Product:
         return cube
 
     def _with_letters(self, step: int) -> dict[Any, list[str]]:
-        """The values of a function of the letter, each with the atoms of a letter that has it, as few as may be."""
+        """Return the values of a function of the letter, each with the atoms of a letter that has this value.
+
+        Atoms are absent from the letter unless they are needed for the value.
+        """
         letters = self._letters
-        found: dict[Any, list[str]] = {}
+        letter_of: dict[Any, list[str]] = {}
         stack: list[tuple[int, list[str]]] = [(step, [])]
         seen = set()
         while stack:
-            node, holding = stack.pop()
+            node, present = stack.pop()
             if node in seen:
                 continue
             seen.add(node)
             if letters.atom[node] == LEAF:
-                found[letters.value[node]] = holding
+                letter_of[letters.value[node]] = present
             else:
-                stack.append((letters.high[node], [*holding, self._names[letters.atom[node]]]))
-                stack.append((letters.low[node], holding))
-        return found
+                stack.append((letters.high[node], [*present, self._names[letters.atom[node]]]))
+                stack.append((letters.low[node], present))
+        return letter_of
 
 
 def _in_order(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
-    """The names, behind each those that are impossible with it: diagrams explode where such atoms are far apart."""
+    """Return the names, each followed by the names of atoms that occur with it in an ``impossible`` conjunction.
+
+    Diagrams explode if such atoms are far apart.
+    """
     partners: dict[str, dict[str, None]] = {}
     for literals in impossible:
         for name, _ in literals:
             partners.setdefault(name, {}).update(dict.fromkeys(other for other, _ in literals))
-    found: dict[str, None] = {}
+    ordered: dict[str, None] = {}
     for name in names:
-        found |= dict.fromkeys((name, *partners.get(name, ())))
-    return tuple(found)
+        ordered |= dict.fromkeys((name, *partners.get(name, ())))
+    return tuple(ordered)
 
 
 def _edges_by_source(fspa: Fspa) -> list[list[int]]:
-    """Of each state the indices of the edges that leave it."""
-    found: list[list[int]] = [[] for _ in fspa.states]
+    """Return for each state the indices of the edges that leave it."""
+    leaving: list[list[int]] = [[] for _ in fspa.states]
     for index, edge in enumerate(fspa.edges):
-        found[edge.source].append(index)
-    return found
+        leaving[edge.source].append(index)
+    return leaving
 
 
 def _if_allowed(leaf: Any, allowed: str) -> Any:
@@ -258,14 +284,14 @@ def _if_allowed_by(one: str, other: str) -> str:
     return one if one == _RULED_OUT else other
 
 
-def _way(
+def _shortest_path(
     starts: Iterable[Node],
     moves: Callable[[Node], Iterable[tuple[Node, Letter]]],
     is_goal: Callable[[Node], bool],
     at_least: int = 0,
 ) -> tuple[Letter, ...] | None:
-    """The letters of a shortest way to a goal, of so many at least (0 or 1); None where there is none."""
-    before: dict[tuple[Node, int], tuple[tuple[Node, int], Letter] | None] = {(each, 0): None for each in starts}
+    """Return the letters of a shortest path to a goal with ``at_least`` (0 or 1) steps; None if there is none."""
+    before: dict[tuple[Node, int], tuple[tuple[Node, int], Letter] | None] = {(start, 0): None for start in starts}
     queue = list(before)
     for place in queue:
         node, moved = place
@@ -280,8 +306,8 @@ def _way(
 
 
 def _letters_to(place: Any, before: Mapping[Any, Any]) -> tuple[Letter, ...]:
-    found: list[Letter] = []
+    letters: list[Letter] = []
     while (step := before[place]) is not None:
         place, letter = step
-        found.append(letter)
-    return tuple(reversed(found))
+        letters.append(letter)
+    return tuple(reversed(letters))

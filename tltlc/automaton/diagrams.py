@@ -1,14 +1,14 @@
-"""Hash-consed decision diagrams: the data structure under the whole construction.
+"""Hash-consed decision diagrams: the data structure of the whole construction.
 
-Two kinds of nodes live here, each an int, each canonical, so that ``==`` decides equality:
+There are two kinds of nodes.  Each node is an int and canonical, so ``==`` decides equality.
 
 *Obligations* are Boolean functions over temporal subformulas and atoms: binary decision diagrams
-whose variables are formulas.  Formulas that agree as such functions are one obligation, which is
-what keeps the construction from telling apart what is the same.
+whose variables are formulas.  Formulas that are equal as such functions are one obligation, so the
+construction treats them as one state.
 
-*Transitions* are functions from a letter (the atoms that hold at a sample) to a leaf: the pair of
-the obligation that remains and whether the trace is accepted if this sample is its last.  Inner
-nodes test an atom, by index, in order.
+*Transitions* are functions from a letter (the atoms that hold at a sample) to a leaf.  A leaf is a
+pair: the obligation that remains, and whether the trace is accepted if this sample is its last.
+Inner nodes test an atom, by index, in order.
 
 No operation enumerates letters; all are memoised.
 """
@@ -20,9 +20,9 @@ from contextlib import contextmanager
 from typing import Final
 
 FALSE: Final = 0
-"""The obligation that nothing meets."""
+"""The obligation ``false``: no trace satisfies it."""
 TRUE: Final = 1
-"""The obligation that everything meets."""
+"""The obligation ``true``: every trace satisfies it."""
 
 REJECT: Final = 0
 """The transition of ``false`` on every letter: (FALSE, not accepted)."""
@@ -32,20 +32,21 @@ IMPOSSIBLE: Final = 2
 """The leaf of letters that ``exclusive`` declarations rule out."""
 
 LEAF: Final = 1 << 40
-"""The ``atom`` of a leaf: greater than every index of an atom."""
+"""The ``atom`` of a leaf, greater than every atom's index."""
 
 
 class OutOfSteps(Exception):
-    """Raised when an operation has taken more steps than the tables allow: the formula blows up."""
+    """Raised when an operation takes more steps than its limit: the formula blows up."""
 
 
 class Diagrams:
     """A table of nodes and the operations on them.
 
-    ``atom[n]``, ``low[n]`` and ``high[n]`` describe transition ``n``; for a leaf, ``low`` is the
-    obligation and ``high`` 1 where the trace may end.  ``variable``, ``absent``, ``present``
-    describe obligations alike.  Each of the four operations may take ``step_limit`` steps in all,
-    then :class:`OutOfSteps` is raised; a step is remembered, so the limit bounds memory too.
+    ``atom[n]``, ``low[n]`` and ``high[n]`` describe transition ``n``.  For a leaf, ``low`` is the
+    obligation, and ``high`` is 1 if the trace may end here, else 0.  ``variable[n]``, ``absent[n]``
+    and ``present[n]`` describe obligation ``n``.  Each of the four operations (``both``,
+    ``either``, ``conjoin``, ``disjoin``) may take ``step_limit`` steps in total, then it raises
+    :class:`OutOfSteps`.  Each step is cached, so the limit bounds memory too.
     """
 
     __slots__ = (
@@ -89,7 +90,7 @@ class Diagrams:
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Let what happens inside take no more than so many further steps of each operation."""
+        """Allow each operation at most ``steps`` further steps inside the ``with`` block."""
         before = self.step_limit
         self.step_limit = min(before, max(map(len, self._memos)) + steps)
         try:
@@ -100,23 +101,23 @@ class Diagrams:
     # --- making nodes -------------------------------------------------------------------------
 
     def obligation(self, variable: int, absent: int, present: int) -> int:
-        """The obligation ``present`` where the variable holds and ``absent`` where not."""
+        """Return the obligation that is ``present`` where the variable holds and ``absent`` elsewhere."""
         if absent == present:
             return absent
         key = (variable, absent, present)
-        found = self._obligations.get(key)
-        if found is None:
-            found = self._obligations[key] = len(self.variable)
+        number = self._obligations.get(key)
+        if number is None:
+            number = self._obligations[key] = len(self.variable)
             self.variable.append(variable)
             self.absent.append(absent)
             self.present.append(present)
-        return found
+        return number
 
     def leaf(self, obligation: int, accepted: int) -> int:
-        """The transition to one obligation on every letter."""
+        """Return the transition to one obligation on every letter."""
         key = (LEAF, obligation, accepted)
-        found = self._nodes.get(key)
-        return self._add(key) if found is None else found
+        number = self._nodes.get(key)
+        return self._add(key) if number is None else number
 
     def _add(self, key: tuple[int, int, int]) -> int:
         number = len(self.atom)
@@ -133,12 +134,12 @@ class Diagrams:
         nodes, add = self._nodes, self._add
 
         def node(atom: int, low: int, high: int) -> int:
-            """The transition ``high`` on letters with the atom, ``low`` on the others."""
+            """Return the transition ``high`` on letters with the atom, ``low`` on the others."""
             if low == high:
                 return low
             key = (atom, low, high)
-            found = nodes.get(key)
-            return add(key) if found is None else found
+            number = nodes.get(key)
+            return add(key) if number is None else number
 
         return node
 
@@ -220,9 +221,10 @@ class Diagrams:
         return operate
 
     def constrain(self, transition: int, allowed: int) -> int:
-        """The transition on letters where ``allowed`` is ``ACCEPT``, ``IMPOSSIBLE`` on the others.
+        """Return the transition on letters where ``allowed`` is ``ACCEPT``, ``IMPOSSIBLE`` on the others.
 
-        ``allowed`` is a Boolean function of the letter: a transition whose leaves are ``ACCEPT`` and ``REJECT``.
+        ``allowed`` is a Boolean function of the letter: a transition whose leaves are ``ACCEPT``
+        and ``REJECT``.
         """
         atom, low, high, node = self.atom, self.low, self.high, self.node
         memo: dict[tuple[int, int], int] = {}
@@ -248,7 +250,7 @@ class Diagrams:
         return operate(transition, allowed)
 
     def relabel(self, transition: int, leaf_map: Callable[[int], int], memo: dict[int, int]) -> int:
-        """The transition with every leaf replaced; ``memo`` may be shared between calls with the same map."""
+        """Return the transition with ``leaf_map`` applied to each leaf; calls with the same map may share ``memo``."""
         atom, low, high, node = self.atom, self.low, self.high, self.node
 
         def rebuild(n: int) -> int:
@@ -262,18 +264,18 @@ class Diagrams:
         return rebuild(transition)
 
     def leaves(self, *transitions: int) -> list[int]:
-        """The distinct leaves of transitions, left to right."""
+        """Return the distinct leaves of transitions, left to right."""
         atom, low, high = self.atom, self.low, self.high
-        found: list[int] = []
+        leaves: list[int] = []
         stack = list(dict.fromkeys(reversed(transitions)))
         seen = set(stack)
         while stack:
             n = stack.pop()
             if atom[n] == LEAF:
-                found.append(n)
+                leaves.append(n)
                 continue
             for child in (high[n], low[n]):
                 if child not in seen:
                     seen.add(child)
                     stack.append(child)
-        return found
+        return leaves

@@ -1,7 +1,7 @@
 """The finite state predicate automaton (FSPA) that tltlc compiles to: frozen, complete, self-contained.
 
-Everything that an artefact holds is here and nothing else, so that an automaton that was read
-from JSON is the one that was written.
+It has the fields of an artefact and no others, so that reading an automaton from JSON returns the
+automaton that was written.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
-"""Pairs of an index into ``Fspa.atoms`` and a polarity."""
+"""A conjunction of literals: pairs of an index into ``Fspa.atoms`` and a polarity."""
 Mark = tuple[int, Literal["fin", "inf"]]
-"""An index into ``Fspa.acceptance``, and one of the two sets of the pair."""
+"""A pair, as an index into ``Fspa.acceptance``, and one of its two sets."""
 
 
 @record
@@ -29,9 +29,11 @@ class Text:
 
 @record
 class State:
-    """A state: what remains to be satisfied, and what its verdict would be if the trace ended here.
+    """A state of the automaton.
 
-    ``distance`` is the least number of transitions to an accepting state, None for traps.
+    ``label`` says what remains to be satisfied; ``accepting`` is true if a trace that ends here is
+    accepted (over infinite traces: if the state lies on an accepted cycle); ``distance`` is the
+    least number of transitions to an accepting state, None for traps.
     """
 
     id: int
@@ -43,10 +45,11 @@ class State:
 
 @record
 class Guard:
-    """When an edge is taken: ``primes`` are ALL prime implicants (``((),)`` is true), ``text`` a short form.
+    """The condition under which an edge is taken.
 
-    Where atoms are exclusive, the primes are those of ``guard or not D`` that are not contained in
-    ``not D`` (semantics, section 3).
+    ``primes`` are all prime implicants of the guard (``((),)`` is true); ``text`` is a short
+    formula.  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
+    ``guard or not D`` that are not contained in ``not D`` (semantics, section 3).
     """
 
     text: str
@@ -55,7 +58,10 @@ class Guard:
 
 @record
 class Edge:
-    """At most one per (source, target) and pairs; of the edges that leave a state exactly one guard is true."""
+    """An edge.  On each letter, exactly one of the edges that leave a state has a true guard.
+
+    At most one edge has the same source, target and sets of pairs.
+    """
 
     source: int
     target: int
@@ -64,7 +70,11 @@ class Edge:
 
 @record
 class Pair:
-    """A Rabin pair, by indices of edges: none of ``fin`` may be taken infinitely often, one of ``inf`` must be."""
+    """A Rabin pair of sets of edges, by index.
+
+    A run meets the pair if it takes no edge of ``fin`` infinitely often and some edge of ``inf``
+    infinitely often.
+    """
 
     fin: tuple[int, ...]
     inf: tuple[int, ...]
@@ -74,10 +84,12 @@ class Pair:
 class Fspa:
     """A deterministic, complete automaton; over finite traces minimal, with acceptance on states.
 
-    ``states[i].id == i``, state 0 is initial, numbered breadth-first; ``edges`` are sorted by
-    (source, target).  ``spec_size`` is the greatest finite distance, at least 0.  Over infinite traces a run is
-    accepted that meets one of the pairs of ``acceptance``; ``accepting`` states lie on an accepted cycle, and edges of
-    one source and target are told apart by their pairs (semantics, section 5).
+    ``states[i].id == i``; states are numbered breadth-first, and state 0 is initial.  ``edges`` are
+    sorted by (source, target).  ``spec_size`` is the greatest finite distance, at least 0.
+
+    Over infinite traces a run is accepted if it meets one of the pairs of ``acceptance``.  There,
+    accepting states lie on an accepted cycle, and edges with the same source and target differ in
+    the sets of pairs that contain them (semantics, section 5).
     """
 
     name: str
@@ -99,15 +111,15 @@ class Fspa:
     acceptance: tuple[Pair, ...] = ()
 
     def edges_from(self, state: int) -> tuple[Edge, ...]:
-        """The edges that leave a state, in order of target."""
+        """Return the edges that leave a state, in order of target."""
         return tuple(edge for edge in self.edges if edge.source == state)
 
     def marks(self) -> tuple[tuple[Mark, ...], ...]:
-        """Of each edge the sets of pairs that name it, in order; none over finite traces."""
-        found: list[list[Mark]] = [[] for _ in self.edges]
+        """Return for each edge the sets of pairs that contain it, in order; none over finite traces."""
+        marks: list[list[Mark]] = [[] for _ in self.edges]
         for number, pair in enumerate(self.acceptance):
             for edge in dict.fromkeys(pair.fin):
-                found[edge].append((number, "fin"))
+                marks[edge].append((number, "fin"))
             for edge in dict.fromkeys(pair.inf):
-                found[edge].append((number, "inf"))
-        return tuple(map(tuple, found))
+                marks[edge].append((number, "inf"))
+        return tuple(map(tuple, marks))

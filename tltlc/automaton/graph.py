@@ -1,4 +1,4 @@
-"""The automaton as a networkx graph, for analyses that tltlc does not offer itself."""
+"""Convert an automaton to a networkx graph, for analyses that tltlc does not offer."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ if TYPE_CHECKING:
 
 
 def to_networkx(fspa: Fspa) -> networkx.DiGraph:
-    """A directed graph: a node for each state id, an edge for each source and target.
+    """Return a directed graph with a node for each state id and an edge for each source and target.
 
-    Nodes carry ``label`` (ASCII), ``accepting``, ``verdict`` and ``distance`` (None for traps), edges
-    ``guard`` (the short text), ``primes``, and ``indices`` into ``fspa.edges``; the graph carries ``name``, ``initial``
-    and ``spec_size``.  Over infinite traces several edges may be one here, with all their indices: ``guard`` and
-    ``primes`` are then those of all of them, of which any may be true.
+    Nodes have the attributes ``label`` (ASCII), ``accepting``, ``verdict`` and ``distance`` (None
+    for traps); edges have ``guard`` (the short text), ``primes``, and ``indices`` into
+    ``fspa.edges``; the graph has ``name``, ``initial`` and ``spec_size``.  Over infinite traces an
+    edge of the graph may stand for several edges of the automaton.  It then has all their indices,
+    and its ``guard`` and ``primes`` are the disjunction of their guards.
 
     >>> import networkx, tltlc
     >>> (fspa,) = tltlc.compile_text("signal a: bool signal b: bool spec s { reach a then b }")

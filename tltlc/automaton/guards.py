@@ -1,7 +1,8 @@
-"""Guards: Boolean functions of the atoms, as all their prime implicants and as a short text.
+"""Guards: Boolean functions of the atoms, written as their prime implicants and as a short text.
 
-A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT`` (:mod:`tltlc.automaton.diagrams`).
-A literal is the int ``2 * atom + polarity``, a cube an ascending tuple of literals.
+A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT``
+(:mod:`tltlc.automaton.diagrams`).  A literal is the int ``2 * atom + polarity``; a cube is an
+ascending tuple of literals.
 """
 
 from __future__ import annotations
@@ -17,22 +18,25 @@ from tltlc.logic.text.printer import operand_text
 Cube = tuple[int, ...]
 
 PRIME_LIMIT = 10_000
+"""The most prime implicants, or products, of one guard."""
 TOTAL_PRIME_LIMIT = 1_500_000
-"""Of one guard, and of all guards of an automaton together: a million of them takes up a gigabyte."""
+"""The most prime implicants of all guards of an automaton together; a million takes up a gigabyte of memory."""
 
 _MOST_REMEMBERED = 200_000
+"""The most covers and primes of subfunctions that are cached: the next guard shares many subfunctions."""
 _MOST_PRODUCTS_REMEMBERED = 1_000_000
-"""Covers and primes of subfunctions, and the products in them, that are kept for the next guard, which shares many."""
+"""The most products in the cached covers and primes."""
 
 _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
 
 class TooManyPrimes(Exception):
-    """Raised when the guards of an automaton are too large; ``whose`` and ``what`` say which count is over its limit.
+    """Raised when the guards of an automaton are too large.
 
-    These are the prime implicants of a guard, or the products of its short form (:data:`PRIME_LIMIT`), the prime
-    implicants of all guards (:data:`TOTAL_PRIME_LIMIT`), and the rows "edges" and "partial products" of
-    :data:`~tltlc.io.limits.WORK`.
+    ``whose`` and ``what`` name the count that is over its ``limit``: the prime implicants of a
+    guard or the products of its short form (:data:`PRIME_LIMIT`), the prime implicants of all
+    guards (:data:`TOTAL_PRIME_LIMIT`), or the edges or partial products (these rows of
+    :data:`~tltlc.io.limits.WORK`).
     """
 
     def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT, what: str = "prime implicants") -> None:
@@ -40,13 +44,13 @@ class TooManyPrimes(Exception):
         self.whose, self.limit, self.what = whose, limit, what
 
     def title(self, name: str) -> str:
-        """What happened, as the title of a diagnostic about the automaton of this name."""
+        """Return the title of the diagnostic about the automaton of this name."""
         verb = "have" if self.whose == "all guards" else "has"
         return f"{self.whose} of `{name}` {verb} more than {self.limit} {self.what}"
 
 
 class Guards:
-    """Guards over one table of diagrams, under the letters that ``allowed`` accepts."""
+    """The guards of one table of diagrams, over the letters that ``allowed`` accepts."""
 
     __slots__ = (
         "_allowed",
@@ -81,31 +85,31 @@ class Guards:
         self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
     def by_leaf(self, transition: int) -> dict[int, int]:
-        """The guard of each leaf of a transition, ``IMPOSSIBLE`` left out."""
-        found = self._split(transition)
-        return {leaf: guard for leaf, guard in found.items() if leaf != IMPOSSIBLE}
+        """Map each leaf of a transition, except ``IMPOSSIBLE``, to its guard."""
+        guards = self._split(transition)
+        return {leaf: guard for leaf, guard in guards.items() if leaf != IMPOSSIBLE}
 
     def _split(self, transition: int) -> dict[int, int]:
-        found = self._by_leaf.get(transition)
-        if found is None:
+        guards = self._by_leaf.get(transition)
+        if guards is None:
             diagrams = self._diagrams
             atom = diagrams.atom[transition]
             if atom == LEAF:
-                found = {transition: ACCEPT}
+                guards = {transition: ACCEPT}
             else:
                 below, above = self._split(diagrams.low[transition]), self._split(diagrams.high[transition])
-                found = {
+                guards = {
                     leaf: diagrams.node(atom, below.get(leaf, REJECT), above.get(leaf, REJECT))
                     for leaf in (*below, *(leaf for leaf in above if leaf not in below))
                 }
-            self._by_leaf[transition] = found
-        return found
+            self._by_leaf[transition] = guards
+        return guards
 
     def primes(self, guard: int) -> tuple[Implicant, ...]:
-        """All prime implicants, shortest first, then by atom (semantics, section 3).
+        """Return all prime implicants, sorted by length, then by atom (semantics, section 3).
 
-        Under ``exclusive`` D: those of ``guard or not D`` that are not contained in ``not D``.  Raises
-        :class:`TooManyPrimes`.
+        With ``exclusive`` declarations D these are the prime implicants of ``guard or not D`` that
+        are not contained in ``not D``.  Raises :class:`TooManyPrimes`.
         """
         if self._allowed == ACCEPT:
             cubes = self._all_primes(guard)
@@ -120,9 +124,10 @@ class Guards:
         return tuple([tuple([pairs[literal] for literal in cube]) for cube in cubes])
 
     def text(self, guard: int) -> str:
-        """A short formula of the guard: an irredundant sum of products, or product of sums where that is shorter.
+        """Return a short formula of the guard.
 
-        Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.  Raises
+        It is an irredundant sum of products, or a product of sums if that is shorter.  On letters
+        that ``exclusive`` rules out it may have any value, whichever makes it shorter.  Raises
         :class:`TooManyPrimes`.
         """
         if (
@@ -146,7 +151,7 @@ class Guards:
         return " & ".join([(brackets if len(cube) > 1 else str)(self._joined(" | ", cube)) for cube in disjunctions])
 
     def _product(self, cube: Cube) -> str:
-        """A guard that is one product; a literal that stands alone needs no brackets."""
+        """Return the text of a guard that is one product; a single literal needs no brackets."""
         if len(cube) == 1 and cube[0] & 1:
             return self._names[cube[0] >> 1]
         return self._joined(" & ", cube) if cube else "true"
@@ -156,7 +161,7 @@ class Guards:
         return symbol.join([operands[literal] for literal in cube])
 
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
-        """The sums of a product of sums, each as the cube that it forbids; none where they are very many."""
+        """Return a product of sums, each sum as the cube that it forbids; empty if there are too many."""
         try:
             return self._cover(self._negation(self._upper(guard)), self._negation(guard))
         except TooManyPrimes:
@@ -165,16 +170,16 @@ class Guards:
     # --- Boolean functions --------------------------------------------------------------------
 
     def _cover(self, lower: int, upper: int) -> tuple[Cube, ...]:
-        """An irredundant sum of products between two functions."""
+        """Return an irredundant sum of products between two functions."""
         if lower == upper:
             primes = self._all_primes(lower)
             literals = {literal for cube in primes for literal in cube}
             if not any(literal ^ 1 in literals for literal in literals):
-                return primes  # where no atom has both polarities, none of the primes can go
+                return primes  # if no atom has both polarities, all primes are needed
         return self._irredundant(lower, upper)[0]
 
     def _upper(self, guard: int) -> int:
-        """``guard or not D``."""
+        """Return ``guard or not D``."""
         if self._allowed == ACCEPT:
             return guard
         return self._diagrams.disjoin(guard, self._negation(self._allowed))
@@ -185,7 +190,7 @@ class Guards:
         return self._diagrams.relabel(guard, negations.__getitem__, negations) if negation is None else negation
 
     def _possible(self, cube: Cube) -> bool:
-        """Whether some allowed letter meets the cube; guards share many cubes."""
+        """Whether some allowed letter satisfies the cube; cached, since guards share many cubes."""
         known = self._possible_cubes.get(cube)
         if known is None:
             known = self._possible_cubes[cube] = self._is_met(cube)
@@ -210,7 +215,11 @@ class Guards:
         return False
 
     def _all_primes(self, function: int) -> tuple[Cube, ...]:
-        """Every prime implicant: those of both cofactors' conjunction, and with a literal those of one alone."""
+        """Return every prime implicant of a function.
+
+        They are the prime implicants of the conjunction of both cofactors and, with a literal
+        added, the other prime implicants of each cofactor.
+        """
         known = self._primes.get(function)
         if known is None:
             diagrams = self._diagrams
@@ -227,19 +236,19 @@ class Guards:
         return known
 
     def _irredundant(self, lower: int, upper: int) -> tuple[tuple[Cube, ...], int]:
-        """An irredundant sum of products between two functions, and the function that it is (Minato 1993)."""
+        """Return an irredundant sum of products between two functions, and its function (Minato 1993)."""
         if lower == REJECT:
             return (), REJECT
         if upper == ACCEPT:
             return ((),), ACCEPT
-        found = self._covers.get((lower, upper))
-        if found is None:
+        cover = self._covers.get((lower, upper))
+        if cover is None:
             diagrams, negation = self._diagrams, self._negation
             conjoin, disjoin = diagrams.conjoin, diagrams.disjoin
             atom = min(diagrams.atom[lower], diagrams.atom[upper])
             lower0, lower1 = _cofactors(diagrams, lower, atom)
             upper0, upper1 = _cofactors(diagrams, upper, atom)
-            # First what only a product with a literal can cover, then the rest without one.
+            # First cover what needs a product with a literal of the atom, then the rest without one.
             without, covered0 = self._irredundant(conjoin(lower0, negation(upper1)), upper0)
             with_, covered1 = self._irredundant(conjoin(lower1, negation(upper0)), upper1)
             rest = disjoin(conjoin(lower0, negation(covered0)), conjoin(lower1, negation(covered1)))
@@ -250,12 +259,12 @@ class Guards:
                 *free,
             )
             self._count(len(cubes))
-            found = cubes, disjoin(diagrams.node(atom, covered0, covered1), covered)
-            self._covers[lower, upper] = found
-        return found
+            cover = cubes, disjoin(diagrams.node(atom, covered0, covered1), covered)
+            self._covers[lower, upper] = cover
+        return cover
 
     def _count(self, products: int) -> None:
-        """Count the products that a function has; all functions on the way to a guard count."""
+        """Count the products of a function; the functions computed on the way to a guard count too."""
         self._products += products
         if products > PRIME_LIMIT:
             raise TooManyPrimes

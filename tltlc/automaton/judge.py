@@ -1,4 +1,4 @@
-"""When to judge a spec that has no ``judge`` clause (semantics, section 4; docs/adr/0009)."""
+"""Decide when to judge a spec that has no ``judge`` clause (semantics, section 4; docs/adr/0009)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,16 @@ from tltlc.resolve.spec import Judge, Part
 
 
 def judge_of(parts: Iterable[Part]) -> Judge:
-    """Return when to judge a spec over finite traces that has these parts and no ``judge`` clause."""
+    """Return when to judge a spec over finite traces with these parts and no ``judge`` clause."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
 def default_judge(formula: Formula) -> Judge:
-    """Return ``limit`` if the formula is true of "nothing yet", else ``goal``."""
+    """Return ``limit`` if the formula is true of "nothing yet", else ``goal``.
+
+    In negation normal form, literals and ``G R W N`` are true of nothing yet, ``F U M X`` are
+    false.
+    """
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}
     stack = [normal]
@@ -31,7 +35,10 @@ def default_judge(formula: Formula) -> Judge:
 
 
 def _at_once(node: Formula) -> list[Formula]:
-    """The operands of an ``and`` or ``or``; of no other operator, nor of ``F[0,n] p``, which is ``p | X(p | …)``."""
+    """Return the operands of an ``and`` or ``or``; empty for any other operator and for ``F[0,n] p``.
+
+    ``F[0,n] p`` is the formula ``p | X(p | …)``.
+    """
     if node.op == "or":
         return [] if bounded(node) else with_bounds(node)
     return list(node.args) if node.op == "and" else []
