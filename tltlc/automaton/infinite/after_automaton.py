@@ -1,7 +1,8 @@
-"""The after-automaton: from what remains to be done to what remains after a letter.
+"""The after-automaton: its states are obligations, what remains of the formula after the letters so far.
 
-An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, as a binary decision
-diagram (:class:`~tltlc.automaton.diagrams.Diagrams`), so that formulas that agree as such functions are one state.
+An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, stored
+as a binary decision diagram (:class:`~tltlc.automaton.diagrams.Diagrams`).  Formulas that are equal
+as such functions are therefore one state.
 """
 
 from __future__ import annotations
@@ -18,20 +19,22 @@ from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
 
 STEPS_PER_OBLIGATION: Final = 100
-"""The steps of work that each obligation takes which letters lead to from another one.
+"""The least steps of work that each successor of an obligation takes.
 
-Where a budget has fewer, it does not suffice to follow them all, so it is of no use to list them first.
+If an obligation has more successors than the budget allows at this rate, the construction fails
+before it lists them.
 """
 
 _TEMPORAL: Final = ("U", "W", "X")
 
 
 class After:
-    """Successors of obligations over ``atoms``; ``letters`` holds them as functions of the letter.
+    """Successors of obligations over ``atoms``, as functions of the letter in the table ``letters``.
 
-    ``formulas[v]`` is the formula of the obligations' variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid one.
-    Where an obligation becomes too large, all that makes one raises :class:`~tltlc.automaton.diagrams.OutOfSteps`;
-    what makes functions of letters raises :class:`~tltlc.automaton.infinite.work.OutOfWork`.
+    ``formulas[v]`` is the formula of variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid
+    formula.  Methods that make obligations raise :class:`~tltlc.automaton.diagrams.OutOfSteps` if
+    one becomes too large.  Methods that make functions of letters raise
+    :class:`~tltlc.automaton.infinite.work.OutOfWork`.
     """
 
     def __init__(self, atoms: Sequence[str], letters: Letters[Any]) -> None:
@@ -50,23 +53,23 @@ class After:
         self._sources: dict[int, Formula] = {FALSE: build.FALSE, TRUE: build.TRUE}
 
     def obligation(self, formula: Formula) -> int:
-        """The obligation of a formula in normal form."""
-        found = self._obligations.get(formula)
-        if found is not None:
-            return found
-        # As over finite traces (`automaton/successors.py`).
+        """Return the obligation of a formula in normal form."""
+        obligation = self._obligations.get(formula)
+        if obligation is not None:
+            return obligation
+        # Shortest bound first, as over finite traces (`automaton/finite/successors.py`).
         chain = [formula, *counted_down_from(formula, self._obligations)]
         for bound in chain[:-1]:
             self._variable(bound)
         for bound in reversed(chain):
-            found = self._obligations[bound] = self._made(bound)
-            known = self._sources.get(found)
+            obligation = self._obligations[bound] = self._as_obligation(bound)
+            known = self._sources.get(obligation)
             if known is None or _weight(bound) < _weight(known):
-                self._sources[found] = bound
-        assert found is not None
-        return found
+                self._sources[obligation] = bound
+        assert obligation is not None
+        return obligation
 
-    def _made(self, formula: Formula) -> int:
+    def _as_obligation(self, formula: Formula) -> int:
         match formula.op:
             case "true":
                 return TRUE
@@ -75,13 +78,13 @@ class After:
             case "and" | "or":
                 combine = self.diagrams.both if formula.op == "and" else self.diagrams.either
                 result = self.obligation(formula.args[-1])
-                for each in reversed(formula.args[:-1]):
-                    result = combine(self.obligation(each), result)
+                for argument in reversed(formula.args[:-1]):
+                    result = combine(self.obligation(argument), result)
                 return result
             case "not":
                 return self.diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
         result = self.diagrams.obligation(self._variable(formula), FALSE, TRUE)
-        # So that `p U q | q` and `p U q` are one obligation, as over finite traces (`automaton/successors.py`).
+        # This makes `p U q | q` and `p U q` one obligation, as over finite traces (`automaton/finite/successors.py`).
         for weaker in _implied_by(formula):
             result = self.diagrams.both(result, self.obligation(weaker))
         for stronger in _that_imply(formula):
@@ -96,12 +99,12 @@ class After:
         return number
 
     def after(self, obligation: int) -> int:
-        """What remains after each letter, as a function of the letter."""
+        """Return the obligation that remains after each letter, as a function of the letter."""
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
         absent, present = self.diagrams.absent, self.diagrams.present
-        # Obligations are as deep as bounds are long.
+        # No recursion: obligations are as deep as bounds are long.
         stack = [obligation]
         while stack:
             node = stack[-1]
@@ -115,26 +118,30 @@ class After:
         return known[obligation]
 
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
-        """What remains, from what does of the obligation without its first variable and with it."""
+        """Return what remains of an obligation after each letter, given the same for its two cofactors.
+
+        ``absent`` and ``present`` are the functions of the obligation with its first variable false
+        and true.
+        """
         formula, letters = self.formulas[self.diagrams.variable[obligation]], self.letters
         if formula.op == "atom":
             atom = self._atoms[formula.name]
             true, false = letters.leaf(TRUE), letters.leaf(FALSE)
             holds = self.both(letters.node(atom, false, true), present)
             return self.either(self.both(letters.node(atom, true, false), absent), holds)
-        # Obligations grow with their temporal variables.
+        # Obligations are monotone in their temporal variables.
         return self.either(absent, self.both(self.of_formula(formula), present))
 
     def both(self, x: int, y: int) -> int:
-        """``and`` on every letter."""
+        """Return the ``and`` of two functions on every letter."""
         return self.letters.combined(self._counted(self.diagrams.both), x, y, self._both)
 
     def either(self, x: int, y: int) -> int:
-        """``or`` on every letter."""
+        """Return the ``or`` of two functions on every letter."""
         return self.letters.combined(self._counted(self.diagrams.either), x, y, self._either)
 
     def _counted(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """``combine``, which raises OutOfWork where one function of the letter gets too many different values."""
+        """Return ``combine`` with a counter: it raises OutOfWork if a function gets too many different values."""
         reached: set[int] = set()
         most = self._most_reached
 
@@ -148,11 +155,11 @@ class After:
         return counted
 
     def of_formula(self, formula: Formula) -> int:
-        """What remains of a formula after each letter."""
-        found = self._of_formula.get(formula)
-        if found is None:
-            found = self._of_formula[formula] = self._expanded(formula)
-        return found
+        """Return what remains of a formula after each letter."""
+        step = self._of_formula.get(formula)
+        if step is None:
+            step = self._of_formula[formula] = self._expanded(formula)
+        return step
 
     def _expanded(self, formula: Formula) -> int:
         letters = self.letters
@@ -166,21 +173,21 @@ class After:
             case "and" | "or":
                 combine = self.both if formula.op == "and" else self.either
                 result = self.of_formula(formula.args[-1])
-                for each in reversed(formula.args[:-1]):
-                    result = combine(self.of_formula(each), result)
+                for argument in reversed(formula.args[:-1]):
+                    result = combine(self.of_formula(argument), result)
                 return result
             case "X":
                 return letters.leaf(self.obligation(formula.args[0]))
             case "U" | "W":
                 left, right = map(self.of_formula, formula.args)
                 return self.either(right, self.both(left, letters.leaf(self.obligation(formula))))
-        # Rigid.
+        # Rigid formulas do not change with time.
         return letters.leaf(self.obligation(formula))
 
     # --- obligations as formulas ------------------------------------------------------------------
 
     def formula(self, obligation: int) -> Formula:
-        """A formula of this obligation: the smallest one that was met, or one from its diagram."""
+        """Return a formula of an obligation: the smallest one seen so far, or one read from its diagram."""
         known = self._sources.get(obligation)
         if known is None:
             diagrams = self.diagrams
@@ -195,13 +202,14 @@ class After:
         return known
 
     def replaced(self, obligation: int, change: Callable[[Formula], int], memo: dict[int, int]) -> int:
-        """The obligation with every temporal formula replaced by the obligation that ``change`` gives for it; ``memo``
-        may be shared by calls with the same ``change``.
+        """Return the obligation with every temporal formula replaced by the obligation that ``change`` returns for it.
+
+        Calls with the same ``change`` may share ``memo``.
         """
         if obligation in (FALSE, TRUE):
             return obligation
-        found = memo.get(obligation)
-        if found is None:
+        result = memo.get(obligation)
+        if result is None:
             diagrams = self.diagrams
             formula = self.formulas[diagrams.variable[obligation]]
             absent = self.replaced(diagrams.absent[obligation], change, memo)
@@ -209,15 +217,15 @@ class After:
             if formula.op == "atom":
                 holds = self.obligation(formula)
                 fails = self.obligation(build.not_(formula))
-                found = diagrams.either(diagrams.both(holds, present), diagrams.both(fails, absent))
+                result = diagrams.either(diagrams.both(holds, present), diagrams.both(fails, absent))
             else:
-                found = diagrams.either(absent, diagrams.both(change(formula), present))
-            memo[obligation] = found
-        return found
+                result = diagrams.either(absent, diagrams.both(change(formula), present))
+            memo[obligation] = result
+        return result
 
 
 def _implied_by(formula: Formula) -> Iterator[Formula]:
-    """Temporal subformulas that hold wherever the formula does: ``F b`` where ``F(a & X F b)`` does."""
+    """Yield temporal subformulas that the formula implies: ``F b`` for ``F(a & X F b)``."""
     if formula.op == "X" and formula.args[0].op == "and" and (shorter := counted_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
@@ -229,7 +237,7 @@ def _implied_by(formula: Formula) -> Iterator[Formula]:
 
 
 def _that_imply(formula: Formula) -> Iterator[Formula]:
-    """Temporal subformulas wherever which the formula holds: it does where ``G b`` does, if it is ``a U G b``."""
+    """Yield temporal subformulas that imply the formula: ``G b`` for ``a U G b``."""
     if formula.op == "X" and formula.args[0].op == "or" and (shorter := counted_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)

@@ -1,4 +1,4 @@
-"""What the cycles of a Rabin automaton say of its states: goals, traps, verdicts, and when a spec is judged."""
+"""Analyse the cycles of a Rabin automaton: goals, traps, verdicts, and when to judge a spec."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
-    """The analysis of what the construction makes."""
+    """Return the analysis of an automaton from the construction."""
     edges = [
         (state, target, pair_marks(marks))
         for state in range(len(automaton.steps))
@@ -26,7 +26,7 @@ def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
 
 
 def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
-    """The analysis of an automaton by its edges and pairs, whose indices are in range, and by nothing else of it."""
+    """Return the analysis of an automaton; reads only its edges and pairs, whose indices must be in range."""
     edges = [
         (edge.source, edge.target, pair_marks(marks)) for edge, marks in zip(fspa.edges, fspa.marks(), strict=True)
     ]
@@ -34,10 +34,11 @@ def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
 
 
 class Analysis:
-    """``targets`` are the successors of each state, ``goals`` the states on an accepted cycle (semantics, section 5).
+    """The successors and verdicts of states, and the goals: states on an accepted cycle (semantics, section 5).
 
-    State 0 is initial; marks are as :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks` numbers them.  Raises
-    :class:`~tltlc.automaton.infinite.work.OutOfWork`, in all that it does.
+    ``targets`` maps each state to its successors; ``goals`` is the set of goals.  State 0 is
+    initial.  Marks are numbered as by :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`.
+    The constructor and every method may raise :class:`~tltlc.automaton.infinite.work.OutOfWork`.
     """
 
     def __init__(self, states: int, edges: Sequence[Edge], pairs: int, work: Work) -> None:
@@ -50,11 +51,15 @@ class Analysis:
         self.goals = _states(accepting_parts(distinct, self._clauses, work))
         self._alive = self._reaching(self.goals)
         self._doubtful = self._reaching(self._rejected(distinct))
-        # Runs that avoid traps.
+        # The edges that do not lead to a trap.
         self._edges = frozenset(edge for edge in distinct if edge[1] in self._alive)
 
     def verdict(self, state: int) -> Verdict:
-        """``satisfied`` where every run is accepted, ``violated`` where none is."""
+        """Return the verdict of a state.
+
+        ``satisfied`` if every run from it is accepted, ``violated`` if none is, else ``holding``
+        for goals and ``pending`` for other states.
+        """
         if state not in self._alive:
             return "violated"
         if state not in self._doubtful:
@@ -62,7 +67,9 @@ class Analysis:
         return "holding" if state in self.goals else "pending"
 
     def default_judge(self) -> Judge:
-        """``goal`` where the initial state is no goal, and in goals it is enough to stay out of traps."""
+        """Return ``goal`` if the initial state is no goal, and runs from goals that avoid traps are
+        accepted; else ``limit``.
+        """
         if 0 in self.goals:
             return "limit"
         rejected = self._rejected(self._edges)
@@ -76,24 +83,26 @@ class Analysis:
         return "limit" if reached & rejected else "goal"
 
     def _rejected(self, edges: Edges) -> set[int]:
-        """The states on a cycle that is not accepted."""
-        found = (some for part in parts(edges, self._work) for some in rejecting_parts(part, self._clauses, self._work))
-        return _states(found)
+        """Return the states on a cycle that is not accepted."""
+        rejected = (
+            cycle for part in parts(edges, self._work) for cycle in rejecting_parts(part, self._clauses, self._work)
+        )
+        return _states(rejected)
 
     def _reaching(self, states: Collection[int]) -> set[int]:
-        """The states from which one of these is reached."""
+        """Return the states from which one of the given states can be reached."""
         sources: dict[int, list[int]] = {state: [] for state in self.targets}
         for state, targets in self.targets.items():
             for target in targets:
                 sources[target].append(state)
-        found = set(states)
-        stack = list(found)
+        reaching = set(states)
+        stack = list(reaching)
         while stack:
             for source in sources[stack.pop()]:
-                if source not in found:
-                    found.add(source)
+                if source not in reaching:
+                    reaching.add(source)
                     stack.append(source)
-        return found
+        return reaching
 
 
 def _states(parts_: Iterable[Edges]) -> set[int]:

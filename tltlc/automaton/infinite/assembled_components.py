@@ -1,4 +1,4 @@
-"""Components put together to an automaton, in which states that nothing tells apart are one."""
+"""Join components into one automaton and merge states that cannot be distinguished."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.pairs import Piece
 
 Place = tuple[int, State]
-"""A state of the component that has this number."""
+"""The number of a component, and one of its states."""
 
 
 def joined(
@@ -22,10 +22,11 @@ def joined(
     initial: Place,
     apart: Collection[int] = (),
 ) -> tuple[Rabin, dict[Place, int]]:
-    """The automaton of all that is reached, with the labels of the components, and the numbers of its states.
+    """Return the automaton of all reachable states, and the number of each component state in it.
 
-    ``initial`` has 0.  An exit to a label leads to its ``entry``; states whose labels are in ``apart`` do not become
-    one with others.
+    ``initial`` is state 0.  An exit to a label leads to its ``entry``.  States keep the labels of
+    the components; states whose labels are in ``apart`` are not merged with states whose labels are
+    not.
     """
     steps = _steps(letters, pieces, entry)
     reached = _reached(letters, steps, initial)
@@ -40,12 +41,12 @@ def joined(
 
 
 def _steps(letters: Letters[Any], pieces: Sequence[Piece], entry: Mapping[int, Place]) -> dict[Place, int]:
-    """The steps of all components, with their exits leading to where the next ones are entered."""
+    """Return the steps of all components, with each exit replaced by the entry of the next component."""
     steps: dict[Place, int] = {}
     for number, piece in enumerate(pieces):
 
-        def leaf(each: tuple[State, PairMarks], number: int = number) -> tuple[Place, PairMarks] | None:
-            target, marks = each
+        def leaf(inner: tuple[State, PairMarks], number: int = number) -> tuple[Place, PairMarks] | None:
+            target, marks = inner
             if target[0] != "exit":
                 return (number, target), marks
             return None if target[1] == IMPOSSIBLE else (entry[target[1]], NO_MARKS)
@@ -69,9 +70,11 @@ def _reached(letters: Letters[Any], steps: Mapping[Place, int], initial: Place) 
 def _told_apart(
     letters: Letters[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
 ) -> dict[Place, int]:
-    """Numbers from 0 on in order, the same for states that ``apart``, targets and marks do not tell apart.
+    """Number the states from 0 in order; states that cannot be distinguished get the same number.
 
-    Blocks are split until they are none; only states that lead to what got a new number are looked at again.
+    States are distinguished by ``apart``, by the numbers of their targets, and by marks.  This is
+    partition refinement: blocks are split until each has one step, and only states that lead to a
+    changed state are visited again.
     """
     sources: dict[Place, list[Place]] = {place: [] for place in reached}
     for place in reached:
@@ -81,7 +84,7 @@ def _told_apart(
     block: dict[Place, int] = dict(zip(reached, map(int, apart), strict=True))
     sizes = Counter(block.values())
     signature: dict[int, int | None] = dict.fromkeys(sizes)
-    """What all states of a block had in common when it was last looked at."""
+    """The step, read as blocks, that all states of a block have; None before the block's first visit."""
     dirty: Iterable[Place] = reached
     while dirty:
         memo: dict[int, int] = {}
@@ -90,15 +93,15 @@ def _told_apart(
             letters.work.spend()
             groups.setdefault((block[place], _read(letters, steps[place], block, memo)), []).append(place)
         moved: list[Place] = []
-        for (number, found), members in groups.items():
-            if signature[number] == found:
+        for (number, step), members in groups.items():
+            if signature[number] == step:
                 continue
             if signature[number] is None or len(members) == sizes[number]:
-                signature[number] = found
+                signature[number] = step
                 continue
             sizes[number] -= len(members)
             new = len(sizes)
-            sizes[new], signature[new] = len(members), found
+            sizes[new], signature[new] = len(members), step
             block.update(dict.fromkeys(members, new))
             moved += members
         dirty = dict.fromkeys(source for place in moved for source in sources[place])
@@ -107,5 +110,5 @@ def _told_apart(
 
 
 def _read(letters: Letters[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
-    """A step with targets read as their numbers."""
+    """Return a step with each target replaced by its number."""
     return letters.mapped(lambda leaf: leaf and (number[leaf[0]], leaf[1]), step, memo)

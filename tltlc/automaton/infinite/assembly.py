@@ -1,4 +1,4 @@
-"""States, edges and pairs as an :class:`~tltlc.automaton.fspa.Fspa` has them, of functions from letters."""
+"""Convert the steps of a Rabin automaton to the states, edges and pairs of an :class:`~tltlc.automaton.fspa.Fspa`."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from tltlc.io.limits import WORK
 
 
 class Analysis(Protocol):
-    """What is known of states by where they lead, as :class:`~tltlc.automaton.infinite.analysis.Analysis` has it."""
+    """The part of :class:`~tltlc.automaton.infinite.analysis.Analysis` that the conversion needs."""
 
     targets: dict[int, list[int]]
     goals: set[int]
 
     def verdict(self, state: int) -> Verdict:
-        """The verdict of a state."""
+        """Return the verdict of a state."""
 
 
 @record
@@ -43,11 +43,13 @@ def assembled(
     text: Callable[[int], Text],
     first: Sequence[int] | None = None,
 ) -> Parts:
-    """States in the order of an artefact; ``text`` gives the label of a state by its number in the automaton.
+    """Return states, edges and pairs, with the states in the order of an artefact.
 
-    Of states that may come in any order those come first that do in ``first``, which has all of them.
+    ``text`` returns the label of a state, given its number in the automaton.  ``first``, if given,
+    lists all states in the order that breaks ties.
 
-    Raises :class:`~tltlc.automaton.guards.TooManyPrimes`, :class:`~tltlc.automaton.diagrams.OutOfSteps`.
+    Raises :class:`~tltlc.automaton.guards.TooManyPrimes`,
+    :class:`~tltlc.automaton.diagrams.OutOfSteps`.
     """
     distance = distances(analysis.targets, accepting=analysis.goals.__contains__)
     targets = {state: analysis.targets[state] for state in first} if first else analysis.targets
@@ -68,31 +70,34 @@ def _edges(
     atoms: Sequence[str],
     exclusive: Sequence[Sequence[int]],
 ) -> tuple[tuple[Edge, ...], tuple[Pair, ...]]:
-    """The edges, each with one set of marks, by source, target and marks; and the pairs, by the places of edges."""
+    """Return the edges, sorted by source, target and marks, and the pairs, by indices of edges.
+
+    Each edge has one set of marks.
+    """
     diagrams, leaves = Diagrams(), _Leaves()
     guards = Guards(diagrams, atoms, allowed_letters(diagrams, exclusive))
-    made: dict[int, Guard] = {}
-    found: list[tuple[int, int, list[Any], Guard]] = []
+    guard_of: dict[int, Guard] = {}
+    marked_edges: list[tuple[int, int, list[Any], Guard]] = []
     for state in order:
         transition = leaves.transition(automaton.letters, automaton.steps[state], diagrams)
         for leaf, guard in guards.by_leaf(transition).items():
-            if guard not in made:
-                made[guard] = Guard(guards.text(guard), guards.primes(guard))
+            if guard not in guard_of:
+                guard_of[guard] = Guard(guards.text(guard), guards.primes(guard))
             target, marks = leaves.values[diagrams.low[leaf]]
-            found.append((number[state], number[target], sorted(marks), made[guard]))
-            if len(found) > WORK["edges"]:
+            marked_edges.append((number[state], number[target], sorted(marks), guard_of[guard]))
+            if len(marked_edges) > WORK["edges"]:
                 raise TooManyPrimes("the automaton", WORK["edges"], "edges")
-    found.sort(key=lambda each: each[:3])
+    marked_edges.sort(key=lambda edge: edge[:3])
 
     def marked(pair: int, kind: str) -> tuple[int, ...]:
-        return tuple(place for place, (_, _, marks, _) in enumerate(found) if (pair, kind) in marks)
+        return tuple(place for place, (_, _, marks, _) in enumerate(marked_edges) if (pair, kind) in marks)
 
     pairs = tuple(Pair(marked(pair, "fin"), marked(pair, "inf")) for pair in range(automaton.pairs))
-    return tuple(Edge(source, target, guard) for source, target, _, guard in found), pairs
+    return tuple(Edge(source, target, guard) for source, target, _, guard in marked_edges), pairs
 
 
 class _Leaves:
-    """Steps as transitions of diagrams, whose leaves count targets and marks from 0 on."""
+    """Converts steps to transitions of diagrams, whose leaves are indices into ``values``: targets with marks."""
 
     def __init__(self) -> None:
         self.values: list[Any] = []
@@ -100,19 +105,19 @@ class _Leaves:
         self._known: dict[int, int] = {}
 
     def transition(self, letters: Letters[Any], step: int, diagrams: Diagrams) -> int:
-        """A step as a transition."""
-        found = self._known.get(step)
-        if found is None:
+        """Return a step as a transition."""
+        node = self._known.get(step)
+        if node is None:
             if letters.atom[step] != LEAF:
                 low = self.transition(letters, letters.low[step], diagrams)
                 high = self.transition(letters, letters.high[step], diagrams)
-                found = diagrams.node(letters.atom[step], low, high)
+                node = diagrams.node(letters.atom[step], low, high)
             elif letters.value[step] is None:
-                found = IMPOSSIBLE
+                node = IMPOSSIBLE
             else:
-                found = diagrams.leaf(self._number(letters.value[step]), 0)
-            self._known[step] = found
-        return found
+                node = diagrams.leaf(self._number(letters.value[step]), 0)
+            self._known[step] = node
+        return node
 
     def _number(self, value: Any) -> int:
         if value not in self._numbers:

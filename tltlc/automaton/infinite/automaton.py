@@ -10,7 +10,7 @@ from tltlc.automaton.infinite.letters import Letters
 from tltlc.core.record import record
 
 PairMarks = frozenset[Mark]
-"""What a letter is marked with: ``(pair, "fin")`` and ``(pair, "inf")``."""
+"""The marks of a letter: ``(pair, "fin")`` and ``(pair, "inf")``."""
 
 NO_MARKS: Final[PairMarks] = frozenset()
 
@@ -19,9 +19,9 @@ NO_MARKS: Final[PairMarks] = frozenset()
 class Rabin:
     """A deterministic, complete automaton: ``steps[q]`` is a function from the letter to a state and marks.
 
-    A run is accepted if of some pair it meets ``fin`` finitely and ``inf`` infinitely often.  State 0 is initial; a
-    step is None on letters that ``exclusive`` rules out.  A state's label is the formula that remains, or what is known
-    of it instead.
+    A run is accepted if, for some pair, it takes ``fin`` marks finitely often and ``inf`` marks
+    infinitely often.  State 0 is initial.  A step is None on letters that ``exclusive`` rules out.
+    A state's label is the formula that remains, or other data that identifies it.
     """
 
     letters: Letters[Any]
@@ -30,10 +30,10 @@ class Rabin:
     pairs: int
 
     def leaves(self, state: int) -> list[tuple[int, PairMarks]]:
-        """Where letters lead from a state, and with which marks."""
+        """Return the successors of a state, each with its marks."""
         return [leaf for leaf in self.letters.values(self.steps[state]) if leaf is not None]
 
     def step(self, state: int, letter: Sequence[bool]) -> tuple[int, PairMarks]:
-        """The state after a letter, and its marks; a letter says of each atom whether it holds."""
-        found: tuple[int, PairMarks] = self.letters.at(self.steps[state], letter.__getitem__)
-        return found
+        """Return the state after a letter, and the letter's marks; a letter has a truth value for each atom."""
+        successor: tuple[int, PairMarks] = self.letters.at(self.steps[state], letter.__getitem__)
+        return successor

@@ -1,4 +1,4 @@
-"""When the automaton of a specification over infinite traces takes too much: which part of the spec is to blame."""
+"""Find the part of a spec over infinite traces that makes its automaton too expensive."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.spec import Part, Spec
 
 _FOR_A_PART: Final = 500_000
+"""Steps of work for the automaton of one part alone: enough to rank the parts, few enough for a quick answer."""
 _FOR_ALL_PARTS: Final = 2_000_000
-"""Steps of work for the automata of parts alone: enough to rank the parts, few enough to answer soon."""
+"""Steps of work for the automata of all parts."""
 
 
 def blow_up(spec: Spec, reason: Exception) -> TltlError:
-    """The error for a spec whose automaton takes too much: TLT0501, or TLT0502 for a guard's prime implicants."""
+    """Return the error for a spec whose automaton is too expensive: TLT0501, or TLT0502 for prime implicants."""
     too_large, advice = why(reason), ADVICE
     if isinstance(reason, OutOfWork):
         too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
@@ -27,7 +28,7 @@ def blow_up(spec: Spec, reason: Exception) -> TltlError:
     def size(part: Part, spec: Spec) -> Size | None:
         nonlocal left
         if left < _FOR_A_PART:
-            # The parts that were looked at are more than a message names.
+            # The parts measured so far are more than a message names.
             return Size(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)

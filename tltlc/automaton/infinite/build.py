@@ -1,4 +1,4 @@
-"""From a resolved specification over infinite traces to its automaton (semantics, section 5)."""
+"""Build the automaton of a resolved spec over infinite traces (semantics, section 5)."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ from tltlc.resolve.spec import Spec
 
 
 def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
-    """The deterministic, complete Rabin automaton of a specification over infinite traces.
+    """Return the deterministic, complete Rabin automaton of a spec over infinite traces.
 
-    A state accepts (``accepting``) that lies on an accepted cycle; a trap is one from which none is reached.  Raises
-    :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where the construction takes more than
-    :data:`~tltlc.automaton.infinite.work.STEPS_PER_STATE` steps for each state of ``state_budget``, TLT0502 where a
-    guard has too
-    many prime implicants.
+    A state is ``accepting`` if it lies on an accepted cycle; it is a trap if no such state can be
+    reached from it.  Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the
+    construction takes more than :data:`~tltlc.automaton.infinite.work.STEPS_PER_STATE` steps for
+    each state of ``state_budget``, TLT0502 if there are too many edges or prime implicants.
     """
     with recursion_room():
         try:

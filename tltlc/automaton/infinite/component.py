@@ -1,4 +1,7 @@
-"""A strongly connected component of the after-automaton as an automaton of its own: labels times memories of parts."""
+"""Convert a strongly connected component of the after-automaton to an automaton of its own.
+
+Its states are labels (obligations) combined with the memories of the formula's parts.
+"""
 
 from __future__ import annotations
 
@@ -15,10 +18,10 @@ from tltlc.core.record import record
 from tltlc.logic.formula import Formula
 
 IMPOSSIBLE: Final = -1
-"""Stands for the label after a letter that there is not."""
+"""Sentinel: no successor on this letter."""
 
 State = tuple[Any, ...]
-"""A label and the memories of the parts; as a target also ``("exit", label)``, outside the component."""
+"""A label and the memories of the parts; a target outside the component is ``("exit", label)``."""
 
 Leaf = tuple[State, Marks]
 """The state after a letter, and the marks of the letter."""
@@ -28,9 +31,9 @@ _NONE: Final[Marks] = frozenset()
 
 @record
 class Local:
-    """States with their labels and, of each, a function from the letter to a :data:`Leaf`.
+    """A component: states with their labels and steps, each step a function from the letter to a :data:`Leaf`.
 
-    A run that stays is accepted if one of ``accepts`` is met.
+    A run that stays in the component is accepted if it meets one of the clauses ``accepts``.
     """
 
     labels: dict[State, int]
@@ -39,29 +42,29 @@ class Local:
 
 
 def parts_of(after: After, normal: Formula, *, keep: bool, in_turn: bool) -> tuple[Skeleton, list[Part]]:
-    """The Boolean skeleton of a normalised formula and its parts.
+    """Return the Boolean skeleton of a normalised formula, and its parts.
 
-    ``in_turn``: those that can be followed one at a time are one part.  ``keep``: see
+    If ``in_turn``, parts that can be followed one at a time become one part.  For ``keep`` see
     :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
-    found: dict[Formula | tuple[Formula, ...], int] = {}
+    index_of: dict[Formula | tuple[Formula, ...], int] = {}
     parts: list[Part] = []
 
     def read(formula: Formula) -> Skeleton:
         if formula.op in ("and", "or"):
-            group = tuple(each for each in formula.args if each.op == ("G" if formula.op == "and" else "F"))
+            group = tuple(operand for operand in formula.args if operand.op == ("G" if formula.op == "and" else "F"))
             if not in_turn or len(group) < 2:
                 return (formula.op, *map(read, formula.args))
-            if group not in found:
-                found[group] = len(parts)
-                parts.append(RoundRobin(after, [_recurrence(after, each, keep=keep) for each in group]))
-            others = [read(each) for each in formula.args if each not in group]
-            return (formula.op, ("leaf", found[group]), *others)
-        if formula not in found:
-            found[formula] = len(parts)
+            if group not in index_of:
+                index_of[group] = len(parts)
+                parts.append(RoundRobin(after, [_recurrence(after, operand, keep=keep) for operand in group]))
+            rest = [read(operand) for operand in formula.args if operand not in group]
+            return (formula.op, ("leaf", index_of[group]), *rest)
+        if formula not in index_of:
+            index_of[formula] = len(parts)
             rigid = formula.op in ("G", "F")
             parts.append(_recurrence(after, formula, keep=keep) if rigid else _breakpoint(after, formula))
-        return ("leaf", found[formula])
+        return ("leaf", index_of[formula])
 
     return read(normal), parts
 
@@ -71,7 +74,7 @@ def has_turns(normal: Formula) -> bool:
     rigid = {"and": "G", "or": "F"}.get(normal.op)
     if rigid is None:
         return False
-    return sum(each.op == rigid for each in normal.args) > 1 or any(map(has_turns, normal.args))
+    return sum(operand.op == rigid for operand in normal.args) > 1 or any(map(has_turns, normal.args))
 
 
 def _recurrence(after: After, formula: Formula, *, keep: bool) -> Recurrence:
@@ -90,9 +93,10 @@ def local(
     skeleton: Skeleton,
     parts: Sequence[Part],
 ) -> Local:
-    """The smallest bottom component of the product of labels ``inside`` and memories, from the label ``first``.
+    """Return the smallest bottom component of the product of the labels ``inside`` with the parts' memories.
 
-    ``step_of`` gives the labels after a label, as a function of the letter.
+    The product starts at the label ``first`` with the initial memories.  ``step_of`` returns the
+    label after a given label, as a function of the letter.
     """
     initial: State = (first, *(part.initial for part in parts))
     steps, best = explored(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
@@ -109,7 +113,7 @@ def local(
 def explored(
     letters: Letters[Any], initial: State, step_of: Callable[[State], int]
 ) -> tuple[dict[State, int], list[State]]:
-    """The steps of all states that are reached, in the order of their distance; and the smallest bottom component."""
+    """Return the steps of all reachable states, in breadth-first order, and the smallest bottom component."""
     steps: dict[State, int] = {}
     targets: dict[State, list[State]] = {}
     queue = [initial]
@@ -125,7 +129,7 @@ def explored(
 
 
 def merged(letters: Letters[Any], one: Local) -> Local:
-    """States that cannot be told apart by labels and by the marks that matter become one."""
+    """Merge states that cannot be distinguished by labels and by the marks that clauses use."""
     labels, steps, accepts = one.labels, one.steps, one.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
     block = {state: labels[state] for state in steps}
@@ -159,19 +163,19 @@ def merged(letters: Letters[Any], one: Local) -> Local:
 def _step(
     letters: Letters[Any], step_of: Callable[[int], int], inside: Collection[int], state: State, parts: Sequence[Part]
 ) -> int:
-    """From the letter to the :data:`Leaf` of a state of the product."""
+    """Return the :data:`Leaf` after a state of the product, as a function of the letter."""
 
     def start(label: int) -> Leaf:
         return ((label,), _NONE) if label in inside else (("exit", label), _NONE)
 
-    found = letters.mapped(start, step_of(state[0]), {})
+    step = letters.mapped(start, step_of(state[0]), {})
     for index, (part, memory) in enumerate(zip(parts, state[1:], strict=True)):
 
-        def add(leaf: Leaf, one: tuple[Memory, bool], index: int = index) -> Leaf:
+        def add(leaf: Leaf, part_leaf: tuple[Memory, bool], index: int = index) -> Leaf:
             target, marks = leaf
             if target[0] == "exit":
                 return leaf
-            return (*target, one[0]), marks | {index} if one[1] else marks
+            return (*target, part_leaf[0]), marks | {index} if part_leaf[1] else marks
 
-        found = letters.combined(add, found, part.step(memory), {})
-    return found
+        step = letters.combined(add, step, part.step(memory), {})
+    return step

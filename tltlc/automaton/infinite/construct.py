@@ -1,10 +1,10 @@
-"""From a formula to its deterministic Rabin automaton.
+"""Build the deterministic Rabin automaton of a formula.
 
-The after-automaton has what remains of the formula as its states.  Each of its strongly connected components is made
-an automaton of its own (:mod:`tltlc.automaton.infinite.component`): the simplest formula in it is normalised, its
-parts are followed
-beside the labels, and their marks become Rabin pairs.  The components are put together, states of equal language are
-found, and where there are any the whole is done once more with these as one.
+The states of the after-automaton are what remains of the formula.  Each of its strongly connected
+components becomes an automaton of its own (:mod:`tltlc.automaton.infinite.component`): the simplest
+formula in it is normalised, the parts of the formula are followed beside the labels, and their
+marks become Rabin pairs.  The components are joined.  If states of equal language are found, the
+whole construction runs again with their labels merged.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
 _FOR_AN_ATTEMPT: Final = 400_000
+"""Steps for one attempt at a component; an attempt that takes more is dropped."""
 _FOR_LANGUAGES: Final = 1_000_000
+"""Steps for finding states of equal language and for the second construction; if they take more, both are dropped."""
 _FOR_SHRINKING: Final = 400_000
-"""Steps for one way to make a component, for finding states of equal language, and for doing without states; what takes
-more is left out.
-"""
+"""Steps for removing states of a component; when they are used up, the other states stay."""
 
 Labels = dict[int, int]
-"""By labels, which are obligations of :class:`~tltlc.automaton.infinite.after_automaton.After`."""
+"""A map of labels, which are obligations of :class:`~tltlc.automaton.infinite.after_automaton.After`."""
 
 
 def rabin(
@@ -49,12 +49,13 @@ def rabin(
     exclusive: Sequence[Sequence[int]] = (),
     work: int = DEFAULT_WORK,
 ) -> Rabin:
-    """The automaton of a formula over infinite traces.
+    """Return the automaton of a formula over infinite traces.
 
-    ``atoms`` are the names by whose place letters are read, by default those of the formula in order; of the atoms of
-    a group of ``exclusive``, by their places, at most one holds in a letter.  Raises :class:`OutOfWork` after ``work``
-    steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` where what remains of the formula becomes too large, and
-    :class:`~tltlc.automaton.guards.TooManyPrimes` where it has too many edges.
+    ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the formula.
+    ``exclusive`` are groups of atoms, by index, of which at most one holds in a letter.  Raises
+    :class:`OutOfWork` after ``work`` steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` if an
+    obligation becomes too large, and :class:`~tltlc.automaton.guards.TooManyPrimes` if there are
+    too many edges.
     """
     normal = infinite_form(formula)
     return _Construction(normal, formula.atoms() if atoms is None else atoms, exclusive, work).automaton()
@@ -63,7 +64,7 @@ def rabin(
 class _Construction:
     def __init__(self, formula: Formula, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: int) -> None:
         self.work = Work(work)
-        # Where more is allowed in all, it is because the default is too little for a component.
+        # A larger budget is set because the default is too little for some component.
         self._for_an_attempt = _FOR_AN_ATTEMPT * max(1, work // DEFAULT_WORK)
         self.letters: Letters[Any] = Letters(self.work)
         self.after = After(atoms, self.letters)
@@ -73,13 +74,13 @@ class _Construction:
         self._constrained: dict[tuple[int, int], int] = {}
 
     def automaton(self) -> Rabin:
-        """The automaton, and another one with labels of equal language as one where that is smaller."""
-        first, state_of, depth = self._made({})
+        """Return the automaton, or the one with labels of equal language merged if that is smaller."""
+        first, state_of, depth = self._constructed({})
         try:
             with self.work.at_most(_FOR_LANGUAGES):
-                stands = self._equal_labels(first, state_of, depth)
-                if any(label != other for label, other in stands.items()):
-                    second, _, _ = self._made(stands)
+                representatives = self._equal_labels(first, state_of, depth)
+                if any(label != other for label, other in representatives.items()):
+                    second, _, _ = self._constructed(representatives)
                     if (len(second.steps), second.pairs) < (len(first.steps), first.pairs):
                         return second
         except (OutOfWork, OutOfSteps, TooManyPrimes):
@@ -87,37 +88,46 @@ class _Construction:
         return first
 
     def _equal_labels(self, automaton: Rabin, state_of: Labels, depth: Labels) -> Labels:
-        """Of each label the one that stands for all of its language: the nearest to the end, then the shortest."""
+        """Map each label to the representative of its language.
+
+        The representative is in the component nearest to the end; among these it is the shortest.
+        """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
-        stands: Labels = {}
+        representatives: Labels = {}
         best: Labels = {}
-        for label in sorted(state_of, key=lambda each: (depth[each], self._size(each))):
-            stands[label] = best.setdefault(same[state_of[label]], label)
-        return stands
+        for label in sorted(state_of, key=lambda label: (depth[label], self._size(label))):
+            representatives[label] = best.setdefault(same[state_of[label]], label)
+        return representatives
 
-    def _made(self, stands: Labels) -> tuple[Rabin, Labels, Labels]:
-        """The automaton, where some labels stand for others; of each label its state, and the place of its component,
-        of which those that end the others come first.
+    def _constructed(self, representatives: Labels) -> tuple[Rabin, Labels, Labels]:
+        """Build the automaton with labels replaced by their representatives.
 
-        Raises :class:`TooManyPrimes` where labels lead to others by more edges than a spec may have.
+        Returns the automaton, the state of each label, and the position of each label's component,
+        where a component comes after the components that it leads to.  Raises
+        :class:`TooManyPrimes` if there are more edges between labels than the row "edges" of
+        ``WORK`` allows.
         """
         memo: dict[int, int] = {}
 
         def step_of(label: int) -> int:
-            found = self._step(label)
-            return self.letters.mapped(lambda each: stands.get(each, each), found, memo) if stands else found
+            step = self._step(label)
+            return (
+                self.letters.mapped(lambda label: representatives.get(label, label), step, memo)
+                if representatives
+                else step
+            )
 
         edges = 0
 
         def targets(label: int) -> list[int]:
             nonlocal edges
-            found = self._targets(step_of(label))
-            edges += len(found)
+            successors = self._targets(step_of(label))
+            edges += len(successors)
             if edges > WORK["edges"]:
                 raise TooManyPrimes("the automaton", WORK["edges"], "edges")
-            return found
+            return successors
 
-        initial = stands.get(self.initial, self.initial)
+        initial = representatives.get(self.initial, self.initial)
         pieces: list[Piece] = []
         entry: dict[int, Place] = {}
         depth: Labels = {}
@@ -128,18 +138,18 @@ class _Construction:
             for state, label in piece.labels.items():
                 entry.setdefault(label, (number, state))
         whole, states = joined(self.letters, pieces, entry, entry[initial])
-        made = replace(whole, labels=tuple(map(self.after.formula, whole.labels)))
-        return made, {label: states[place] for label, place in entry.items() if place in states}, depth
+        labelled = replace(whole, labels=tuple(map(self.after.formula, whole.labels)))
+        return labelled, {label: states[place] for label, place in entry.items() if place in states}, depth
 
     # --- letters ----------------------------------------------------------------------------------
 
     def _step(self, label: int) -> int:
-        """The label after each letter, ``IMPOSSIBLE`` after those that are not allowed."""
-        found = self.after.after(label)
+        """Return the label after each letter, ``IMPOSSIBLE`` after letters that are not allowed."""
+        step = self.after.after(label)
         if not self._exclusive:
-            return found
+            return step
         return self.letters.combined(
-            lambda label, allowed: label if allowed else IMPOSSIBLE, found, self._allowed, self._constrained
+            lambda label, allowed: label if allowed else IMPOSSIBLE, step, self._allowed, self._constrained
         )
 
     def _targets(self, step: int) -> list[int]:
@@ -148,14 +158,14 @@ class _Construction:
     # --- components -------------------------------------------------------------------------------
 
     def _piece(self, step_of: Callable[[int], int], group: Sequence[int]) -> Piece:
-        """A component of the after-automaton as an automaton with pairs, the smallest that was found."""
+        """Return the smallest automaton with pairs that was found for a component of the after-automaton."""
         inside = frozenset(group)
         if not any(target in inside for label in group for target in self._targets(step_of(label))):
             (label,) = group
-            step = self.letters.mapped(lambda each: (("exit", each), NO_MARKS), step_of(label), {})
+            step = self.letters.mapped(lambda target: (("exit", target), NO_MARKS), step_of(label), {})
             return Piece({(label,): label}, {(label,): step}, 0)
         best: Piece | None = None
-        first = min(group, key=lambda each: (self._size(each), group.index(each)))
+        first = min(group, key=lambda label: (self._size(label), group.index(label)))
         for attempt in self._attempts(step_of, inside, first):
             if best is None or (len(attempt.steps), attempt.pairs) < (len(best.steps), best.pairs):
                 best = attempt
@@ -166,7 +176,7 @@ class _Construction:
         return shrunk(self.letters, best, self.work, _FOR_SHRINKING) if len(best.steps) > len(group) else best
 
     def _attempts(self, step_of: Callable[[int], int], inside: frozenset[int], first: int) -> Iterator[Piece]:
-        """The ways to make a component, which begins with the label ``first``, as far as the work allows."""
+        """Yield automata for a component that starts at the label ``first``, within the work for an attempt."""
         formula = self.after.formula(first)
         forms = []
         for normalise in (delta_2, delta_2_dually):
@@ -181,14 +191,14 @@ class _Construction:
                 with self.work.at_most(self._for_an_attempt):
                     skeleton, parts = parts_of(self.after, normal, keep=keep, in_turn=in_turn)
                     whole = local(self.letters, step_of, inside, first, skeleton, parts)
-                    if found := factor(self.letters, whole, lambda state: state[:1], self.work):
-                        yield found
+                    if piece := factor(self.letters, whole, lambda state: state[:1], self.work):
+                        yield piece
                         continue
                     yield with_pairs(self.letters, merged(self.letters, whole), self.work)
                     for count in (1, 2):
                         for chosen in combinations(range(1, len(parts) + 1), count):
-                            if found := factor(self.letters, whole, _picked(chosen), self.work):
-                                yield found
+                            if piece := factor(self.letters, whole, _picked(chosen), self.work):
+                                yield piece
             except (OutOfWork, OutOfSteps):
                 continue
 
@@ -197,5 +207,5 @@ class _Construction:
 
 
 def _picked(chosen: Sequence[int]) -> Callable[[State], State]:
-    """The label of a state and some of its memories."""
-    return lambda state: (state[0], *(state[each] for each in chosen))
+    """Return the key function that keeps the label of a state and the chosen memories."""
+    return lambda state: (state[0], *(state[index] for index in chosen))

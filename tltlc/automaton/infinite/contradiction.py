@@ -1,4 +1,4 @@
-"""Which parts of a specification over infinite traces contradict each other, where no trace satisfies it."""
+"""Find the parts of an unsatisfiable spec over infinite traces that contradict each other."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tltlc.logic.formula import and_
 from tltlc.resolve.spec import Part, Spec
 
 _WORK: Final = 100_000
-"""Steps above which parts are not told apart: a warning must not take longer than the compilation."""
+"""Steps above which the search gives up: a warning must not take longer than the compilation."""
 
 
 def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
-    """Whether it is shown that no infinite trace satisfies all of the parts."""
+    """Whether it can be proved, within the steps, that no infinite trace satisfies all of the parts."""
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]
     try:

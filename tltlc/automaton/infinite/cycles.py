@@ -1,9 +1,10 @@
-"""The alternating cycle decomposition: which sets of edges that a run may take for ever are accepted.
+"""The alternating cycle decomposition: a tree of the accepted and rejected sets of edges.
 
-A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata Using Muller Conditions" (ICALP
-2021).  A node is a strongly connected set of edges; below it stand the greatest ones inside that are accepted where it
-is not, or rejected where it is accepted.  A run is accepted if the lowest node that has all edges that it takes for
-ever is.
+A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata Using Muller
+Conditions" (ICALP 2021).  A node is a strongly connected set of edges.  The children of an accepted
+node are its maximal rejected subsets; the children of a rejected node are its maximal accepted
+subsets.  Take the lowest node that contains all edges that a run takes infinitely often: the run is
+accepted if this node is accepted.
 """
 
 from __future__ import annotations
@@ -17,17 +18,17 @@ from tltlc.automaton.infinite.work import Work
 from tltlc.core.record import record
 
 Edge = tuple[Any, Any, Marks]
-"""From a state, which is anything that can be hashed, to another one, with marks."""
+"""Source, target and marks; a state is any hashable value."""
 
 Edges = frozenset[Edge]
 
 LOOKS_PER_STEP: Final = 16
-"""How many edges are looked at in a step of work, where that is all that is done with them."""
+"""Edges per step of work, if they are only read."""
 
 
 @record
 class Node:
-    """A node; its ``index`` counts all nodes of a tree, ``states`` are those that its edges touch."""
+    """A node of the tree; ``index`` numbers all nodes of a tree, ``states`` are the ends of the node's edges."""
 
     index: int
     edges: Edges
@@ -37,37 +38,37 @@ class Node:
 
 
 def decomposition(edges: Iterable[Edge], clauses: Sequence[Clause], work: Work) -> Node:
-    """The tree of a strongly connected set of edges, children in the order of their edges.
+    """Return the tree of a strongly connected set of edges, with children in the order of their edges.
 
-    Here and below, work is counted by the edges that are looked at; raises
+    In this module, work counts the edges that are visited; its functions raise
     :class:`~tltlc.automaton.infinite.work.OutOfWork`.
     """
     order = {edge: place for place, edge in enumerate(edges)}
     count = 0
 
-    def node(some: Edges) -> Node:
+    def node(members: Edges) -> Node:
         nonlocal count
         index, count = count, count + 1
-        accepted = _accepts(some, clauses, work)
-        inside = (rejecting_parts if accepted else accepting_parts)(some, clauses, work)
-        greatest = _greatest(inside, work)
-        greatest = sorted(greatest, key=lambda each: sorted(map(order.__getitem__, each)))
-        below = tuple(node(each) for each in greatest)
-        states = frozenset(state for source, target, _ in some for state in (source, target))
-        return Node(index, some, states, accepted, below)
+        accepted = _accepts(members, clauses, work)
+        inside = (rejecting_parts if accepted else accepting_parts)(members, clauses, work)
+        maximal = _maximal(inside, work)
+        maximal = sorted(maximal, key=lambda part: sorted(map(order.__getitem__, part)))
+        below = tuple(node(part) for part in maximal)
+        states = frozenset(state for source, target, _ in members for state in (source, target))
+        return Node(index, members, states, accepted, below)
 
     return node(frozenset(order))
 
 
-def _greatest(sets: Sequence[Edges], work: Work) -> list[Edges]:
-    """The sets that lie in no other one, each once."""
+def _maximal(sets: Sequence[Edges], work: Work) -> list[Edges]:
+    """Return the sets that are not contained in another one, without duplicates."""
     distinct = sorted(dict.fromkeys(sets), key=len, reverse=True)
-    found: list[Edges] = []
-    for some in distinct:
-        work.spend(1 + len(found) // LOOKS_PER_STEP)
-        if not any(some < other for other in found):
-            found.append(some)
-    return found
+    maximal: list[Edges] = []
+    for candidate in distinct:
+        work.spend(1 + len(maximal) // LOOKS_PER_STEP)
+        if not any(candidate < other for other in maximal):
+            maximal.append(candidate)
+    return maximal
 
 
 def _accepts(edges: Edges, clauses: Sequence[Clause], work: Work) -> bool:
@@ -77,12 +78,12 @@ def _accepts(edges: Edges, clauses: Sequence[Clause], work: Work) -> bool:
 
 
 def marks_of(edges: Iterable[Edge]) -> Marks:
-    """All marks of the edges."""
+    """Return all marks of the edges."""
     return frozenset().union(*(edge[2] for edge in edges))
 
 
 def accepting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list[Edges]:
-    """The accepted sets inside that are greatest for a clause."""
+    """Return, for each clause, the maximal strongly connected subsets that it accepts."""
     work.spend(len(edges) * len(clauses) // LOOKS_PER_STEP)
     return [
         part
@@ -93,38 +94,38 @@ def accepting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list
 
 
 def rejecting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list[Edges]:
-    """Rejected sets inside, among them the greatest ones."""
-    found: dict[Edges, None] = {}
+    """Return rejected strongly connected subsets, among them all maximal ones."""
+    rejected: dict[Edges, None] = {}
     seen: set[Edges] = set()
     stack = [edges]
     while stack:
-        some = stack.pop()
-        if some in seen:
+        part = stack.pop()
+        if part in seen:
             continue
-        seen.add(some)
-        work.spend((len(some) + len(clauses)) // LOOKS_PER_STEP)
-        marks = marks_of(some)
-        met = next((clause for clause in clauses if clause.accepts(marks)), None)
-        if met is None:
-            found[some] = None
+        seen.add(part)
+        work.spend((len(part) + len(clauses)) // LOOKS_PER_STEP)
+        marks = marks_of(part)
+        accepting = next((clause for clause in clauses if clause.accepts(marks)), None)
+        if accepting is None:
+            rejected[part] = None
             continue
-        for mark in met.infs:
-            work.spend(len(some) // LOOKS_PER_STEP)
-            stack += parts((edge for edge in some if mark not in edge[2]), work)
-    return list(found)
+        for mark in accepting.infs:
+            work.spend(len(part) // LOOKS_PER_STEP)
+            stack += parts((edge for edge in part if mark not in edge[2]), work)
+    return list(rejected)
 
 
 def parts(edges: Iterable[Edge], work: Work) -> list[Edges]:
-    """The greatest strongly connected sets of edges."""
+    """Return the maximal strongly connected sets of edges."""
     leaving: dict[Any, list[Edge]] = {}
     for edge in edges:
         leaving.setdefault(edge[0], []).append(edge)
         work.spend()
     groups = components(list(leaving), lambda state: (edge[1] for edge in leaving.get(state, ())))
-    found = []
+    maximal = []
     for group in groups:
         members = set(group)
         inside = frozenset(edge for state in group for edge in leaving.get(state, ()) if edge[1] in members)
         if inside:
-            found.append(inside)
-    return found
+            maximal.append(inside)
+    return maximal

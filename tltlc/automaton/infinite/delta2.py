@@ -1,8 +1,9 @@
-"""Normalisation: formulas as Boolean combinations of Sigma-2 and Pi-2 ones, of ``G F`` Sigma-1 and ``F G`` Pi-1.
+"""Normalise formulas to Boolean combinations of four kinds of formulas.
 
-The rewrites are those of S. Sickert, J. Esparza, "An Efficient Normalisation Procedure for Linear Temporal Logic and
-Very Weak Alternating Automata" (LICS 2020), and of their rewrite system (TACAS 2023); what is Sigma-2 or Pi-2
-already is left as it is.
+These are Sigma-2 formulas, Pi-2 formulas, ``G F p`` with p in Sigma-1, and ``F G p`` with p in
+Pi-1.  The rewrites are from S. Sickert, J. Esparza, "An Efficient Normalisation Procedure for
+Linear Temporal Logic and Very Weak Alternating Automata" (LICS 2020), and from their rewrite system
+(TACAS 2023).  Formulas that are already Sigma-2 or Pi-2 are not changed.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 
 @lru_cache(maxsize=65536)
 def has(formula: Formula, op: str) -> bool:
-    """Whether an operator stands in a formula."""
-    return formula.op == op or any(has(each, op) for each in formula.args)
+    """Whether a formula contains an operator."""
+    return formula.op == op or any(has(argument, op) for argument in formula.args)
 
 
 @lru_cache(maxsize=65536)
 def is_sigma_2(formula: Formula) -> bool:
-    """Whether no ``W`` has a ``U`` below it, and nothing is rigid."""
+    """Whether no ``W`` has a ``U`` below it, and no part is rigid."""
     if formula.op in ("G", "F"):
         return False
     if formula.op == "W" and has(formula, "U"):
@@ -33,7 +34,7 @@ def is_sigma_2(formula: Formula) -> bool:
 
 @lru_cache(maxsize=65536)
 def is_pi_2(formula: Formula) -> bool:
-    """Whether no ``U`` has a ``W`` below it, and nothing is rigid."""
+    """Whether no ``U`` has a ``W`` below it, and no part is rigid."""
     if formula.op in ("G", "F"):
         return False
     if formula.op == "U" and has(formula, "W"):
@@ -42,17 +43,20 @@ def is_pi_2(formula: Formula) -> bool:
 
 
 def delta_2(formula: Formula) -> Formula:
-    """The formula as such a combination; raises OutOfWork where it becomes too large."""
+    """Return the normalised formula; raises OutOfWork if it becomes too large."""
     return _Normaliser().normal(formula)
 
 
 def delta_2_dually(formula: Formula) -> Formula:
-    """Another one, the negation of that of the formula's negation; raises OutOfWork alike."""
+    """Return another normalised form: normalise the formula's negation, and negate the result.
+
+    Raises OutOfWork if it becomes too large.
+    """
     return infinite.negated(delta_2(infinite.negated(formula)))
 
 
 _MOST_STEPS: Final = 3000
-"""Formulas that one normalisation looks at."""
+"""The most formulas that one normalisation may rewrite."""
 
 
 class _Normaliser:
@@ -62,14 +66,14 @@ class _Normaliser:
         self._flat: dict[Formula, Formula] = {}
 
     def normal(self, formula: Formula) -> Formula:
-        """The formula normalised."""
-        found = self._normal.get(formula)
-        if found is None:
+        """Return the normalised formula."""
+        result = self._normal.get(formula)
+        if result is None:
             self._spend()
-            found = self._normal[formula] = self._made(formula)
-        return found
+            result = self._normal[formula] = self._normalised(formula)
+        return result
 
-    def _made(self, formula: Formula) -> Formula:
+    def _normalised(self, formula: Formula) -> Formula:
         op, args = formula.op, formula.args
         if op == "and" or op == "or":
             make = infinite.conjunction if op == "and" else infinite.disjunction
@@ -84,7 +88,7 @@ class _Normaliser:
             return _under_next(self.normal(args[0]))
         flat = self.flat(formula)
         if flat is formula:
-            # More rigid parts stand below it than are pulled out.
+            # It has too many rigid parts to pull them out.
             raise OutOfWork
         return flat if is_sigma_2(flat) else self.normal(flat)
 
@@ -109,12 +113,12 @@ class _Normaliser:
         return self.normal(infinite.disjunction((infinite.conjunction((infinite.always_eventually(q), weak)), never)))
 
     def flat(self, formula: Formula) -> Formula:
-        """The formula with no ``U`` below a ``W``, but for rigid parts."""
-        found = self._flat.get(formula)
-        if found is None:
+        """Return the formula without any ``U`` below a ``W``, except inside rigid parts."""
+        result = self._flat.get(formula)
+        if result is None:
             self._spend()
-            found = self._flat[formula] = self._flattened(formula)
-        return found
+            result = self._flat[formula] = self._flattened(formula)
+        return result
 
     def _spend(self) -> None:
         self._steps += 1
@@ -125,7 +129,7 @@ class _Normaliser:
         if infinite.is_rigid(formula) or not formula.args or formula.op == "not":
             return formula
         if formula.op != "W" or not has(formula, "U"):
-            args = {each: self.flat(each) for each in formula.args}
+            args = {argument: self.flat(argument) for argument in formula.args}
             if all(new is old for old, new in args.items()):
                 return formula
             rebuilt = infinite.substituted_below(formula, args)
@@ -135,7 +139,7 @@ class _Normaliser:
             return self.flat(infinite.disjunction((infinite.until(a, b), infinite.weak(a, FALSE))))
         outermost = _outermost(a, "U")
         if outermost is None:
-            # Its U stand in rigid parts.
+            # Every U is inside a rigid part.
             raise OutOfWork
         p, q = outermost.args
         weak = infinite.weak(infinite.substituted(a, {outermost: infinite.weak(p, q)}), b)
@@ -160,9 +164,9 @@ def _under_next(formula: Formula) -> Formula:
 
 
 def _outermost(formula: Formula, op: str) -> Formula | None:
-    """The first outermost subformula that begins with ``op``, but for those in rigid parts."""
+    """Return the first outermost subformula with operator ``op`` that is not inside a rigid part, or None."""
     if formula.op == op:
         return formula
     if formula.op in ("G", "F") or not has(formula, op):
         return None
-    return next(filter(None, (_outermost(each, op) for each in formula.args)), None)
+    return next(filter(None, (_outermost(argument, op) for argument in formula.args)), None)

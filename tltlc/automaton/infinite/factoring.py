@@ -1,8 +1,9 @@
-"""Boolean combinations of temporal formulas written short, with what their terms share in front of them.
+"""Write Boolean combinations of temporal formulas in a short form, with common factors in front.
 
-The construction reads what remains off decision diagrams, or has it as it was met first.  Here it is written anew, once
-by its prime implicants and once by its prime implicates: ``b & !d | d`` is ``b | d``, and ``F b & G F c | F b & G F d``
-is ``F b & (G F c | G F d)``.
+The construction reads labels off decision diagrams, or uses the first formula that it met.  This
+module rewrites them, once from their prime implicants and once from their prime implicates:
+``b & !d | d`` becomes ``b | d``, and ``F b & G F c | F b & G F d`` becomes
+``F b & (G F c | G F d)``.
 """
 
 from __future__ import annotations
@@ -19,14 +20,15 @@ from tltlc.automaton.infinite.work import Work
 from tltlc.logic.formula import Formula, not_
 
 _MOST_TERMS: Final = 48
+"""A formula with more prime implicants, or implicates, is not written from them."""
 _MOST_STEPS: Final = 20_000
-"""What has more prime implicants or implicates, or takes more steps of its diagrams, is not written by them."""
+"""A formula that takes more steps of the diagrams is not rewritten."""
 
 _Term = frozenset[int]
-"""Literals: twice the variable of a formula, and 1 more for its negation."""
+"""A set of literals: twice the variable of a formula, plus 1 for its negation."""
 
 _Op = Literal["or", "and"]
-"""What joins terms: ``or`` for implicants, which are conjunctions, ``and`` for implicates."""
+"""The operator that joins terms: ``or`` for implicants, which are conjunctions, ``and`` for implicates."""
 
 
 class _TooManyTerms(Exception):
@@ -34,7 +36,7 @@ class _TooManyTerms(Exception):
 
 
 class Factoring:
-    """Other ways to write formulas in normal form over ``atoms``, equal on every infinite trace."""
+    """Rewrites formulas in normal form over ``atoms``; the results are equal on every infinite trace."""
 
     def __init__(self, atoms: Sequence[str]) -> None:
         self._after = After(atoms, Letters(Work(0)))
@@ -48,9 +50,9 @@ class Factoring:
         self._beside: dict[tuple[_Op, int], _Term] = {}
 
     def forms(self, formula: Formula) -> Iterator[Formula]:
-        """The formula by its prime implicants, and by its prime implicates, unless these are too many."""
-        ways: tuple[_Op, ...] = ("or", "and")
-        for op in ways:
+        """Yield the formula from its prime implicants, and from its prime implicates, unless there are too many."""
+        operators: tuple[_Op, ...] = ("or", "and")
+        for op in operators:
             try:
                 with self._after.diagrams.at_most(_MOST_STEPS):
                     terms = self._needed(self._primes(self._after.obligation(formula), op), op)
@@ -58,58 +60,60 @@ class Factoring:
                 continue
             yield self._factored(terms, op)
             if len(terms) < 2:
-                # One conjunction, both ways.
+                # With at most one term, both forms are the same.
                 return
 
     # --- terms ------------------------------------------------------------------------------------
 
     def _primes(self, obligation: int, op: _Op) -> tuple[_Term, ...]:
-        """All prime implicants or implicates."""
-        found = self._terms.get((op, obligation))
-        if found is None:
+        """Return all prime implicants, or implicates."""
+        primes = self._terms.get((op, obligation))
+        if primes is None:
             diagrams = self._after.diagrams
             variable = diagrams.variable[obligation]
             absent, present = diagrams.absent[obligation], diagrams.present[obligation]
-            found = common = self._primes((diagrams.both if op == "or" else diagrams.either)(absent, present), op)
+            primes = common = self._primes((diagrams.both if op == "or" else diagrams.either)(absent, present), op)
             with_it, without = (present, absent) if op == "or" else (absent, present)
             for literal, rest in ((2 * variable, with_it), (2 * variable + 1, without)):
-                new = (term for term in self._primes(rest, op) if not any(each <= term for each in common))
-                found += tuple(term | {literal} for term in new)
-            if len(found) > _MOST_TERMS:
+                new = (term for term in self._primes(rest, op) if not any(shared <= term for shared in common))
+                primes += tuple(term | {literal} for term in new)
+            if len(primes) > _MOST_TERMS:
                 raise _TooManyTerms
-            self._terms[op, obligation] = found
-        return found
+            self._terms[op, obligation] = primes
+        return primes
 
     def _needed(self, terms: Sequence[_Term], op: _Op) -> list[_Term]:
-        """The terms without the literals and terms that others make idle."""
-        kept = [self._without_idle(term, op) for term in terms]
+        """Return the terms without the literals and terms that others make redundant."""
+        kept = [self._without_redundant(term, op) for term in terms]
         for term in sorted(kept, key=len, reverse=True) if len(kept) > 1 else ():
-            others = [each for each in kept if each is not term]
-            implied = term.union(*(self._idle_beside(literal, op) for literal in term))
-            if any(each <= implied for each in others) or self._is_consensus(term, others, op):
+            others = [other for other in kept if other is not term]
+            implied = term.union(*(self._redundant_beside(literal, op) for literal in term))
+            if any(other <= implied for other in others) or self._is_consensus(term, others, op):
                 kept = others
         return kept
 
-    def _without_idle(self, term: _Term, op: _Op) -> _Term:
+    def _without_redundant(self, term: _Term, op: _Op) -> _Term:
         for literal in sorted(term) if len(term) > 1 else ():
-            if any(literal in self._idle_beside(other, op) for other in term):
+            if any(literal in self._redundant_beside(other, op) for other in term):
                 term -= {literal}
         return term
 
-    def _idle_beside(self, literal: int, op: _Op) -> _Term:
-        """Literals that make no difference in a term with this one: ``F b`` in a conjunction with ``F(a & X F b)``."""
-        found = self._beside.get((op, literal))
-        if found is None:
-            found = frozenset()
+    def _redundant_beside(self, literal: int, op: _Op) -> _Term:
+        """Return literals that are redundant in a term with this one: ``F b`` in a conjunction with
+        ``F(a & X F b)``.
+        """
+        redundant = self._beside.get((op, literal))
+        if redundant is None:
+            redundant = frozenset()
             formula = self._after.formulas[literal // 2]
             if formula.op != "atom":
-                own = [term for term in self._primes(self._after.obligation(formula), op) if literal in term]
-                found = frozenset.intersection(*own) - {literal} if own else found
-            self._beside[op, literal] = found
-        return found
+                with_literal = [term for term in self._primes(self._after.obligation(formula), op) if literal in term]
+                redundant = frozenset.intersection(*with_literal) - {literal} if with_literal else redundant
+            self._beside[op, literal] = redundant
+        return redundant
 
     def _is_consensus(self, term: _Term, others: Sequence[_Term], op: _Op) -> bool:
-        """Whether others say together what a term does, as ``a & b | !a & c`` does of ``b & c``."""
+        """Whether the other terms together cover a term, as ``a & b | !a & c`` covers ``b & c``."""
         literals = frozenset().union(*others)
         if not any(literal ^ 1 in literals for literal in literals):
             return False
@@ -123,10 +127,11 @@ class Factoring:
     # --- factors ----------------------------------------------------------------------------------
 
     def _factored(self, terms: Sequence[_Term], op: _Op) -> Formula:
-        """The terms with the literals in front that all of them share.
+        """Return the terms as a formula, with the literals that all terms share in front.
 
-        Where there are none, those with the literal that most have are written so, with all other terms that end in
-        the same rests, and what is left stands beside them.
+        If they share none, factor out the literal that most terms have, together with every other
+        factor that occurs with the same rests.  The remaining terms are factored separately and
+        stand beside that.
         """
         if len(terms) < 2:
             return self._joined(terms, op)
@@ -140,7 +145,7 @@ class Factoring:
         rests = [term - {best} for term in terms if best in term]
         shared = frozenset.intersection(*rests)
         rests = [rest - shared for rest in rests]
-        # All that stands before each of these rests stands before all of them.
+        # The factors that occur with every rest.
         before = (term - rests[0] for term in terms if rests[0] <= term)
         factors = [factor for factor in before if all(factor | rest in terms for rest in rests)]
         product = {factor | rest for factor in factors for rest in rests}

@@ -1,8 +1,11 @@
-"""Smaller automata of a component: by labels and few memories alone, where edges of that can say what is accepted.
+"""Find smaller automata of a component that remember only its label and a few memories.
 
-An edge of a factor stands for all edges of the component that have its source, target and letter.  Where none of these
-lies on a rejected cycle, a run that takes the edge for ever is accepted, and it counts first; the others are looked at
-without such edges, in turn for acceptance and rejection.  If every edge finds its rank so, ranks decide as priorities.
+Such a factor merges the states of the component that have the same key.  An edge of the factor
+stands for all edges of the component with its source and letter.  If none of these lies on a
+rejected cycle, a run that takes the edge infinitely often is accepted, and the edge gets the first
+rank.  Then the edges without a rank are examined again, in turn for accepted and rejected cycles.
+If every edge gets a rank, the ranks decide acceptance as priorities do: the least rank that a run
+takes infinitely often accepts if it is even.
 """
 
 from __future__ import annotations
@@ -20,15 +23,17 @@ from tltlc.automaton.infinite.pairs import Piece
 from tltlc.automaton.infinite.work import Work
 
 _MOST_TOGETHER: Final = 48
-"""States of a component that stand behind one of a factor."""
+"""The most states of a component that one state of a factor may stand for."""
 
 _Edge = tuple[State, State, Marks, int]
-"""An edge of the component, and the number of the edge of the factor that stands for it."""
+"""An edge of the component, and the number of the factor's edge that stands for it."""
 
 
 def factor(letters: Letters[Any], one: Local, key: Callable[[State], State], work: Work) -> Piece | None:
-    """The factor of a component by a key of its states, the key after a letter depending on key and letter alone; None
-    where its edges cannot say what is accepted.  Raises OutOfWork.
+    """Return the factor of a component by a key of its states; None if its edges cannot decide acceptance.
+
+    The key after a letter must depend only on the key before it and on the letter.  Raises
+    OutOfWork.
     """
     groups: dict[State, list[State]] = {}
     for state in one.steps:
@@ -55,10 +60,10 @@ def factor(letters: Letters[Any], one: Local, key: Callable[[State], State], wor
     accepting = sorted({rank for rank in ranks.values() if rank % 2 == 0})
 
     def marks_of(rank: int | None) -> PairMarks:
-        said: set[Mark] = {(pair, "inf") for pair, level in enumerate(accepting) if level == rank}
+        marks: set[Mark] = {(pair, "inf") for pair, level in enumerate(accepting) if level == rank}
         if rank is not None and rank % 2:
-            said |= {(pair, "fin") for pair, level in enumerate(accepting) if level > rank}
-        return frozenset(said)
+            marks |= {(pair, "fin") for pair, level in enumerate(accepting) if level > rank}
+        return frozenset(marks)
 
     steps = {}
     for name, step in together.items():
@@ -74,8 +79,11 @@ def factor(letters: Letters[Any], one: Local, key: Callable[[State], State], wor
 
 
 def _ranks(edges: list[_Edge], one: Local, work: Work) -> dict[int, int] | None:
-    """The rank of each class of edges: even ones accept, the least that is taken for ever decides."""
-    # Elsewhere edges have no number; there it is no more than what tells them apart.
+    """Return the rank of each edge of the factor; None if some edge gets none.
+
+    The least rank that a run takes infinitely often decides: even ranks accept.
+    """
+    # The functions of `cycles` read three fields of an edge; the number only keeps the edges distinct.
     left: frozenset[Any] = frozenset(edges)
     ranks: dict[int, int] = {}
     rank = 0
@@ -87,8 +95,8 @@ def _ranks(edges: list[_Edge], one: Local, work: Work) -> dict[int, int] | None:
         bad: set[int] = set()
         inside: Callable[..., list[frozenset[Any]]] = rejecting_parts if rank % 2 == 0 else accepting_parts
         for cycle in cycles:
-            for some in inside(cycle, one.accepts, work):
-                bad |= {edge[3] for edge in some}
+            for part in inside(cycle, one.accepts, work):
+                bad |= {edge[3] for edge in part}
         here = {edge[3] for edge in left} - bad
         stuck = 0 if here else stuck + 1
         if stuck == 2:

@@ -1,4 +1,4 @@
-"""Strongly connected components of graphs that are given by their successors."""
+"""Strongly connected components of graphs that are given by a successor function."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ Node = TypeVar("Node", bound=Hashable)
 
 
 def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node]]) -> list[list[Node]]:
-    """The strongly connected components that can be reached, each after those it leads to (R. Tarjan 1972)."""
+    """Return the reachable strongly connected components, each after the components it leads to (R. Tarjan 1972)."""
     index: dict[Node, int] = {}
     low: dict[Node, int] = {}
     on_stack: set[Node] = set()
     stack: list[Node] = []
-    found: list[list[Node]] = []
+    groups: list[list[Node]] = []
     for root in roots:
         if root in index:
             continue
@@ -47,12 +47,12 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
                         if member == node:
                             break
                     group.reverse()
-                    found.append(group)
-    return found
+                    groups.append(group)
+    return groups
 
 
 def smallest_bottom(targets: Mapping[Node, Sequence[Node]], root: Node) -> list[Node]:
-    """The smallest component that leads to no other one, the first of these that is met from the root."""
+    """Return the smallest component that leads to no other; of several, the one found first from the root."""
     bottoms = []
     for group in components([root], targets.__getitem__):
         members = set(group)
