@@ -1,8 +1,9 @@
-"""Formulas over infinite traces, in the normal form of the construction, by constructors that simplify.
+"""The normal form of formulas over infinite traces, and constructors that simplify.
 
-Their operators are ``true false atom not and or X U W``, ``not`` before atoms alone, and the *rigid* ``G F p`` and
-``F G p``, whose truth does not change with time.  ``F p`` is ``true U p`` and ``G p`` is ``p W false``; on infinite
-traces ``N`` is ``X``, ``a R b`` is ``b W (a & b)`` and ``a M b`` is ``b U (a & b)``.
+The operators of the normal form are ``true false atom not and or X U W``, with ``not`` only before
+atoms, and the *rigid* formulas ``G F p`` and ``F G p``, whose truth does not change with time.
+``F p`` is ``true U p`` and ``G p`` is ``p W false``.  On infinite traces ``N`` is ``X``, ``a R b``
+is ``b W (a & b)`` and ``a M b`` is ``b U (a & b)``.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.normal_form import negation_normal_form
 
 _MOST_PULLED = 6
-"""Rigid formulas below one temporal operator that are pulled out from under it: each doubles what is there."""
+"""The most rigid formulas that are pulled out from under a temporal operator: each doubles the formula."""
 
 
 def infinite_form(formula: Formula) -> Formula:
-    """The formula in normal form, equal on every infinite trace."""
+    """Return the formula in normal form, equal on every infinite trace."""
     normal = negation_normal_form(formula)
     done: dict[Formula, Formula] = {}
     for node in normal.bottom_up():
@@ -53,7 +54,7 @@ def _rebuilt(node: Formula, args: list[Formula]) -> Formula:
 
 
 def negated(formula: Formula) -> Formula:
-    """The negation, in normal form."""
+    """Return the negation of a formula, both in normal form."""
     done: dict[Formula, Formula] = {}
     for node in formula.bottom_up():
         if node.op == "not":
@@ -72,7 +73,7 @@ def negated(formula: Formula) -> Formula:
             case "X":
                 done[node] = next_(args[0])
             case "U":
-                # Until b, a: its opposite is that b stays away as long as a goes on.
+                # The negation of `a U b` is `!b W (!a & !b)`.
                 done[node] = weak(args[1], conjunction(args))
             case "W":
                 done[node] = until(args[1], conjunction(args))
@@ -80,7 +81,7 @@ def negated(formula: Formula) -> Formula:
                 inner = done[node.args[0].args[0]]
                 done[node] = always_eventually(inner) if node.op == "F" else eventually_always(inner)
             case _:
-                # The inner half of a rigid formula, with which it is negated.
+                # The inner operator of a rigid formula: the outer one's case negates both.
                 done[node] = node
     return done[formula]
 
@@ -89,23 +90,26 @@ def negated(formula: Formula) -> Formula:
 
 
 def conjunction(operands: Iterable[Formula]) -> Formula:
-    """``and``: constants, repeated and complementary operands, absorption."""
+    """Return the ``and`` of the operands.
+
+    Simplifies constants, repeated operands, complementary operands and absorbed operands.
+    """
     return _nary("and", operands)
 
 
 def disjunction(operands: Iterable[Formula]) -> Formula:
-    """``or``, alike."""
+    """Return the ``or`` of the operands, simplified as in :func:`conjunction`."""
     return _nary("or", operands)
 
 
 def _nary(op: str, operands: Iterable[Formula]) -> Formula:
     neutral, absorbing = (TRUE, FALSE) if op == "and" else (FALSE, TRUE)
-    flat = dict.fromkeys(chain.from_iterable(each.args if each.op == op else (each,) for each in operands))
+    flat = dict.fromkeys(chain.from_iterable(operand.args if operand.op == op else (operand,) for operand in operands))
     flat.pop(neutral, None)
-    if absorbing in flat or any(each.op == "not" and each.args[0] in flat for each in flat):
+    if absorbing in flat or any(operand.op == "not" and operand.args[0] in flat for operand in flat):
         return absorbing
     inner = "or" if op == "and" else "and"
-    kept = [each for each in flat if not (each.op == inner and any(part in flat for part in each.args))]
+    kept = [operand for operand in flat if not (operand.op == inner and any(part in flat for part in operand.args))]
     if not kept:
         return neutral
     return build.and_(*kept) if op == "and" else build.or_(*kept)
@@ -119,14 +123,14 @@ def is_rigid(formula: Formula) -> bool:
 
 
 def next_(operand: Formula) -> Formula:
-    """``X``."""
+    """Return ``X operand``."""
     if is_rigid(operand):
         return operand
     return _pulled(next_, operand) or build.next_(operand)
 
 
 def until(left: Formula, right: Formula) -> Formula:
-    """``U``, and ``F`` where the left side is true."""
+    """Return ``left U right``, which is ``F right`` if ``left`` is true."""
     if is_rigid(right) or left is FALSE or left is right:
         return right
     if pulled := _pulled(until, left, right):
@@ -136,7 +140,7 @@ def until(left: Formula, right: Formula) -> Formula:
     if left is TRUE and right.op == "W":
         return disjunction((eventually_always(right.args[0]), until(TRUE, right.args[1])))
     if left is TRUE and right.op == "or":
-        return disjunction(until(TRUE, each) for each in right.args) if _splits(right, "W") else _until(left, right)
+        return disjunction(until(TRUE, part) for part in right.args) if _splits(right, "W") else _until(left, right)
     if left.op == "U" and left.args[1] is right:
         return left
     return _until(left, right)
@@ -150,7 +154,7 @@ def _until(left: Formula, right: Formula) -> Formula:
 
 
 def weak(left: Formula, right: Formula) -> Formula:
-    """``W``, and ``G`` where the right side is false."""
+    """Return ``left W right``, which is ``G left`` if ``right`` is false."""
     if left is TRUE or right is TRUE or left is right:
         return TRUE if TRUE in (left, right) else right
     if left is FALSE:
@@ -167,7 +171,7 @@ def weak(left: Formula, right: Formula) -> Formula:
         if left.op == "U":
             return conjunction((always_eventually(left.args[1]), weak(disjunction(left.args), FALSE)))
         if left.op == "and" and _splits(left, "U"):
-            return conjunction(weak(each, FALSE) for each in left.args)
+            return conjunction(weak(part, FALSE) for part in left.args)
     if right.op == "W" and right.args[0] is left:
         return right
     if left.op == "W" and left.args[1] is right:
@@ -179,25 +183,25 @@ def weak(left: Formula, right: Formula) -> Formula:
 
 
 def _splits(formula: Formula, op: str) -> bool:
-    """Whether an operand begins so that an outer ``F`` or ``G`` makes it rigid."""
-    return any(each.op == op for each in formula.args)
+    """Whether an operand has this operator, so that an outer ``F`` or ``G`` makes a part of it rigid."""
+    return any(operand.op == op for operand in formula.args)
 
 
 @lru_cache(maxsize=4096)
 def always_eventually(inner: Formula) -> Formula:
-    """``G F inner``."""
+    """Return ``G F inner``."""
     if is_rigid(inner):
         return inner
     if inner.op == "or":
-        return disjunction(always_eventually(each) for each in inner.args)
+        return disjunction(always_eventually(operand) for operand in inner.args)
     if inner.op == "X":
         return always_eventually(inner.args[0])
     if inner.op == "U":
         return always_eventually(inner.args[1])
     if inner.op == "W":
         return disjunction((eventually_always(inner.args[0]), always_eventually(inner.args[1])))
-    if inner.op == "and" and all(each.op == "X" for each in inner.args):
-        return always_eventually(conjunction(each.args[0] for each in inner.args))
+    if inner.op == "and" and all(operand.op == "X" for operand in inner.args):
+        return always_eventually(conjunction(operand.args[0] for operand in inner.args))
     if pulled := _pulled(always_eventually, inner):
         return pulled
     return build.always(build.eventually(inner))
@@ -205,28 +209,28 @@ def always_eventually(inner: Formula) -> Formula:
 
 @lru_cache(maxsize=4096)
 def eventually_always(inner: Formula) -> Formula:
-    """``F G inner``."""
+    """Return ``F G inner``."""
     if is_rigid(inner):
         return inner
     if inner.op == "and":
-        return conjunction(eventually_always(each) for each in inner.args)
+        return conjunction(eventually_always(operand) for operand in inner.args)
     if inner.op == "X":
         return eventually_always(inner.args[0])
     if inner.op == "W":
         return eventually_always(disjunction(inner.args))
     if inner.op == "U":
         return conjunction((always_eventually(inner.args[1]), eventually_always(disjunction(inner.args))))
-    if inner.op == "or" and all(each.op == "X" for each in inner.args):
-        return eventually_always(disjunction(each.args[0] for each in inner.args))
+    if inner.op == "or" and all(operand.op == "X" for operand in inner.args):
+        return eventually_always(disjunction(operand.args[0] for operand in inner.args))
     if pulled := _pulled(eventually_always, inner):
         return pulled
     return build.eventually(build.always(inner))
 
 
 def readable(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
-    """The formula as people write it: ``F p`` for ``true U p``, ``G p`` for ``p W false``.
+    """Return the formula with ``F p`` for ``true U p`` and ``G p`` for ``p W false``.
 
-    ``known`` remembers what each part is, for further calls with formulas that share parts.
+    ``known`` caches the result for each part; calls with formulas that share parts can share it.
     """
     done: dict[Formula, Formula] = {} if known is None else known
     for node in formula.bottom_up(known=done):
@@ -245,38 +249,41 @@ def readable(formula: Formula, known: dict[Formula, Formula] | None = None) -> F
 
 @lru_cache(maxsize=16384)
 def rigid_parts(formula: Formula) -> tuple[Formula, ...]:
-    """The outermost rigid ``G F p`` and ``F G p`` in a formula, in order."""
+    """Return the outermost rigid formulas ``G F p`` and ``F G p`` in a formula, in order."""
     if formula.op in ("G", "F"):
         return (formula,)
     return tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, formula.args))))
 
 
 def substituted(formula: Formula, values: dict[Formula, Formula]) -> Formula:
-    """The formula with others in place of some of its parts; nothing is looked for below rigid parts."""
+    """Return the formula with some parts replaced by the ``values``; parts inside rigid formulas are not replaced."""
     return _substituted(formula, dict(values))
 
 
 def _substituted(formula: Formula, done: dict[Formula, Formula]) -> Formula:
-    found = done.get(formula)
-    if found is None:
-        found = formula
+    result = done.get(formula)
+    if result is None:
+        result = formula
         if formula.args and formula.op not in ("not", "G", "F"):
-            args = [_substituted(each, done) for each in formula.args]
+            args = [_substituted(argument, done) for argument in formula.args]
             if any(new is not old for new, old in zip(args, formula.args, strict=True)):
-                found = _rebuilt(formula, args)
-        done[formula] = found
-    return found
+                result = _rebuilt(formula, args)
+        done[formula] = result
+    return result
 
 
 def substituted_below(formula: Formula, values: dict[Formula, Formula]) -> Formula:
-    """The formula with others in place of its operands."""
-    return _rebuilt(formula, [values[each] for each in formula.args])
+    """Return the formula with each operand replaced by its value."""
+    return _rebuilt(formula, [values[operand] for operand in formula.args])
 
 
 def _pulled(make: Callable[..., Formula], *args: Formula) -> Formula | None:
-    """``f = g & f[g := true] | f[g := false]`` for a rigid g below; None where there is none, or there are too many."""
-    found = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))
-    if not found or len(found) > _MOST_PULLED:
+    """Return ``g & f[g := true] | f[g := false]`` for a rigid g in f; None if there is none, or there are too many.
+
+    The formula f is ``make(*args)``.
+    """
+    rigid = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))
+    if not rigid or len(rigid) > _MOST_PULLED:
         return None
-    true, false = (make(*(substituted(each, {found[0]: value}) for each in args)) for value in (TRUE, FALSE))
-    return disjunction((conjunction((found[0], true)), false))
+    true, false = (make(*(substituted(argument, {rigid[0]: value}) for argument in args)) for value in (TRUE, FALSE))
+    return disjunction((conjunction((rigid[0], true)), false))

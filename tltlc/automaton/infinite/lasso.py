@@ -1,6 +1,6 @@
-"""What formulas over infinite traces mean on traces that end in a cycle, slowly and straight from the definitions.
+"""Evaluate formulas over infinite traces on traces that end in a cycle, directly from the definitions.
 
-Everything faster in this package is tested against this module.
+This is slow and serves as the reference: the rest of this package is tested against it.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from tltlc.logic.formula import Formula
 
 
 def holds_on_lasso(formula: Formula, prefix: Sequence[Collection[str]], cycle: Sequence[Collection[str]]) -> bool:
-    """Whether a formula holds on ``prefix`` followed by ``cycle`` for ever.
+    """Whether a formula holds on ``prefix`` followed by infinitely many repetitions of ``cycle``.
 
-    A sample is the collection of the names of the atoms that hold then; ``N`` is ``X``.  Raises ValueError where the
-    cycle is empty.
+    A sample is the collection of the names of the atoms that hold at it; ``N`` is ``X``.  Raises
+    ValueError if the cycle is empty.
     """
     if not cycle:
         raise ValueError("the cycle is empty")
@@ -29,7 +29,7 @@ def holds_on_lasso(formula: Formula, prefix: Sequence[Collection[str]], cycle: S
 def _values(
     node: Formula, operands: list[list[bool]], trace: Sequence[Collection[str]], following: Sequence[int]
 ) -> list[bool]:
-    """The truth of a formula at each place, from that of its operands."""
+    """Return the truth value of a formula at each place, given the truth values of its operands."""
     count = len(trace)
     a = operands[0] if operands else []
     b = operands[1] if len(operands) > 1 else []
@@ -39,7 +39,7 @@ def _values(
         case "atom":
             return [node.name in sample for sample in trace]
         case "not":
-            return [not each for each in a]
+            return [not x for x in a]
         case "and":
             return [all(values) for values in zip(*operands, strict=True)]
         case "or":
@@ -65,9 +65,9 @@ def _values(
 
 
 def _fixed(go_on: list[bool], ends: list[bool], following: Sequence[int], *, least: bool) -> list[bool]:
-    """The least or greatest solution of ``v = ends | go_on & X v``."""
+    """Return the least or greatest solution of ``v = ends | go_on & X v``."""
     values = [not least] * len(ends)
-    # Each round of the cycle settles one place more at least.
+    # Each round fixes the value of at least one more place.
     for _ in range(len(ends) + 1):
         for place in reversed(range(len(ends))):
             values[place] = ends[place] or (go_on[place] and values[following[place]])

@@ -1,4 +1,6 @@
-"""The leaves of a normalised formula as small deterministic automata, each of which marks the letters that matter."""
+"""Small deterministic automata for the leaves of a normalised formula; each marks the letters that
+decide acceptance.
+"""
 
 from __future__ import annotations
 
@@ -14,28 +16,35 @@ from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
 
 Memory = tuple[Any, ...]
-"""Obligations, and numbers.  No truth values: in a table of leaves they would be taken for the numbers 1 and 0."""
+"""Obligations and numbers.  No truth values: a table of leaves could not tell them from the numbers 1 and 0."""
 
 
 class Part(Protocol):
-    """A deterministic automaton with memories as states; its marks must come infinitely (``inf``) or finitely often."""
+    """A deterministic automaton whose states are memories.
+
+    A run is accepted if its marks come infinitely often (``kind`` is ``inf``) or finitely often
+    (``fin``).
+    """
 
     kind: Kind
     initial: Memory
 
     def step(self, memory: Memory) -> int:
-        """From the letter to the memory after it and whether it is marked."""
+        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
 
     def settled(self, memory: Memory) -> bool | None:
-        """Whether the part is met, where nothing that comes can change that; else None."""
+        """Return whether the part holds if no further letter can change that; else None."""
 
 
 class Breakpoint:
-    """A Pi-2 formula (``inf``) or a Sigma-2 one (``fin``): what remains of it, and what of that is still owed.
+    """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
-    Of a Pi-2 formula that is what remains without its ``W``: when it is met, the letter is marked, and what remains
-    then is owed.  The formula holds where infinitely many letters are marked, and what remains never becomes false.
-    Sigma-2 is dual: a letter is marked when all tries have failed, and it holds where finitely many are.
+    The memory is what remains of the formula, and an obligation that is owed.  For a Pi-2 formula
+    this obligation starts as what remains with each outermost ``W`` replaced by true.  When it
+    becomes true, the letter is marked, and the obligation starts again from what remains then.  The
+    formula holds if infinitely many letters are marked and what remains never becomes false.
+    Sigma-2 is dual: each outermost ``U`` is replaced by false, a letter is marked when the
+    obligation becomes false, and the formula holds if finitely many letters are marked.
     """
 
     def __init__(self, after: After, formula: Formula, kind: Kind) -> None:
@@ -56,17 +65,17 @@ class Breakpoint:
         return self._after.obligation(_without(formula, "W" if self.kind == "inf" else "U"))
 
     def step(self, memory: Memory) -> int:
-        """From the letter to the memory after it and whether it is marked."""
-        found = self._steps.get(memory)
-        if found is None:
+        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        step = self._steps.get(memory)
+        if step is None:
             letters = self._after.letters
             if self.settled(memory) is not None:
-                found = letters.leaf((memory, False))
+                step = letters.leaf((memory, False))
             else:
                 rest, owed = map(self._after.after, memory)
-                found = letters.combined(self._stepped, rest, owed, self._memo)
-            self._steps[memory] = found
-        return found
+                step = letters.combined(self._stepped, rest, owed, self._memo)
+            self._steps[memory] = step
+        return step
 
     def _stepped(self, rest: int, owed: int) -> tuple[Memory, bool]:
         if rest in (TRUE, FALSE):
@@ -76,25 +85,26 @@ class Breakpoint:
         return (rest, owed), False
 
     def settled(self, memory: Memory) -> bool | None:
-        """Whether nothing remains of the formula, or no way to meet it; else None."""
+        """Return True if nothing remains of the formula, False if it cannot hold any more, else None."""
         return memory[0] == TRUE if len(memory) == 1 else None
 
 
 @lru_cache(maxsize=16384)
 def _without(formula: Formula, op: str) -> Formula:
-    """The formula with the outermost ``W`` replaced by true, or ``U`` by false."""
+    """Return the formula with each outermost ``W`` replaced by true, or each outermost ``U`` by false."""
     if formula.op == op:
         return build.TRUE if op == "W" else build.FALSE
     if formula.op in ("and", "or", "X"):
-        return substituted_below(formula, {each: _without(each, op) for each in formula.args})
+        return substituted_below(formula, {argument: _without(argument, op) for argument in formula.args})
     return formula
 
 
 class Recurrence:
-    """``G F p`` of a Sigma-1 p (``inf``), or ``F G p`` of a Pi-1 one (``fin``), by the attempts that are under way.
+    """An automaton for ``G F p`` with p in Sigma-1 (``inf``), or ``F G p`` with p in Pi-1 (``fin``).
 
-    The memory is the attempts that began and are not over: each letter begins another.  One that succeeds (of
-    ``F G p``: fails) marks the letter.
+    Each letter starts an attempt to satisfy p.  The memory is the obligations of the attempts that
+    are under way.  A letter is marked if an attempt succeeds (for ``F G p``: fails); unless
+    ``keep``, the other attempts are then dropped.
     """
 
     def __init__(self, after: After, formula: Formula, kind: Kind, *, keep: bool) -> None:
@@ -108,38 +118,43 @@ class Recurrence:
         self._last: dict[int, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """From the letter to the memory after it and whether it is marked."""
-        found = self._steps.get(memory)
-        if found is None:
+        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        step = self._steps.get(memory)
+        if step is None:
             letters = self._after.letters
-            found = letters.mapped(lambda each: (each,), self._first, self._last)
+            step = letters.mapped(lambda first: (first,), self._first, self._last)
             for attempt in memory:
-                found = letters.combined(lambda all_, one: (*all_, one), found, self._after.after(attempt), {})
-            found = letters.mapped(self._stepped, found, {})
-            self._steps[memory] = found
-        return found
+                step = letters.combined(lambda all_, one: (*all_, one), step, self._after.after(attempt), {})
+            step = letters.mapped(self._stepped, step, {})
+            self._steps[memory] = step
+        return step
 
     def _stepped(self, attempts: tuple[int, ...]) -> tuple[Memory, bool]:
         over, out = (TRUE, FALSE) if self.kind == "inf" else (FALSE, TRUE)
         marked = over in attempts
         if marked and not self._keep:
             return (), True
-        left = {each for each in attempts if each not in (over, out)}
+        left = {attempt for attempt in attempts if attempt not in (over, out)}
         combine: Callable[[int, int], int]
         combine = self._after.diagrams.either if self.kind == "inf" else self._after.diagrams.both
-        # What succeeds only where another one does need not be remembered.
-        needed = [each for each in left if not any(other != each and combine(each, other) == other for other in left)]
+        # An attempt that succeeds only if another one does need not be remembered.
+        needed = [
+            attempt
+            for attempt in left
+            if not any(other != attempt and combine(attempt, other) == other for other in left)
+        ]
         return tuple(sorted(needed)), marked
 
     def settled(self, memory: Memory) -> None:
-        """What comes decides, always."""
+        """Return None: later letters always decide."""
 
 
 class RoundRobin:
-    """Several ``G F p`` that are all asked for (of ``F G p``: of which one is), by one of them at a time.
+    """An automaton for a conjunction of ``G F p``, or a disjunction of ``F G p``, that follows one of them at a time.
 
-    The memory is which one is looked at, and its attempts; a letter that marks it passes on to the next one, and is
-    marked when the round is over.  So memories add up, where otherwise they multiply.
+    The memory is the index of the current part and its attempts.  A letter that the current part
+    marks moves on to the next part; it is marked here if the round is complete.  So the numbers of
+    memories of the parts add up instead of multiplying.
     """
 
     def __init__(self, after: After, parts: Sequence[Recurrence]) -> None:
@@ -150,28 +165,28 @@ class RoundRobin:
         self._steps: dict[Memory, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """From the letter to the memory after it and whether it is marked."""
-        found = self._steps.get(memory)
-        if found is None:
+        """Return the memory after each letter and whether the letter is marked, as a function of the letter."""
+        step = self._steps.get(memory)
+        if step is None:
             letters, count = self._letters, len(self._parts)
             at, inner = memory
-            found = letters.mapped(lambda one: (one,), self._parts[at].step(inner), {})
-            for further in range(1, count):
-                other = self._parts[(at + further) % count].step(())
-                found = letters.combined(lambda all_, one: (*all_, one), found, other, {})
+            step = letters.mapped(lambda leaf: (leaf,), self._parts[at].step(inner), {})
+            for offset in range(1, count):
+                other = self._parts[(at + offset) % count].step(())
+                step = letters.combined(lambda all_, one: (*all_, one), step, other, {})
 
-            def stepped(each: Sequence[tuple[Memory, bool]]) -> tuple[Memory, bool]:
+            def stepped(leaves: Sequence[tuple[Memory, bool]]) -> tuple[Memory, bool]:
                 over = False
-                for further, (left, marked) in enumerate(each):
-                    here = (at + further) % count
+                for offset, (left, marked) in enumerate(leaves):
+                    here = (at + offset) % count
                     if not marked:
                         return (here, left), over
                     over = over or here == count - 1
-                return (at, each[0][0]), True
+                return (at, leaves[0][0]), True
 
-            found = letters.mapped(stepped, found, {})
-            self._steps[memory] = found
-        return found
+            step = letters.mapped(stepped, step, {})
+            self._steps[memory] = step
+        return step
 
     def settled(self, memory: Memory) -> None:
-        """What comes decides, always."""
+        """Return None: later letters always decide."""

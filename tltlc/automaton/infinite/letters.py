@@ -1,4 +1,4 @@
-"""Functions of a letter as hash-consed decision diagrams, whose leaves are any values that can be compared.
+"""Functions of a letter as hash-consed decision diagrams, whose leaves are hashable values.
 
 A node is an int; inner nodes test an atom by its index, in order.  No operation enumerates letters.
 """
@@ -13,14 +13,14 @@ from tltlc.automaton.infinite.work import Work
 Leaf = TypeVar("Leaf", bound=Hashable)
 
 LEAF: Final = 1 << 40
-"""The ``atom`` of a leaf: greater than every index of an atom."""
+"""The ``atom`` of a leaf, greater than every atom's index."""
 
 
 class Letters(Generic[Leaf]):
-    """A table of nodes: ``atom[n]``, ``low[n]`` and ``high[n]`` describe node ``n``, ``value[n]`` a leaf's value.
+    """A table of nodes: ``atom[n]``, ``low[n]`` and ``high[n]`` describe node ``n``; ``value[n]`` is a leaf's value.
 
-    New nodes are counted as work; operations raise :class:`~tltlc.automaton.infinite.work.OutOfWork` where none is
-    left.
+    New inner nodes count as work.  Operations raise
+    :class:`~tltlc.automaton.infinite.work.OutOfWork` if no work is left.
     """
 
     __slots__ = ("_leaves", "_nodes", "atom", "high", "low", "value", "work")
@@ -35,22 +35,22 @@ class Letters(Generic[Leaf]):
         self.work = work
 
     def leaf(self, value: Leaf) -> int:
-        """The function that has one value on every letter."""
-        found = self._leaves.get(value)
-        if found is None:
-            found = self._leaves[value] = self._add(LEAF, -1, -1, value)
-        return found
+        """Return the function that has one value on every letter."""
+        node = self._leaves.get(value)
+        if node is None:
+            node = self._leaves[value] = self._add(LEAF, -1, -1, value)
+        return node
 
     def node(self, atom: int, low: int, high: int) -> int:
-        """The function ``high`` on letters with the atom, ``low`` on the others."""
+        """Return the function ``high`` on letters with the atom, ``low`` on the others."""
         if low == high:
             return low
         key = (atom, low, high)
-        found = self._nodes.get(key)
-        if found is None:
+        number = self._nodes.get(key)
+        if number is None:
             self.work.spend()
-            found = self._nodes[key] = self._add(atom, low, high, None)
-        return found
+            number = self._nodes[key] = self._add(atom, low, high, None)
+        return number
 
     def _add(self, atom: int, low: int, high: int, value: Leaf | None) -> int:
         self.atom.append(atom)
@@ -60,7 +60,10 @@ class Letters(Generic[Leaf]):
         return len(self.atom) - 1
 
     def combined(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
-        """The function of both values on each letter; ``memo`` may be shared by calls with the same ``combine``."""
+        """Return the function that combines the values of x and y on each letter.
+
+        Calls with the same ``combine`` may share ``memo``.
+        """
         result = memo.get((x, y))
         if result is not None:
             return result
@@ -79,7 +82,9 @@ class Letters(Generic[Leaf]):
         return result
 
     def mapped(self, change: Callable[[Any], Leaf], x: int, memo: dict[int, int]) -> int:
-        """The function with every value changed; ``memo`` may be shared by calls with the same ``change``."""
+        """Return the function with ``change`` applied to every value; calls with the same
+        ``change`` may share ``memo``.
+        """
         result = memo.get(x)
         if result is None:
             if self.atom[x] == LEAF:
@@ -91,22 +96,22 @@ class Letters(Generic[Leaf]):
         return result
 
     def values(self, x: int) -> list[Any]:
-        """The distinct values of a function, left to right."""
-        found = []
+        """Return the distinct values of a function, left to right."""
+        values = []
         stack, seen = [x], {x}
         while stack:
             n = stack.pop()
             if self.atom[n] == LEAF:
-                found.append(self.value[n])
+                values.append(self.value[n])
                 continue
             for child in (self.high[n], self.low[n]):
                 if child not in seen:
                     seen.add(child)
                     stack.append(child)
-        return found
+        return values
 
     def letter_with(self, x: int, value: Leaf) -> frozenset[int]:
-        """The atoms that hold in some letter on which a function has a value; ValueError where it never has it."""
+        """Return the atoms of some letter on which a function has a value; raises ValueError if there is none."""
         stack: list[tuple[int, tuple[int, ...]]] = [(x, ())]
         seen = {x}
         while stack:
@@ -115,21 +120,21 @@ class Letters(Generic[Leaf]):
                 if self.value[n] == value:
                     return frozenset(holding)
                 continue
-            for child, there in ((self.high[n], (*holding, self.atom[n])), (self.low[n], holding)):
+            for child, extended in ((self.high[n], (*holding, self.atom[n])), (self.low[n], holding)):
                 if child not in seen:
                     seen.add(child)
-                    stack.append((child, there))
+                    stack.append((child, extended))
         raise ValueError(f"no letter has the value {value!r}")
 
     def at(self, x: int, letter: Callable[[int], bool]) -> Any:
-        """The value on a letter, which says of an atom's index whether it holds."""
+        """Return the value on a letter; ``letter`` returns for an atom's index whether the atom holds."""
         while self.atom[x] != LEAF:
             x = self.high[x] if letter(self.atom[x]) else self.low[x]
         return self.value[x]
 
 
 def at_most_one(letters: Letters[Any], groups: Iterable[Sequence[int]], yes: Hashable, no: Hashable) -> int:
-    """``yes`` on letters in which at most one atom of each group holds, ``no`` on the others."""
+    """Return the function that is ``yes`` on letters with at most one atom of each group, ``no`` on the others."""
     always, never = letters.leaf(yes), letters.leaf(no)
     allowed = always
     for group in groups:

@@ -1,4 +1,4 @@
-"""Boolean combinations of marks: which marks must come infinitely often, which may only come finitely often."""
+"""Acceptance conditions over marks: which marks must come infinitely often, and which only finitely often."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tltlc.automaton.infinite.work import Work
 from tltlc.core.record import record
 
 Kind = Literal["inf", "fin"]
-"""Whether marks must come infinitely often, or finitely often."""
+"""Whether marks must come infinitely often or finitely often."""
 
 Marks = frozenset[int]
-"""What a letter is marked with: the places of parts, or of pairs the numbers of :func:`pair_marks`."""
+"""The marks of a letter: indices of parts, or for pairs the numbers of :func:`pair_marks`."""
 
 Skeleton = tuple[Any, ...]
 """``("leaf", index)``, ``("and", …)`` or ``("or", …)``."""
@@ -22,40 +22,40 @@ Skeleton = tuple[Any, ...]
 
 @record
 class Clause:
-    """A run is accepted that takes every set of ``infs`` infinitely often, and none of ``fins``."""
+    """A condition that a run meets if it takes all marks of ``infs``, and none of ``fins``, infinitely often."""
 
     fins: Marks
     infs: Marks
 
     def accepts(self, marks: Marks) -> bool:
-        """Whether these are the marks of a run, taken infinitely often, that is accepted."""
+        """Whether a run that takes exactly these marks infinitely often is accepted."""
         return self.infs <= marks and self.fins.isdisjoint(marks)
 
 
 def pair_marks(marks: Iterable[Mark], first: int = 0) -> Marks:
-    """Marks of Rabin pairs as numbers, two for each pair from ``first`` on: the even one for ``fin``."""
+    """Return marks of Rabin pairs as numbers: from ``first`` on two for each pair, ``fin`` then ``inf``."""
     return frozenset(first + 2 * pair + (kind == "inf") for pair, kind in marks)
 
 
 def pair_clauses(pairs: int, first: int = 0) -> list[Clause]:
-    """So many Rabin pairs as clauses over the numbers of :func:`pair_marks`."""
+    """Return ``pairs`` Rabin pairs as clauses over the numbers of :func:`pair_marks`."""
     return [Clause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
 
 
 def clauses(
     skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work
 ) -> list[Clause] | bool:
-    """The disjunctive normal form of a skeleton over parts of these kinds; True or False where it is constant.
+    """Return the disjunctive normal form of a skeleton over parts of these kinds; True or False if it is constant.
 
-    ``values`` has True or False for a part that is settled, None for the others.  Raises OutOfWork where there are too
-    many clauses.
+    ``values`` has True or False for parts that are settled, None for the others.  Raises OutOfWork
+    if there are too many clauses.
     """
-    found = _clauses(skeleton, kinds, values, work)
-    if not found:
+    result = _clauses(skeleton, kinds, values, work)
+    if not result:
         return False
-    if any(not each.fins and not each.infs for each in found):
+    if any(not clause.fins and not clause.infs for clause in result):
         return True
-    return found
+    return result
 
 
 def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work) -> list[Clause]:
@@ -65,10 +65,10 @@ def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | 
             return [Clause(frozenset(), frozenset())] if values[index] else []
         one = frozenset((index,))
         return [Clause(one, frozenset()) if kinds[index] == "fin" else Clause(frozenset(), one)]
-    below = [_clauses(each, kinds, values, work) for each in skeleton[1:]]
+    below = [_clauses(operand, kinds, values, work) for operand in skeleton[1:]]
     work.spend(len(below))
     if skeleton[0] == "or":
-        return _minimal([each for group in below for each in group], work)
+        return _minimal([clause for group in below for clause in group], work)
     result = [Clause(frozenset(), frozenset())]
     for group in below:
         work.spend(len(result) * len(group) // 4)
@@ -76,12 +76,14 @@ def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | 
     return result
 
 
-def _minimal(found: list[Clause], work: Work) -> list[Clause]:
-    """Without those that another one covers."""
-    distinct = list(dict.fromkeys(found))
+def _minimal(disjuncts: list[Clause], work: Work) -> list[Clause]:
+    """Return the clauses that no other clause covers."""
+    distinct = list(dict.fromkeys(disjuncts))
     work.spend(len(distinct) ** 2 // 16)
     return [
-        each
-        for each in distinct
-        if not any(other is not each and other.fins <= each.fins and other.infs <= each.infs for other in distinct)
+        clause
+        for clause in distinct
+        if not any(
+            other is not clause and other.fins <= clause.fins and other.infs <= clause.infs for other in distinct
+        )
     ]

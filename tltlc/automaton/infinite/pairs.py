@@ -1,9 +1,10 @@
-"""From clauses over marks to Rabin pairs, along the alternating cycle decomposition.
+"""Convert clauses over marks to Rabin pairs with the alternating cycle decomposition.
 
-Below an accepted node a run goes round its rejected children: it stays at one as long as it takes only edges of that,
-and goes on to the next one otherwise, which marks the letter.  A run that does so for ever is inside no child, so it is
-accepted.  Below a rejected node all accepted children are followed at once, each with a pair of its own; pairs are
-shared by nodes that have no state in common.
+At an accepted node, the automaton visits the rejected children in turn.  It stays at a child while
+the run takes only edges of that child; otherwise it moves on to the next child and marks the
+letter.  A run with infinitely many such marks stays in no child, so it is accepted.  At a rejected
+node, all accepted children are followed at once, each with its own pair.  Nodes without a common
+state share pairs.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from tltlc.automaton.infinite.work import OutOfWork, Work
 from tltlc.core.record import record
 
 _FOR_FEWER_PAIRS: Final = 100_000
-"""Steps for a decomposition where the marks are Rabin pairs as they stand, so that it saves pairs at best."""
+"""Steps for a decomposition if the clauses already are Rabin pairs, so that it can only save pairs."""
 
 Walk = tuple[Any, ...]
-"""Where a run is in a tree: the child that it follows and where it is in that, or the latter of each child."""
+"""The position of a run in a tree: a child's index and the walk in that child, or the walks in all children."""
 
 
 @record
 class Piece:
-    """A component whose letters are marked with pairs; exits and labels are as those of :class:`Local`."""
+    """A component whose letters are marked with Rabin pairs; exits and labels are as in :class:`Local`."""
 
     labels: dict[State, int]
     steps: dict[State, int]
@@ -35,25 +36,25 @@ class Piece:
 
 
 def with_pairs(letters: Letters[Any], one: Local, work: Work) -> Piece:
-    """The component with Rabin pairs, as small as the ways known here make it; raises OutOfWork."""
-    found: list[Piece] = []
+    """Return the component with Rabin pairs, the smallest that the methods of this module make; raises OutOfWork."""
+    pieces: list[Piece] = []
     direct = as_it_stands(letters, one)
     try:
         with work.at_most(work.left // 2 if direct is None else _FOR_FEWER_PAIRS):
             tree = decomposition(_edges(letters, one), one.accepts, work)
-            found.append(_walked(letters, one, tree, one_at_a_time=False, work=work))
-            found.append(_walked(letters, one, tree, one_at_a_time=True, work=work))
+            pieces.append(_walked(letters, one, tree, one_at_a_time=False, work=work))
+            pieces.append(_walked(letters, one, tree, one_at_a_time=True, work=work))
     except OutOfWork:
         pass
     if direct is not None:
-        found.append(direct)
-    if not found:
-        found.append(_in_turn(letters, one, work))
-    return min(found, key=lambda piece: (len(piece.steps), piece.pairs))
+        pieces.append(direct)
+    if not pieces:
+        pieces.append(_in_turn(letters, one, work))
+    return min(pieces, key=lambda piece: (len(piece.steps), piece.pairs))
 
 
 def as_it_stands(letters: Letters[Any], one: Local) -> Piece | None:
-    """The component itself, where each clause is a Rabin pair: it asks for one ``inf`` at most; None elsewhere."""
+    """Return the component with its clauses as pairs; None unless each clause has at most one ``inf`` mark."""
     if any(len(clause.infs) > 1 for clause in one.accepts):
         return None
 
@@ -61,9 +62,9 @@ def as_it_stands(letters: Letters[Any], one: Local) -> Piece | None:
         target, marks = leaf
         if target[0] == "exit":
             return target, NO_MARKS
-        said: set[Mark] = {(pair, "inf") for pair, each in enumerate(one.accepts) if each.infs <= marks}
-        said |= {(pair, "fin") for pair, each in enumerate(one.accepts) if each.fins & marks}
-        return target, frozenset(said)
+        pair_marks: set[Mark] = {(pair, "inf") for pair, clause in enumerate(one.accepts) if clause.infs <= marks}
+        pair_marks |= {(pair, "fin") for pair, clause in enumerate(one.accepts) if clause.fins & marks}
+        return target, frozenset(pair_marks)
 
     memo: dict[int, int] = {}
     steps = {state: letters.mapped(change, step, memo) for state, step in one.steps.items()}
@@ -71,7 +72,7 @@ def as_it_stands(letters: Letters[Any], one: Local) -> Piece | None:
 
 
 def _in_turn(letters: Letters[Any], one: Local, work: Work) -> Piece:
-    """The component where each clause waits for its ``infs`` one after the other, which is always a Rabin pair."""
+    """Return the component with a Rabin pair for each clause, which waits for the clause's ``infs`` in turn."""
     orders = [sorted(clause.infs) for clause in one.accepts]
     first = next(iter(one.steps))
 
@@ -83,16 +84,16 @@ def _in_turn(letters: Letters[Any], one: Local, work: Work) -> Piece:
             if target[0] == "exit":
                 return target, NO_MARKS
             work.spend(1 + len(orders))
-            said: set[Mark] = {(pair, "fin") for pair, each in enumerate(one.accepts) if each.fins & marks}
+            pair_marks: set[Mark] = {(pair, "fin") for pair, clause in enumerate(one.accepts) if clause.fins & marks}
             following = []
             for pair, (order, place) in enumerate(zip(orders, waiting, strict=True)):
                 while place < len(order) and order[place] in marks:
                     place += 1
                 if place == len(order):
-                    said.add((pair, "inf"))
+                    pair_marks.add((pair, "inf"))
                     place = 0
                 following.append(place)
-            return (target, tuple(following)), frozenset(said)
+            return (target, tuple(following)), frozenset(pair_marks)
 
         work.spend(10)
         return letters.mapped(change, one.steps[inner], {})
@@ -111,7 +112,7 @@ def _edges(letters: Letters[Any], one: Local) -> list[Edge]:
 
 
 class _Walks:
-    """The walks along a tree; ``one_at_a_time``: below rejected nodes, too, one child is followed and then the next."""
+    """The walks along a tree; if ``one_at_a_time``, rejected nodes too follow one child and then the next."""
 
     def __init__(self, tree: Node, *, one_at_a_time: bool) -> None:
         self._one_at_a_time = one_at_a_time
@@ -121,7 +122,7 @@ class _Walks:
         self.pairs = len(set(self.pair.values()))
 
     def _share(self, tree: Node) -> None:
-        """Give accepted nodes their pairs."""
+        """Assign pairs to the accepted nodes."""
         taken: list[list[Node]] = []
         stack = [tree]
         while stack:
@@ -131,8 +132,8 @@ class _Walks:
                 free = next(
                     (
                         number
-                        for number, others in enumerate(taken)
-                        if all(node.states.isdisjoint(other.states) for other in others)
+                        for number, sharing in enumerate(taken)
+                        if all(node.states.isdisjoint(other.states) for other in sharing)
                     ),
                     len(taken),
                 )
@@ -142,17 +143,19 @@ class _Walks:
                 self.pair[node.index] = free
 
     def begin(self, node: Node, state: State) -> Walk:
-        """The walk below a node in one of its states."""
-        there = [place for place, child in enumerate(node.below) if state in child.states]
-        if not there:
+        """Return the initial walk below a node in one of its states."""
+        places = [place for place, child in enumerate(node.below) if state in child.states]
+        if not places:
             return ()
         if node.accepted or self._one_at_a_time:
-            return (there[0], self.begin(node.below[there[0]], state))
-        return tuple(self.begin(node.below[place], state) for place in there)
+            return (places[0], self.begin(node.below[places[0]], state))
+        return tuple(self.begin(node.below[place], state) for place in places)
 
     def step(self, node: Node, walk: Walk, edge: Edge, active: set[int], marked: set[int]) -> Walk:
-        """The walk after an edge of the node; ``active`` gets the accepted nodes that have it, ``marked`` those whose
-        round goes on.
+        """Return the walk after an edge of the node.
+
+        Adds the accepted nodes that contain the edge to ``active``, and those that move on to their
+        next child to ``marked``.
         """
         source, target, _ = edge
         if node.accepted:
@@ -197,10 +200,10 @@ def _walked(letters: Letters[Any], one: Local, tree: Node, *, one_at_a_time: boo
             marked: set[int] = set()
             after = walks.step(tree, walk, (inner, target, marks), active, marked)
             work.spend(1 + len(active) + walks.pairs // 4)
-            said: set[Mark] = {(walks.pair[index], "inf") for index in marked}
-            there = {walks.pair[index] for index in active}
-            said |= {(pair, "fin") for pair in range(walks.pairs) if pair not in there}
-            return (target, after), frozenset(said)
+            pair_marks: set[Mark] = {(walks.pair[index], "inf") for index in marked}
+            active_pairs = {walks.pair[index] for index in active}
+            pair_marks |= {(pair, "fin") for pair in range(walks.pairs) if pair not in active_pairs}
+            return (target, after), frozenset(pair_marks)
 
         work.spend(10)
         return letters.mapped(change, one.steps[inner], {})

@@ -1,4 +1,4 @@
-"""Products of two automata, which are read in step: cycles that the one accepts and the other does not."""
+"""Products of two automata: find cycles that one accepts and the other rejects."""
 
 from __future__ import annotations
 
@@ -12,24 +12,26 @@ from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_clauses
 from tltlc.automaton.infinite.work import Work
 
 Both = tuple[Any, Any]
-"""A state of the one automaton and one of the other."""
+"""A state of the first automaton and a state of the second."""
 
 Leaf = tuple[Both, Marks]
-"""The states after a letter, and the marks of both: those of the other one come behind those of the first."""
+"""The states after a letter, and both automata's marks; the second's are numbered after the first's."""
 
 Ways = Sequence[tuple[Sequence[Clause], Sequence[Clause]]]
-"""What is to accept a cycle, and what is not to."""
+"""Alternatives: the clauses of which one must accept a cycle, and the clauses of which none may."""
 
 
 def conditions(pairs: int, others: int) -> tuple[list[Clause], list[Clause]]:
-    """What the one automaton accepts, which has so many pairs, and what the other one, which has ``others``."""
+    """Return the clauses of two automata, the first with ``pairs`` pairs and the second with ``others``."""
     return pair_clauses(pairs), pair_clauses(others, first=2 * pairs)
 
 
 def side_by_side(letters: Letters[Any], pairs: int, is_over: Callable[[Any], bool]) -> Callable[[int, int], list[Leaf]]:
-    """Of the steps of two automata with so many pairs each, where letters lead from both.
+    """Return a function that maps the steps of two automata to the successors in their product.
 
-    Leaves of steps are targets with marks; where one of the first automaton ``is_over``, so is the other's.
+    Each automaton has ``pairs`` pairs.  The leaves of steps are targets with marks.  If a leaf of
+    the first automaton ``is_over``, the second automaton's leaf must be too, and the product has no
+    successor.
     """
     memo: dict[tuple[int, int], int] = {}
 
@@ -39,8 +41,8 @@ def side_by_side(letters: Letters[Any], pairs: int, is_over: Callable[[Any], boo
         return (one[0], other[0]), pair_marks(one[1]) | pair_marks(other[1], first=2 * pairs)
 
     def leaves(one: int, other: int) -> list[Leaf]:
-        found = letters.combined(together, one, other, memo)
-        return [leaf for leaf in letters.values(found) if leaf is not None]
+        step = letters.combined(together, one, other, memo)
+        return [leaf for leaf in letters.values(step) if leaf is not None]
 
     return leaves
 
@@ -48,9 +50,11 @@ def side_by_side(letters: Letters[Any], pairs: int, is_over: Callable[[Any], boo
 def telling_apart(
     starts: Iterable[Both], leaves: Callable[[Both], Sequence[Leaf]], ways: Ways, work: Work
 ) -> Edges | None:
-    """A strongly connected set of edges that is reached and accepted in one of these ways; None where none is.
+    """Return a reachable strongly connected set of edges that meets one of the alternatives
+    ``ways``; None if none does.
 
-    ``leaves`` gives what letters lead to from two states, and is asked once for each.  Raises OutOfWork.
+    ``leaves`` returns the successors of a pair of states and is called once for each pair.  Raises
+    OutOfWork.
     """
     known: dict[Both, Sequence[Leaf]] = {}
 
@@ -62,15 +66,15 @@ def telling_apart(
         members = set(group)
         edges = [(both, target, marks) for both in group for target, marks in known[both] if target in members]
         for these, those in ways if edges else ():
-            if found := _only_here(edges, these, those, work):
-                return found
+            if part := _only_here(edges, these, those, work):
+                return part
     return None
 
 
 def _only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[Clause], work: Work) -> Edges | None:
-    """A strongly connected set of edges that is accepted by these clauses and not by those; None where none is."""
+    """Return a strongly connected subset that ``these`` clauses accept and ``those`` reject; None if there is none."""
     for clause in these:
-        # Leaving out edges takes little; the parts that are left count for themselves.
+        # Removing edges is cheap; `parts` counts its own work.
         work.spend(1 + len(edges) // 128)
         stack = parts((edge for edge in edges if not edge[2] & clause.fins), work)
         while stack:
@@ -78,9 +82,9 @@ def _only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[C
             marks = marks_of(part)
             if not clause.infs <= marks:
                 continue
-            met = next((each for each in those if each.accepts(marks)), None)
-            if met is None:
+            accepting = next((clause for clause in those if clause.accepts(marks)), None)
+            if accepting is None:
                 return part
-            for mark in met.infs:
+            for mark in accepting.infs:
                 stack += parts((edge for edge in part if mark not in edge[2]), work)
     return None

@@ -1,4 +1,4 @@
-"""What remains in a state, written as in the source: with its operators, and its operands in their order."""
+"""Write what remains in a state in the style of the source: its operators, and operands in its order."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
 from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
 
 _MOST_PARTS: Final = 300
-"""A specification with more is written as the construction has it: nobody reads its labels."""
+"""A spec with more subformulas keeps the labels of the construction: they are too long to read."""
 
 _LONGEST_IN_ENGLISH: Final = 2_000
-"""Characters of a formula above which no sentence would be read."""
+"""Formulas with more characters get no English sentence: it would be too long to read."""
 
 
 def text_of(formula: Formula) -> Text:
-    """A formula over infinite traces in the three notations."""
+    """Return a formula over infinite traces in the three notations."""
     plain = ascii_text(formula)
     if len(plain) > _LONGEST_IN_ENGLISH:
         return Text(plain, unicode_text(formula), f"Satisfy {plain}.")
@@ -26,12 +26,12 @@ def text_of(formula: Formula) -> Text:
 
 
 def without_constants(formula: Formula) -> Formula:
-    """A formula that is equal on every infinite trace, and a constant or with none in it."""
+    """Return a formula that is equal on every infinite trace, and is a constant or contains none."""
     return Writer(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 
 
 class Writer:
-    """Writes formulas of the construction's normal form in the words of ``source``: ``a -> F b`` for ``!a | F b``."""
+    """Writes formulas in the construction's normal form as ``source`` does: ``a -> F b`` for ``!a | F b``."""
 
     def __init__(self, source: Formula) -> None:
         self._place: dict[Formula, int] = {}
@@ -46,7 +46,7 @@ class Writer:
             form = readable(infinite_form(part), self._readable)
             if form not in (TRUE, FALSE):
                 self._place.setdefault(form, place)
-                # Parts that the source says in more words than need be are not taken from it.
+                # Parts that the source writes longer than necessary are not used.
                 if part.op == "not" or (has_constants and _has_constants(part)):
                     continue
                 if self._size(part) <= self._size(self._done.get(form, form)):
@@ -54,13 +54,13 @@ class Writer:
         self._last = len(parts)
 
     def formula(self, label: Formula) -> Formula:
-        """The formula, equal on every infinite trace: the shortest way to write it that was found."""
-        ways = [self._written(label)]
+        """Return the shortest formula found that is equal to the label on every infinite trace."""
+        candidates = [self._written(label)]
         if self._source and label.op in ("and", "or"):
             self._factoring = self._factoring or Factoring(self._source.atoms())
-            ways += map(self._written, self._factoring.forms(label))
-        distinct = list(dict.fromkeys(ways))
-        return min(distinct, key=lambda way: len(ascii_text(way))) if len(distinct) > 1 else distinct[0]
+            candidates += map(self._written, self._factoring.forms(label))
+        distinct = list(dict.fromkeys(candidates))
+        return min(distinct, key=lambda candidate: len(ascii_text(candidate))) if len(distinct) > 1 else distinct[0]
 
     def _written(self, label: Formula) -> Formula:
         plain = readable(label, self._readable)
@@ -68,24 +68,24 @@ class Writer:
             ordered = node
             if node.op in ("and", "or"):
                 ordered = rebuild(node, tuple(sorted(node.args, key=self._place_of)))
-            words = self._done.get(ordered)
-            self._done[node] = words or rebuild(ordered, tuple(self._done[argument] for argument in ordered.args))
+            as_written = self._done.get(ordered)
+            self._done[node] = as_written or rebuild(ordered, tuple(self._done[argument] for argument in ordered.args))
         return self._done[plain]
 
     def _place_of(self, formula: Formula) -> int:
-        """Where in the source the formula first stands, or a part of it."""
-        found = self._place.get(formula)
-        if found is None:
-            found = self._place[formula] = min(map(self._place_of, formula.args), default=self._last)
-        return found
+        """Return the first position of the formula, or of a part of it, in the source."""
+        place = self._place.get(formula)
+        if place is None:
+            place = self._place[formula] = min(map(self._place_of, formula.args), default=self._last)
+        return place
 
     def _size(self, formula: Formula) -> int:
-        """The operators and atoms in the formula as it is written."""
+        """Return the number of operators and atoms in the formula's text."""
         for node in formula.bottom_up(known=self._sizes):
             self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
         return self._sizes[formula]
 
 
 def _has_constants(formula: Formula) -> bool:
-    """Whether ``true`` or ``false`` stands in a formula, which over infinite traces none needs."""
+    """Whether a formula contains ``true`` or ``false``; over infinite traces no formula needs them."""
     return not {TRUE, FALSE}.isdisjoint(formula.walk())

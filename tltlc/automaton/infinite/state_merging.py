@@ -1,8 +1,9 @@
-"""States of a component that can do without each other: of two with one label, one takes the other's place.
+"""Remove states of a component by redirecting their edges to another state with the same label.
 
-Both have the same language, and yet a run that is sent from the one to the other again and again may lose what it has
-counted, and be accepted or rejected wrongly.  So each such exchange is decided exactly: the automata before and after
-it are read in step, and if no cycle tells them apart, it is made (docs/adr/0021).
+States with the same label have the same language.  Still, a run that is redirected infinitely often
+may lose what its memory has counted, and be accepted or rejected wrongly.  So each removal is
+checked exactly: it is done if no cycle in the product of the automata before and after it is
+accepted by only one of them (docs/adr/0021).
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ from tltlc.automaton.infinite.work import OutOfWork, Work
 
 
 def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece:
-    """The component without the states that others can take the place of, as far as so many steps of work allow."""
+    """Return the component without the states that another state can replace; stops after ``steps`` steps of work."""
     original = piece
     try:
         with work.at_most(steps):
             for state in reversed(list(piece.steps)):
                 if state not in piece.steps:
-                    # It was reached through one that is gone alone.
+                    # It was reachable only through a state that was removed.
                     continue
                 for other in list(piece.steps):
                     if state == other or piece.labels[state] != piece.labels[other]:
@@ -38,19 +39,19 @@ def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece
 
 
 def _without(letters: Letters[Any], piece: Piece, state: Any, other: Any) -> Piece:
-    """The component where ``other`` takes the place of a state; and of what is not reached any more."""
+    """Return the component with ``other`` in place of ``state``, reduced to a bottom component."""
 
-    def leaf(each: Any) -> Any:
-        return (other, each[1]) if each[0] == state else each
+    def redirected(leaf: Any) -> Any:
+        return (other, leaf[1]) if leaf[0] == state else leaf
 
     memo: dict[int, int] = {}
-    steps = {source: letters.mapped(leaf, step, memo) for source, step in piece.steps.items() if source != state}
+    steps = {source: letters.mapped(redirected, step, memo) for source, step in piece.steps.items() if source != state}
 
     def within(source: Any) -> list[Any]:
         return [target for target, _ in letters.values(steps[source]) if target[0] != "exit"]
 
     groups = components(list(steps), within)
-    # The first one that is found leads to no other.
+    # The first component leads to no other.
     kept = set(groups[0])
     return Piece(
         {source: label for source, label in piece.labels.items() if source in kept},
@@ -60,16 +61,16 @@ def _without(letters: Letters[Any], piece: Piece, state: Any, other: Any) -> Pie
 
 
 def _is_equal(letters: Letters[Any], one: Piece, other: Piece, work: Work) -> bool:
-    """Whether each state of ``one`` accepts what the state of that name of ``other`` does, of runs that stay.
+    """Whether each state of ``one`` accepts the same runs that stay in the component as the same state of ``other``.
 
     Raises OutOfWork.
     """
     together = side_by_side(letters, one.pairs, lambda leaf: leaf[0][0] == "exit")
 
     def leaves(both: Both) -> list[Leaf]:
-        found = together(one.steps[both[0]], other.steps[both[1]])
-        work.spend(5 + len(found))
-        return found
+        successors = together(one.steps[both[0]], other.steps[both[1]])
+        work.spend(5 + len(successors))
+        return successors
 
     these, those = conditions(one.pairs, one.pairs)
     starts = [(state, state) for state in one.steps]

@@ -1,4 +1,4 @@
-"""How much a construction may do, counted and not timed, so that the same formula gives the same automaton."""
+"""The work budget of a construction: counted, not timed, so that the same formula gives the same automaton."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from contextlib import contextmanager
 from typing import Final
 
 STEPS_PER_STATE: Final = 400
-"""Steps of work allowed for each state of a budget."""
+"""Steps of work for each state of a state budget."""
 
 DEFAULT_WORK: Final = 20_000_000
-"""Steps that making, reading or comparing automata may take, each of one to three microseconds."""
+"""Steps that building, reading or comparing automata may take; a step takes one to three microseconds."""
 
 
 class OutOfWork(Exception):
-    """Raised when a construction has done more than it may."""
+    """Raised when a construction has used up its work budget."""
 
 
 class Work:
-    """What is left of a budget of steps."""
+    """A budget of steps; ``left`` is what remains of it."""
 
     __slots__ = ("left",)
 
@@ -26,14 +26,14 @@ class Work:
         self.left = steps
 
     def spend(self, steps: int = 1) -> None:
-        """Count steps; raises :class:`OutOfWork` where none are left."""
+        """Count steps; raises :class:`OutOfWork` if not enough are left."""
         self.left -= steps
         if self.left < 0:
             raise OutOfWork
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Let what happens inside take no more than so many steps; what it takes counts outside, too."""
+        """Allow at most ``steps`` steps inside the ``with`` block; they count outside of it too."""
         aside = max(0, self.left - steps)
         self.left -= aside
         try:
