@@ -1,1 +1,1 @@
-"""Artefacts as JSON: their schema, the validator generated from it, writing, reading and checking."""
+"""Artefacts as JSON: the schema, the validator generated from it, encoding, decoding and consistency checks."""

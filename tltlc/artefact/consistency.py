@@ -1,4 +1,4 @@
-"""What the schema cannot say of an artefact: that its parts agree with each other."""
+"""Check what the schema of artefacts cannot express: that the parts of an artefact agree with each other."""
 
 from __future__ import annotations
 
@@ -15,35 +15,35 @@ from tltlc.resolve import spec
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 CYCLES_WORK: Final = 1_000_000
-"""Steps after which what only cycles can tell is left unchecked."""
+"""Steps after which goals and verdicts over infinite traces, which depend on cycles, are left unchecked."""
 
 
 @record
 class Problem:
-    """A contradiction and the place of the value that is blamed for it."""
+    """A contradiction: the path of the value to blame, and a message."""
 
     path: Path
     message: str
 
 
 def problems(fspa: Fspa) -> Iterator[Problem]:
-    """Every contradiction; later checks are left out where they would rest on values already found wrong.
+    """Yield every contradiction of the first check that fails; later checks rely on the values it found wrong.
 
-    The guards of a state (exactly one is true of every sample) are decided exactly, but only for
-    automata that are small enough for it: see :mod:`tltlc.artefact.guards`.  So are the states
-    on accepted cycles and the verdicts of automata over infinite traces.
+    The guards of a state (exactly one is true of every sample) are checked exactly, but only for
+    small automata: see :mod:`tltlc.artefact.guards`.  The same holds for the states on accepted
+    cycles and the verdicts of automata over infinite traces (:data:`CYCLES_WORK`).
     """
     for check in (_names, _values, _indices, _parallel, _numbering, _distances, _guards):
-        found = False
+        failed = False
         for problem in check(fspa):
-            found = True
+            failed = True
             yield problem
-        if found:
+        if failed:
             return
 
 
 def _names(fspa: Fspa) -> Iterator[Problem]:
-    """Names are unique, and expressions speak of the declared ones."""
+    """Check that names are unique, and that expressions use only declared names."""
     declared: dict[str, Sequence[Declared]] = {"signals": fspa.signals, "params": fspa.params, "atoms": fspa.atoms}
     known: dict[str, set[str]] = {}
     for kind, items in declared.items():
@@ -61,7 +61,7 @@ def _names(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _values(fspa: Fspa) -> Iterator[Problem]:
-    """Ranges are not empty, and params lie in theirs."""
+    """Check that ranges are not empty, and that the values of params lie in their ranges."""
     for index, signal in enumerate(fspa.signals):
         if signal.low is not None and signal.high is not None and signal.low > signal.high:
             yield Problem(("signals", index, "range"), f"the range of `{signal.name}` is empty")
@@ -73,7 +73,7 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _indices(fspa: Fspa) -> Iterator[Problem]:
-    """Every index names something, states stand in order, edges are sorted."""
+    """Check that every index is in range, states are in order, and edges are sorted."""
     states, atoms = len(fspa.states), len(fspa.atoms)
     for index, state in enumerate(fspa.states):
         if state.id != index:
@@ -99,7 +99,10 @@ def _indices(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _parallel(fspa: Fspa) -> Iterator[Problem]:
-    """Edges of one source and target differ in the pairs that name them; over finite traces there are no pairs."""
+    """Check that edges with the same source and target are in different sets of pairs.
+
+    Over finite traces there are no pairs, so there is at most one edge for each source and target.
+    """
     named = fspa.marks()
     seen: set[tuple[object, ...]] = set()
     for index, edge in enumerate(fspa.edges):
@@ -112,7 +115,11 @@ def _parallel(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _numbering(fspa: Fspa) -> Iterator[Problem]:
-    """States are numbered breadth-first: each is first met from a state before it, in that state's turn."""
+    """Check that states are numbered breadth-first.
+
+    In that order, the lowest state that leads to a state comes before it, and from state to state
+    these lowest states never decrease.
+    """
     parents = [len(fspa.states)] * len(fspa.states)
     for edge in fspa.edges:
         parents[edge.target] = min(parents[edge.target], edge.source)
@@ -127,7 +134,7 @@ def _numbering(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _distances(fspa: Fspa) -> Iterator[Problem]:
-    """Goals, distances, verdicts and the size of the spec are what the edges make them."""
+    """Check goals, distances, verdicts and ``spec_size`` against the edges."""
     goals, verdicts = _by_cycles(fspa) if fspa.semantics == "infinite" else _by_states(fspa)
     to_goal = _steps_to(fspa, goals)
     for state in fspa.states:
@@ -139,7 +146,7 @@ def _distances(fspa: Fspa) -> Iterator[Problem]:
         if state.distance != distance:
             yield Problem(
                 ("states", state.id, "distance"),
-                f"the distance of state {state.id} is {_said(distance)}, not {_said(state.distance)}",
+                f"the distance of state {state.id} is {_json_text(distance)}, not {_json_text(state.distance)}",
             )
         verdict = verdicts[state.id]
         if state.verdict != verdict:
@@ -153,7 +160,7 @@ def _distances(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
-    """Over finite traces: the accepting states, and the verdict of each state."""
+    """Return the accepting states and the verdict of each state, for an automaton over finite traces."""
     goals = [state.id for state in fspa.states if state.accepting]
     to_goal = _steps_to(fspa, goals)
     to_failure = _steps_to(fspa, (state.id for state in fspa.states if not state.accepting))
@@ -161,7 +168,10 @@ def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 
 
 def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
-    """Over infinite traces: the states on accepted cycles, and the verdict of each state."""
+    """Return the states on accepted cycles and the verdict of each state, for an automaton over infinite traces.
+
+    If that takes too much work, returns what the artefact says.
+    """
     from tltlc.automaton.infinite.analysis import analysis_of_fspa
     from tltlc.automaton.infinite.work import OutOfWork, Work
 
@@ -173,7 +183,10 @@ def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 
 
 def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:
-    """The least number of transitions from each state to one of ``goals``, by backward breadth-first search."""
+    """Return the least number of transitions from each state to one of ``goals``; states that reach none are absent.
+
+    Searches backward, breadth-first.
+    """
     into: list[list[int]] = [[] for _ in fspa.states]
     for edge in fspa.edges:
         into[edge.target].append(edge.source)
@@ -193,7 +206,7 @@ def _verdict(accepting: bool, to_goal: int | None, to_failure: int | None) -> Ve
     return "violated" if to_goal is None else "pending"
 
 
-def _said(distance: int | None) -> str:
+def _json_text(distance: int | None) -> str:
     return "null" if distance is None else str(distance)
 
 

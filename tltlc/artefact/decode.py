@@ -1,4 +1,4 @@
-"""From the JSON document of an artefact, known to fit the schema, to the automaton."""
+"""Decode the JSON document of an artefact, which must match the schema, to the automaton."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.resolve.spec import Atom, Param, Signal
 
 
 def decode(document: dict[str, Any]) -> Fspa:
-    """The automaton; whole numbers may be written as ``3.0``, fields that were added by others are ignored."""
+    """Return the automaton; whole numbers may be written as ``3.0``, and unknown fields are ignored."""
     spec = document["spec"]
     limit = spec["limit_steps"]
     return Fspa(

@@ -1,4 +1,4 @@
-"""From an automaton to the JSON document of its artefact."""
+"""Encode an automaton as the JSON document of its artefact."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from tltlc.resolve.spec import Param, Signal
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
-    """The document, its keys in the order in which they are written; an atom without documentation has no ``doc``."""
+    """Return the document, with its keys in the order of the file.
+
+    Signals, params and atoms without documentation have no ``doc``.
+    """
     return {
         "format": "fspa",
         "version": 1,
@@ -72,14 +75,14 @@ def _state(state: State) -> dict[str, Any]:
 
 
 def _edges(edges: Iterable[Edge]) -> list[dict[str, Any]]:
-    # The lists of equal literals are one list: a large automaton has millions of them.
+    # Equal literals share one list: a large automaton has millions of them.
     literals: dict[tuple[int, bool], list[int | bool]] = {}
 
     def literal(atom: int, polarity: bool) -> list[int | bool]:
         return literals.setdefault((atom, polarity), [atom, polarity])
 
     def encoded(edge: Edge) -> dict[str, Any]:
-        primes = [[literal(*each) for each in prime] for prime in edge.guard.primes]
+        primes = [[literal(*pair) for pair in prime] for prime in edge.guard.primes]
         return {"source": edge.source, "target": edge.target, "guard": {"text": edge.guard.text, "primes": primes}}
 
     return [encoded(edge) for edge in edges]

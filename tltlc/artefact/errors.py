@@ -1,12 +1,13 @@
-"""What the generated validator raises."""
+"""The exception that the generated validator raises."""
 
 from __future__ import annotations
 
 
 class JsonSchemaValueException(ValueError):
-    """A value breaks the schema.
+    """Raised when a value does not match the schema.
 
-    ``place`` is where (``data.states[0].id``), ``rule`` the schema's keyword; the message begins with the place.
+    ``place`` is the value's place (``data.states[0].id``), ``rule`` the keyword of the schema that
+    it breaks.  The message begins with the place.
     """
 
     def __init__(self, message: str, place: str, rule: str) -> None:

@@ -1,7 +1,8 @@
-"""Writes ``validator.py`` from ``fspa.schema.json``: run ``python -m tltlc.artefact.generate``.
+"""Generate ``validator.py`` from ``fspa.schema.json``: run ``python -m tltlc.artefact.generate``.
 
-A generated module validates an artefact without importing a schema library, which alone would
-cost more than most compilations.  Needs fastjsonschema, which ``pip install tltlc[dev]`` brings.
+The generated module validates artefacts without a schema library, whose import alone would cost
+more than most compilations.  Generating needs fastjsonschema, which ``pip install tltlc[dev]``
+installs.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ RECURSIVE = ("#/definitions/expression", "#/definitions/condition")
 
 
 def validator_source() -> str:
-    """The text of ``validator.py``: a module with ``validate(data)``, which raises at the first error."""
+    """Return the text of ``validator.py``: a module with ``validate(data)``, which raises at the first error."""
     import fastjsonschema
 
     schema = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
@@ -37,7 +38,11 @@ def validator_source() -> str:
 
 
 def _inlined(node: Any, definitions: dict[str, Any]) -> Any:
-    """The schema with its references replaced, except recursive ones: every call would format its place's name."""
+    """Return the schema with all references but the recursive ones replaced by their definitions.
+
+    This makes the validator faster: a reference becomes a call, and each call formats the name of
+    its place.
+    """
     if isinstance(node, list):
         return [_inlined(item, definitions) for item in node]
     if not isinstance(node, dict):
@@ -49,7 +54,11 @@ def _inlined(node: Any, definitions: dict[str, Any]) -> Any:
 
 
 def _slim(line: str) -> str:
-    """Drops what is not needed here: the value and the schema quoted in a ``raise``, decimals, many errors at once."""
+    """Return a line of the generated code without what is not needed.
+
+    Removes the value and the schema quoted in a ``raise``, decimals, and the exception for several
+    errors.
+    """
     line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
     line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")
     line = line.replace(PLAIN_HEAD, TYPED_HEAD)

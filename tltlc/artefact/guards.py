@@ -1,8 +1,8 @@
-"""Whether the guards of an artefact are canonical and part the samples among the edges of each state.
+"""Check the guards of an artefact: they must be canonical, and exactly one edge of each state must match each sample.
 
-A product of literals (a cube) is a pair of bit sets: the atoms that it wants true and those that
-it wants false.  ``D`` is what the exclusive groups allow (semantics, section 3); its complement is
-the sum of the cubes ``a & b`` over the pairs of each group.
+A cube, a product of literals, is a pair of bit sets: the atoms that must be true, and the atoms
+that must be false.  ``D`` is the set of samples that the exclusive groups allow (semantics, section
+3); its complement is the sum of the cubes ``a & b`` over the pairs of each group.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ WORK_LIMIT = 200_000
 
 
 _BITS_OF_A_STEP = 512
-"""How many atoms a cube operation looks at; one with more counts more."""
+"""Atoms that one cube operation reads; the pairs of automata with more atoms count more."""
 
 
 class _SpentError(Exception):
-    """The work limit is reached."""
+    """Raised when the work limit is reached."""
 
 
 class _Work:
-    """Counts cube operations, so that what is checked does not depend on the machine's speed."""
+    """Counts cube operations, so that the result does not depend on the machine's speed."""
 
     def __init__(self) -> None:
         self.left = WORK_LIMIT
@@ -40,9 +40,11 @@ class _Work:
 
 
 def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
-    """Where a guard is no complete list of prime implicants, or not exactly one edge of a state is taken.
+    """Yield the first problem of the guards, as a path and a message.
 
-    Indices are taken to be in range.  Large automata are checked up to a fixed amount of work.
+    It is a guard that is not the complete list of its prime implicants, or a state in which some
+    sample does not take exactly one edge.  Indices must be in range.  Large automata are checked up
+    to a fixed amount of work.
     """
     work = _Work()
     leaving: list[list[int]] = [[] for _ in fspa.states]
@@ -50,7 +52,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
         leaving[edge.source].append(index)
     cubes: list[list[Cube]] = []
     try:
-        # A pair takes as many bits as there are atoms, and each guard is compared with all of them.
+        # A pair has a bit for each atom, and each guard is compared with all pairs.
         work.spend(sum(len(group) ** 2 // 2 for group in fspa.exclusive) * (1 + len(fspa.atoms) // _BITS_OF_A_STEP))
         pairs = [(1 << a | 1 << b, 0) for group in fspa.exclusive for a, b in combinations(group, 2)]
         for index, edge in enumerate(fspa.edges):
@@ -85,10 +87,10 @@ def _cube(prime: Implicant) -> Cube:
 def _guard_problem(
     primes: Sequence[Implicant], cubes: Sequence[Cube], pairs: Sequence[Cube], work: _Work
 ) -> str | None:
-    """What keeps the cubes from being all prime implicants of a guard, those outside D left out.
+    """Return why the cubes are not the prime implicants of a guard within D; None if they are.
 
-    A set of cubes is the set of all primes of its sum iff none lies in another and each consensus of
-    two lies in one of them (Quine 1955).
+    A set of cubes is the set of all prime implicants of its sum if and only if no cube lies in
+    another and each consensus of two cubes lies in one of them (Quine 1955).
     """
     for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):
@@ -112,12 +114,12 @@ def _guard_problem(
 
 
 def _lies_in(inner: Cube, outer: Cube) -> bool:
-    """Whether every sample of the one cube is in the other."""
+    """Whether every sample of ``inner`` is in ``outer``."""
     return outer[0] & ~inner[0] == 0 and outer[1] & ~inner[1] == 0
 
 
 def _consensus(one: Cube, other: Cube) -> Cube | None:
-    """What follows from two cubes by resolving the one atom in which they oppose, None if it is not one."""
+    """Return the resolvent of two cubes on the atom in which they oppose; None unless there is exactly one."""
     opposed = one[0] & other[1] | one[1] & other[0]
     if opposed == 0 or opposed & (opposed - 1):
         return None
@@ -135,7 +137,7 @@ def _meet(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bool:
 
 
 def _covers_all(cubes: Sequence[Cube], work: _Work) -> bool:
-    """Whether every sample is in some cube, by splitting on the atom that stands in most cubes."""
+    """Whether every sample is in some cube; splits on the atom that occurs in most cubes."""
     work.spend(1 + len(cubes))
     if (0, 0) in cubes:
         return True

@@ -1,4 +1,4 @@
-"""JSON text that people can read and compare line by line."""
+"""Write JSON text that people can read, and compare line by line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Final
 
 WIDTH: Final = 120
 _PIECES: Final = 10_000
-"""How many pieces are put together at a time."""
+"""Pieces that are joined at a time."""
 
 Encode = Callable[[Any], str]
 
@@ -22,10 +22,11 @@ _unsafe = re.compile(
 
 
 def layout(document: Any) -> Iterator[str]:
-    """The JSON text of a document, in pieces: what fits on a line stands on one line, keys keep their order.
+    """Yield the JSON text of a document in pieces; values that fit on a line are not broken, keys keep their order.
 
-    Invisible and direction-changing characters are escaped, and so is what would end or comment
-    out a script element of a page that the text is pasted into.  Numbers are in shortest form.
+    Invisible and direction-changing characters are escaped.  So are ``</`` and ``<!``, which would
+    end a script element, or start a comment in it, if the text is pasted into a page.  Numbers have
+    their shortest form.
 
     Raises:
         ValueError: a number is not finite.
@@ -35,12 +36,14 @@ def layout(document: Any) -> Iterator[str]:
     encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
     pieces = chain(_pieces(document, 0, 0, encoder.encode), ("\n",))
     while block := "".join(islice(pieces, _PIECES)):
-        # These characters can only stand inside strings, and no string is cut: to escape them in all of it is right.
+        # These characters occur only inside strings, and no string is split: so the whole block can be escaped.
         yield _unsafe.sub(_escape, block)
 
 
 def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]:
-    """``value``, which begins after ``used`` characters of its line (its key), on as many lines as it needs."""
+    """Yield the text of ``value``, on several lines if necessary; its key takes ``used`` characters
+    of the first line.
+    """
     flat = _flat(value, indent, used, encode)
     if flat is not None:
         yield flat
@@ -48,7 +51,7 @@ def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]
     is_object = isinstance(value, dict)
     step = indent + 2
     separator = ("{" if is_object else "[") + "\n" + " " * step
-    for key, item in value.items() if is_object else (("", each) for each in value):
+    for key, item in value.items() if is_object else (("", element) for element in value):
         head = encode(key) + ": " if is_object else ""
         yield separator + head
         yield from _pieces(item, step, len(head), encode)
@@ -57,10 +60,10 @@ def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]
 
 
 def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
-    """The text of a value on one line; None for what has to be broken up."""
+    """Return the text of a value on one line; None if it must be broken."""
     if not isinstance(value, (dict, list)) or not value:
         return encode(value)
-    # The outermost level is always broken up, whatever its length.
+    # The outermost value is always broken.
     if indent == 0 or not _is_small(value):
         return None
     flat = encode(value)
@@ -68,7 +71,7 @@ def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
 
 
 def _is_small(value: Any) -> bool:
-    """Whether a value may fit on a line; the answer takes no more steps than a line has characters."""
+    """Whether a value may fit on a line; takes at most as many steps as a line has characters."""
     left, waiting = WIDTH, [value]
     while waiting and left > 0:
         part = waiting.pop()

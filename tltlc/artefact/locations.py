@@ -1,4 +1,4 @@
-"""Where in a JSON text a value stands, so that messages can point at it."""
+"""Find the position of a value in a JSON text, so that messages can point at it."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _step = re.compile(r"\.(\w+)|\[(\d+)\]")
 
 
 def path_of(place: str) -> Path:
-    """The path that ``data.states[0].id`` names."""
+    """Return the path that a place such as ``data.states[0].id`` names."""
     return tuple(key or int(index) for key, index in _step.findall(place))
 
 
 def span_of(text: str, path: Path) -> Span:
-    """The span of the value at ``path`` in a valid JSON text, or of the longest part of the path that exists."""
-    # Only places count; Python refuses to make whole numbers of thousands of digits.
+    """Return the span of the value at ``path`` in a valid JSON text, or of the longest part of the path that exists."""
+    # Only positions matter here, and Python refuses to convert numbers of thousands of digits to int.
     decoder = JSONDecoder(parse_int=float)
     start = _skip(text, 0)
     for step in path:
@@ -34,30 +34,30 @@ def span_of(text: str, path: Path) -> Span:
 
 
 def _value_start(decoder: JSONDecoder, text: str, start: int, step: str | int) -> int | None:
-    """Where the value of a key or an index begins inside the object or array at ``start``."""
+    """Return where the value of a key or an index begins in the object or array at ``start``; None if it has none."""
     is_object = text[start] == "{"
     if text[start] not in "{[" or is_object != isinstance(step, str):
         return None
     position = _skip(text, start + 1)
     index = 0
-    found = None
+    value_start = None
     while text[position] not in "}]":
         key: str | int = index
         if is_object:
             key, position = decoder.raw_decode(text, position)
             position = _skip(text, _skip(text, position) + 1)
         if key == step:
-            found = position  # of equal keys the last one counts, as for the parser
+            value_start = position  # the last of equal keys counts, as in Python's parser
             if not is_object:
-                return found
+                return value_start
         position = _skip(text, decoder.raw_decode(text, position)[1])
         if text[position] == ",":
             position = _skip(text, position + 1)
         index += 1
-    return found
+    return value_start
 
 
 def _skip(text: str, position: int) -> int:
-    """The first position from ``position`` on that holds no blank."""
+    """Return the first position from ``position`` on that is not white space."""
     match = _blank.match(text, position)
     return match.end() if match else position

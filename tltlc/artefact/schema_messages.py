@@ -1,4 +1,4 @@
-"""What a schema error says, in words that need no knowledge of schemas."""
+"""Word schema errors for readers who do not know JSON schemas."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _COUNTS = {
 
 
 def worded(error: JsonSchemaValueException) -> str:
-    """A title, e.g. "`states[1].distance` must be a whole number or null"."""
+    """Return the title of a schema error, e.g. "`states[1].distance` must be a whole number or null"."""
     place = error.place.removeprefix("data").removeprefix(".")
     subject = f"`{place}`" if place else "the artefact"
     remark = str(error).removeprefix(error.place).strip()
@@ -47,6 +47,6 @@ def worded(error: JsonSchemaValueException) -> str:
 
 
 def _listed(literal: str, last: str) -> str:
-    """A printed Python list as a list in a sentence."""
+    """Return the items of a printed Python list as they stand in a sentence."""
     items = [f"`{item}`" for item in ast.literal_eval(literal)]
     return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]

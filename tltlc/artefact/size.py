@@ -1,4 +1,4 @@
-"""What is too large to be read again is not written."""
+"""Refuse to write files that are too large to be read again."""
 
 from __future__ import annotations
 
@@ -13,10 +13,14 @@ _SHORTEST_EDGE: Final = '    {"source": 0, "target": 0, "guard": {"text": "", "p
 
 
 def check_size(what: str, size: int, commas: int = 0) -> None:
-    """Refuse a file that could not be read again; ``size`` is in bytes, ``what`` is what messages call it.
+    """Refuse a file that could not be read again.
+
+    ``what`` is the name of the file in messages, ``size`` its size in bytes, and ``commas`` the
+    number of commas in it.
 
     Raises:
-        TltlError: TLT0004, it is larger than :data:`tltlc.io.limits.ARTEFACT`; TLT0006, it holds more values.
+        TltlError: TLT0004 if it is larger than :data:`tltlc.io.limits.ARTEFACT` allows; TLT0006 if
+            it has more values.
     """
     if size > ARTEFACT.size:
         raise _too_large("TLT0004", f"{what} would be larger than {ARTEFACT.size >> 20} MiB")
@@ -25,7 +29,7 @@ def check_size(what: str, size: int, commas: int = 0) -> None:
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:
-    """Bytes and commas that the edges of an artefact take at least; little else of a large one counts."""
+    """Return the least bytes and commas that the edges of an artefact take; edges dominate a large artefact."""
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
     texts = sum(len(edge.guard.text) for edge in fspa.edges)
     size = len(_SHORTEST_EDGE) * len(fspa.edges) + texts + len("[0, true], ") * literals
