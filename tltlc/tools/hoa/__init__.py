@@ -1,1 +1,1 @@
-"""Automata in the Hanoi omega-automata format (HOA), version 1, read: https://adl.github.io/hoaf/."""
+"""Read automata in the Hanoi omega-automata format (HOA), version 1: https://adl.github.io/hoaf/."""

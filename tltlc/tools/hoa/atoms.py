@@ -1,4 +1,4 @@
-"""What the atomic propositions of a HOA file mean: predicates of a library."""
+"""Resolve the atomic propositions of a HOA file to predicates of a library."""
 
 from __future__ import annotations
 
@@ -17,46 +17,52 @@ from tltlc.tools.hoa.tree import Hoa
 def vocabulary_of(
     hoa: Hoa, library: SourceFile, given: Mapping[str, str], options: ResolveOptions
 ) -> tuple[Vocabulary, FormulaOf, tuple[Diagnostic, ...]]:
-    """The atoms of a file in its order, a way to read formulas over the library, and warnings.
+    """Return the atoms of a file in its order, a function that reads formulas over the library, and warnings.
 
-    ``given`` says what a proposition means that is no predicate as it stands.
+    ``given`` maps the names of propositions to predicates; other propositions must be predicates as
+    they are written.
 
     Raises:
-        TltlError: all that is wrong with the library; TLT0655, a proposition is no atom, the same as another one, or
-            there is none that ``given`` names; what else keeps it from being a formula.
+        TltlError: the errors of the library; TLT0655 if a proposition is no atom or the same atom
+            as another one, or if ``given`` names a proposition that the file does not have; any
+            other error in the formula of a proposition.
     """
-    module, found = parse(library)
-    stop_at_errors(found)
+    module, diagnostics = parse(library)
+    stop_at_errors(diagnostics)
     given = _by_name(hoa, given)
     written = [
         SourceFile(f"--atom {atom.text}", given[atom.text])
         if atom.text in given
-        # Unlike the name of the file, this name differs for each place: otherwise messages would be taken for one.
+        # This name differs for each position, unlike the file's name: otherwise equal messages would be merged.
         else SourceFile(f"{hoa.source.name}:{atom.span.start}", hoa.source.slice(atom.span))
         for atom in hoa.atoms
     ]
-    words, formula_of, more = resolve_atoms(module, written, options)
+    vocabulary, formula_of, atom_diagnostics = resolve_atoms(module, written, options)
     starts = {
         source.name: atom.span.start for source, atom in zip(written, hoa.atoms, strict=True) if atom.text not in given
     }
-    found += tuple(_in_file(each, starts, hoa.source) for each in more)
-    stop_at_errors(found)
-    assert words is not None
-    return words, formula_of, found
+    diagnostics += tuple(_in_file(diagnostic, starts, hoa.source) for diagnostic in atom_diagnostics)
+    stop_at_errors(diagnostics)
+    assert vocabulary is not None
+    return vocabulary, formula_of, diagnostics
 
 
 def _by_name(hoa: Hoa, given: Mapping[str, str]) -> dict[str, str]:
-    """What is given, by names that the file has; a name may hold ``=``, at which the command line was cut."""
+    """Return the given predicates by the names of the file's propositions.
+
+    The command line splits ``NAME=PREDICATE`` at the first ``=``, but a name may contain ``=``: the
+    longest name that matches is taken.
+    """
     names = {atom.text for atom in hoa.atoms}
-    found: dict[str, str] = {}
+    predicates: dict[str, str] = {}
     for key, value in given.items():
         whole = f"{key}={value}"
-        fitting = [name for name in names if whole.startswith(f"{name}=")]
-        if not fitting:
+        matches = [name for name in names if whole.startswith(f"{name}=")]
+        if not matches:
             raise TltlError([_unknown(hoa, key)])
-        name = max(fitting, key=len)
-        found[name] = whole[len(name) + 1 :]
-    return found
+        name = max(matches, key=len)
+        predicates[name] = whole[len(name) + 1 :]
+    return predicates
 
 
 def _unknown(hoa: Hoa, name: str) -> Diagnostic:
@@ -64,15 +70,16 @@ def _unknown(hoa: Hoa, name: str) -> Diagnostic:
 
     names = [atom.text for atom in hoa.atoms]
     close = get_close_matches(name, names, n=1)
-    listed = ", ".join(f"`{each}`" for each in names[:10]) or "none"
-    way_out = f"did you mean `{close[0]}`?" if close else f"the file has {listed}"
-    return Diagnostic("TLT0655", f"`{hoa.source.name}` has no atomic proposition `{name}`", help=way_out)
+    listed = ", ".join(f"`{name}`" for name in names[:10]) or "none"
+    suggestion = f"did you mean `{close[0]}`?" if close else f"the file has {listed}"
+    return Diagnostic("TLT0655", f"`{hoa.source.name}` has no atomic proposition `{name}`", help=suggestion)
 
 
 def _in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
-    """A message that speaks of a name in the file alone, speaking of the whole file.
+    """Return a diagnostic about a proposition's name with its labels moved to their positions in the file.
 
-    ``starts`` is where each such name begins, by the name of its source.
+    ``starts`` maps the name of each proposition's source to the position where the proposition
+    begins.
     """
     if not message.labels or message.labels[0].source.name not in starts:
         return message
@@ -84,7 +91,7 @@ def _in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile)
         return replace(label, source=source, span=Span(label.span.start + start, label.span.end + start))
 
     mapped = f'say which predicate it is: `--atom "{message.labels[0].source.text.strip()}=…"`'
-    # Other advice is for whoever wrote the formula.
-    own = message.help if message.code in ("TLT0201", "TLT0655") else None
-    way_out = f"{own}; or {mapped}" if own else mapped
-    return replace(message, labels=tuple(map(placed, message.labels)), help=way_out)
+    # Other help texts are for the author of a formula.
+    own_help = message.help if message.code in ("TLT0201", "TLT0655") else None
+    suggestion = f"{own_help}; or {mapped}" if own_help else mapped
+    return replace(message, labels=tuple(map(placed, message.labels)), help=suggestion)

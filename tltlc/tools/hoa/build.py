@@ -1,4 +1,4 @@
-"""From the tree of a HOA file to an automaton, once its atoms are known."""
+"""Build the automaton of a HOA file from its tree and its atoms."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, Move, Transitions
 from tltlc.tools.hoa.tree import Hoa
 
 _MOST_PROBLEMS: Final = 5
-"""Of states that are not deterministic or complete, as many are told."""
+"""At most this many states that are not deterministic or not complete are reported."""
 
 Moves = dict[int, int]
-"""Of each state that is reached its function from the letter to a :data:`~tltlc.tools.hoa.transitions.Move`."""
+"""Each reachable state's function from the letter to a :data:`~tltlc.tools.hoa.transitions.Move`."""
 
 
 class FiniteAnalysis:
-    """What the accepting states (``goals``) of an automaton over finite traces say of the others."""
+    """The successors and verdicts of states over finite traces; ``goals`` are the accepting states."""
 
     def __init__(self, automaton: Rabin, goals: set[int]) -> None:
         self.goals = goals
@@ -42,27 +42,31 @@ class FiniteAnalysis:
         self._verdicts = verdicts(self.targets, distances(self.targets, goals.__contains__), goals.__contains__)
 
     def verdict(self, state: int) -> Verdict:
-        """The verdict of a trace that ends in a state."""
+        """Return the verdict of a trace that ends in a state."""
         return self._verdicts[state]
 
     def default_judge(self) -> Judge:
-        """``limit`` where the specification holds before anything has happened."""
+        """Return ``limit`` if the initial state accepts, else ``goal``."""
         return "limit" if 0 in self.goals else "goal"
 
 
 def automaton_of(
     hoa: Hoa, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: Work, state_budget: int
 ) -> tuple[Rabin, Analysis | FiniteAnalysis]:
-    """The automaton of a file that was checked, whose atoms have these names, and perhaps others behind them; of the
-    atoms of a group of ``exclusive`` at most one holds.  Labels are the numbers of states in the file.
+    """Return the automaton of a checked file, and its analysis.
 
-    Over infinite traces the acceptance becomes Rabin pairs, component by component, which takes further states where it
-    cannot be said on those that there are.  States of one behaviour become one.
+    ``atoms`` are the names of the file's atoms, followed by any further atoms.  At most one atom of
+    each group of ``exclusive`` holds.  The labels of states are their numbers in the file.
+
+    Over infinite traces the acceptance condition is converted to Rabin pairs, component by
+    component; this adds states if pairs on the existing states cannot express the condition.
+    States with the same behaviour are merged.
 
     Raises:
-        TltlError: TLT0651, a label is wrong; TLT0653 and TLT0654, it is not deterministic or not complete.
-        OutOfWork: pairs for the acceptance are not found in time.
-        OutOfStates: more states are reached than ``state_budget``.
+        TltlError: TLT0651 if a label is wrong; TLT0653 if the automaton is not deterministic;
+            TLT0654 if it is not complete.
+        OutOfWork: the conversion to pairs takes more work than is left.
+        OutOfStates: more than ``state_budget`` states are reached.
     """
     letters: Letters[Any] = Letters(work)
     moves = _moves(hoa, Transitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
@@ -72,12 +76,12 @@ def automaton_of(
 def _moves(hoa: Hoa, transitions: Transitions, state_budget: int) -> Moves:
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
-    found: Moves = {}
+    moves: Moves = {}
     seen = set(queue)
     problems: list[Diagnostic] = []
     for number in queue:
         try:
-            found[number] = transitions.moves(states[number])
+            moves[number] = transitions.moves(states[number])
         except TltlError as error:
             problems += error.diagnostics
         for edge in states[number].edges:
@@ -87,7 +91,7 @@ def _moves(hoa: Hoa, transitions: Transitions, state_budget: int) -> Moves:
             raise OutOfStates
     if problems:
         raise TltlError(problems[:_MOST_PROBLEMS])
-    return found
+    return moves
 
 
 def _finite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
@@ -134,6 +138,6 @@ def _infinite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Ana
 
 
 def _piece(letters: Letters[Any], one: Local) -> Piece:
-    """A component with pairs: those of the file, where no others are fewer."""
-    best, own = with_pairs(letters, one, letters.work), as_it_stands(letters, one)
-    return own if own is not None and own.pairs <= best.pairs else best
+    """Return a component with pairs: the pairs of the file, unless fewer are found."""
+    best, unchanged = with_pairs(letters, one, letters.work), as_it_stands(letters, one)
+    return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

@@ -1,4 +1,4 @@
-"""What the grammar cannot say of a HOA file: that its numbers name something, and that it is of a kind that is read."""
+"""Check what the grammar of HOA files cannot express: that numbers are in range, and that the automaton can be read."""
 
 from __future__ import annotations
 
@@ -10,14 +10,16 @@ from tltlc.tools.hoa.problems import DETERMINISTIC, broken, other_kind
 from tltlc.tools.hoa.tree import Header, Hoa, Sets, Targets, Term
 
 FINITE: Final = "Tltlc-semantics:"
-"""The header by which tltlc says that traces are finite."""
+"""The header with which tltlc marks automata over finite traces."""
 
 
 def check(hoa: Hoa) -> None:
-    """Raise TltlError for the first thing that is wrong.
+    """Raise TltlError for the first problem.
 
-    TLT0651: a state or a set that there is not, one that stands there twice; TLT0652: an automaton with several runs
-    by its kind, or with a header that changes what it means and is not known here.
+    TLT0651: a state or an acceptance set does not exist, or a state or the name of an atom occurs
+    twice.  TLT0652: the automaton is of a kind that cannot be read: it does not have exactly one
+    initial state, it is alternating, its header :data:`FINITE` does not fit, or an unknown header
+    changes its meaning.
     """
     _check_condition(hoa, hoa.condition)
     for header in hoa.headers:
@@ -31,12 +33,12 @@ def check(hoa: Hoa) -> None:
 
 
 def is_finite(hoa: Hoa) -> bool:
-    """Whether the automaton is over finite traces, which a header of its own says."""
+    """Whether the automaton is over finite traces: it then has the header :data:`FINITE`."""
     return any(header.name == FINITE for header in hoa.headers)
 
 
 def _check_header(hoa: Hoa, header: Header) -> None:
-    """By the format a header that begins with a capital changes the meaning, and must not be passed over."""
+    """Check a header: the format says that an unknown header with an upper-case initial must not be ignored."""
     if header.name == FINITE and header.values == ("finite",):
         if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):
             title = "over finite traces a state accepts or does not: `Acceptance: 1 Inf(0)`"
@@ -49,8 +51,11 @@ def _check_header(hoa: Hoa, header: Header) -> None:
                         hoa.source, edge.sets.span, title, "put the set behind the states that it leads to"
                     )
     elif header.name == FINITE:
-        title, way_out = 'the only value of this header is `"finite"`', "leave the header out where traces are infinite"
-        raise other_kind(hoa.source, header.span, title, way_out)
+        title, suggestion = (
+            'the only value of this header is `"finite"`',
+            "leave the header out where traces are infinite",
+        )
+        raise other_kind(hoa.source, header.span, title, suggestion)
     elif header.name[0].isupper():
         title = f"the header `{header.name}` changes what the automaton means, and is not known here"
         raise other_kind(hoa.source, header.span, title, "write the automaton without it")
@@ -85,7 +90,7 @@ def _check_states(hoa: Hoa) -> None:
 
 
 def _check_condition(hoa: Hoa, condition: Term) -> None:
-    """Raise TltlError, TLT0651, where an acceptance condition speaks of a set that there is not."""
+    """Raise TltlError, TLT0651, if an acceptance condition uses a set that does not exist."""
     for term in condition.args:
         _check_condition(hoa, term)
     if condition.op in ("fin", "inf"):
@@ -94,7 +99,7 @@ def _check_condition(hoa: Hoa, condition: Term) -> None:
 
 
 def _check_set(hoa: Hoa, number: int, span: Span) -> None:
-    """Raise TltlError, TLT0651, where there is no set of that number."""
+    """Raise TltlError, TLT0651, if there is no set with this number."""
     if number >= hoa.sets:
         title = f"there is no set {number}: `Acceptance:` declares {hoa.sets}, counted from 0"
         raise broken(hoa.source, span, title, "name one of those, or declare more")

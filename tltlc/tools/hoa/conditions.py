@@ -1,4 +1,4 @@
-"""Acceptance conditions as clauses over marks."""
+"""Convert acceptance conditions to clauses over marks."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from tltlc.tools.hoa.tree import Hoa, Term
 
 
 class Acceptance:
-    """The disjunctive normal form of a condition; a mark stands for a ``Fin`` or ``Inf`` that is in it.
+    """The disjunctive normal form of a condition; each different ``Fin`` or ``Inf`` in it is a mark.
 
-    Raises :class:`~tltlc.automaton.infinite.work.OutOfWork` where there are too many.
+    Raises :class:`~tltlc.automaton.infinite.work.OutOfWork` if there are too many clauses.
     """
 
     def __init__(self, hoa: Hoa, work: Work) -> None:
         self._places: dict[tuple[Kind, int, bool], int] = {}
         skeleton = self._skeleton(hoa.condition)
         kinds: list[Kind] = [kind for kind, _, _ in self._places]
-        found = clauses(skeleton, kinds, [None] * len(kinds), work)
-        if isinstance(found, bool):
-            found = [Clause(frozenset(), frozenset())] if found else []
-        self.clauses = tuple(found)
+        disjuncts = clauses(skeleton, kinds, [None] * len(kinds), work)
+        if isinstance(disjuncts, bool):
+            disjuncts = [Clause(frozenset(), frozenset())] if disjuncts else []
+        self.clauses = tuple(disjuncts)
 
     def marks(self, sets: Collection[int]) -> Marks:
-        """The marks of an edge that is in these sets."""
-        return frozenset(place for (_, each, outside), place in self._places.items() if (each in sets) != outside)
+        """Return the marks of an edge in these sets."""
+        return frozenset(place for (_, number, outside), place in self._places.items() if (number in sets) != outside)
 
     def _skeleton(self, term: Term) -> Skeleton:
         if term.op in ("fin", "inf"):

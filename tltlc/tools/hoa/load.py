@@ -1,4 +1,4 @@
-"""From the text of a HOA file and a library of predicates to an :class:`~tltlc.automaton.fspa.Fspa`."""
+"""Load a HOA file and a library of predicates as an :class:`~tltlc.automaton.fspa.Fspa`."""
 
 from __future__ import annotations
 
@@ -42,11 +42,13 @@ from tltlc.resolve.spec import Judge
 
 @record
 class ImportOptions:
-    """What a HOA file does not say.
+    """The information that a HOA file does not contain.
 
-    ``atoms`` gives predicates for atomic propositions, by their names; others are predicates as they stand.  ``name``
-    is that of the spec, by default the file's ``name:`` where that is a word, else the name of the file.  The other
-    fields are as of :class:`~tltlc.resolve.spec.Spec` and of :class:`~tltlc.resolve.options.ResolveOptions`.
+    ``atoms`` maps atomic propositions, by name, to predicates; other propositions must be
+    predicates as they are written.  ``name`` is the name of the spec; by default it is the file's
+    ``name:`` if that is a plain name, else it is derived from the file's name.  ``level``,
+    ``limit_steps`` and ``judge`` are as in :class:`~tltlc.resolve.spec.Spec`.  ``resolve`` is for
+    the library, ``state_budget`` limits states, and ``work`` limits steps.
     """
 
     atoms: Mapping[str, str] = EMPTY
@@ -60,70 +62,76 @@ class ImportOptions:
 
 
 def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tuple[Fspa, tuple[Diagnostic, ...]]:
-    """The automaton of a HOA file, whose atomic propositions are predicates of ``library``; and warnings.
+    """Return the automaton of a HOA file whose atomic propositions are predicates of ``library``, and warnings.
 
     Raises:
-        TltlError: all that :func:`~tltlc.tools.hoa.reader.read`, :func:`~tltlc.tools.hoa.checks.check` and
-            :func:`~tltlc.tools.hoa.build.automaton_of` raise; what is wrong with the library or a predicate; TLT0655, a
-            proposition is no atom, or the same as another one; TLT0501 and TLT0502, the automaton becomes too large.
+        TltlError: the errors of :func:`~tltlc.tools.hoa.reader.read`,
+            :func:`~tltlc.tools.hoa.checks.check`, :func:`~tltlc.tools.hoa.atoms.vocabulary_of` and
+            :func:`~tltlc.tools.hoa.build.automaton_of`; TLT0501 or TLT0502 if the automaton is too
+            large; TLT0652 if a ``tltlc-`` header has a wrong value.
     """
     hoa = read(source)
     check(hoa)
-    words, formula_of, found = vocabulary_of(hoa, library, options.atoms, options.resolve)
-    names = [atom.name for atom in words.atoms]
+    vocabulary, formula_of, warnings = vocabulary_of(hoa, library, options.atoms, options.resolve)
+    names = [atom.name for atom in vocabulary.atoms]
     finite = is_finite(hoa)
     with recursion_room():
         try:
-            automaton, analysis = automaton_of(hoa, names, words.exclusive, Work(options.work), options.state_budget)
+            automaton, analysis = automaton_of(
+                hoa, names, vocabulary.exclusive, Work(options.work), options.state_budget
+            )
             if len(automaton.steps) > options.state_budget:
                 raise OutOfStates
-            called = _called(hoa, automaton.labels)
+            state_names = _state_names(hoa, automaton.labels)
 
             def text(state: int) -> Text:
-                return _text(called[state], formula_of, finite=finite)
+                return _text(state_names[state], formula_of, finite=finite)
 
             places = {state.number: place for place, state in enumerate(hoa.states)}
-            in_file = sorted(range(len(called)), key=lambda state: places[automaton.labels[state]])
-            parts = assembled(automaton, analysis, names, words.exclusive, text, in_file)
+            in_file_order = sorted(range(len(state_names)), key=lambda state: places[automaton.labels[state]])
+            parts = assembled(automaton, analysis, names, vocabulary.exclusive, text, in_file_order)
         except (OutOfStates, OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
             raise TltlError([_too_large(source, reason, options)]) from None
-    own = metadata(hoa)
-    title = own.formula or (hoa.name.text if hoa.name and not is_plain_name(hoa.name.text) else called[0])
+    headers = metadata(hoa)
+    title = headers.formula or (hoa.name.text if hoa.name and not is_plain_name(hoa.name.text) else state_names[0])
     fspa = Fspa(
         name=options.name or _name(hoa),
         doc="",
         formula=_text(title, formula_of, finite=finite),
-        level=options.level or own.level,
-        limit_steps=options.limit_steps or own.limit_steps,
-        judge=options.judge or own.judge or analysis.default_judge(),
+        level=options.level or headers.level,
+        limit_steps=options.limit_steps or headers.limit_steps,
+        judge=options.judge or headers.judge or analysis.default_judge(),
         semantics="finite" if finite else "infinite",
         tags=(),
-        clock_s=words.clock_s,
-        signals=words.signals,
-        params=words.params,
-        atoms=words.atoms,
-        exclusive=words.exclusive,
+        clock_s=vocabulary.clock_s,
+        signals=vocabulary.signals,
+        params=vocabulary.params,
+        atoms=vocabulary.atoms,
+        exclusive=vocabulary.exclusive,
         states=parts.states,
         edges=parts.edges,
         spec_size=parts.spec_size,
         acceptance=parts.acceptance,
     )
-    return fspa, (*found, *_decided(fspa, source))
+    return fspa, (*warnings, *_decided(fspa, source))
 
 
 def _decided(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
-    """A warning where every trace is accepted, or no trace is."""
+    """Return a warning if the automaton accepts every trace, or none."""
     if fspa.states[0].verdict == "violated":
-        title, way_out = f"`{source.name}` accepts no trace", "look at its acceptance, and at what is `exclusive`"
-        return (Diagnostic("TLT0410", title, help=way_out, severity="warning"),)
+        title, suggestion = f"`{source.name}` accepts no trace", "look at its acceptance, and at what is `exclusive`"
+        return (Diagnostic("TLT0410", title, help=suggestion, severity="warning"),)
     if fspa.states[0].verdict == "satisfied":
-        title, way_out = f"`{source.name}` accepts every trace", "look at its acceptance: it asks nothing of the game"
-        return (Diagnostic("TLT0411", title, help=way_out, severity="warning"),)
+        title, suggestion = (
+            f"`{source.name}` accepts every trace",
+            "look at its acceptance: it asks nothing of the game",
+        )
+        return (Diagnostic("TLT0411", title, help=suggestion, severity="warning"),)
     return ()
 
 
 def _name(hoa: Hoa) -> str:
-    """A word for the automaton: what it is called, or what its file is."""
+    """Return the automaton's name if it is a plain name, else one made from the name of its file."""
     if hoa.name and is_plain_name(hoa.name.text):
         return hoa.name.text
     if hoa.source.name == STDIN_NAME:
@@ -132,23 +140,26 @@ def _name(hoa: Hoa) -> str:
     return stem if is_plain_name(stem) else f"automaton_{stem}".rstrip("_")
 
 
-def _called(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
-    """What states are called that come from those of these numbers, counted where one became several."""
+def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
+    """Return a name for each state of the automaton, given its number in the file.
+
+    If a state of the file became several, they are counted: "state 3 (1 of 2)".
+    """
     names = {state.number: state.name or f"state {state.number}" for state in hoa.states}
-    several, met = Counter(numbers), Counter[int]()
-    found = []
+    totals, counted = Counter(numbers), Counter[int]()
+    state_names = []
     for number in numbers:
-        met[number] += 1
-        count = f" ({met[number]} of {several[number]})" if several[number] > 1 else ""
-        found.append(names[number] + count)
-    return found
+        counted[number] += 1
+        count = f" ({counted[number]} of {totals[number]})" if totals[number] > 1 else ""
+        state_names.append(names[number] + count)
+    return state_names
 
 
 def _text(words: str, formula_of: FormulaOf, *, finite: bool) -> Text:
-    """What a state is called, in three notations where that is a formula as tltlc writes it, else as it stands."""
+    """Return a state's name as a text: in three notations if it is a formula as tltlc prints it, else unchanged."""
     expression, _ = parse_formula(SourceFile("<name>", words))
     formula = None if expression is None else formula_of(expression)
-    # Other tools' operators may bind otherwise.
+    # Operators of other tools may have other precedences.
     if formula is not None and ascii_text(formula) == words:
         return finite_text(formula) if finite else infinite_text(formula)
     return Text(words.encode("ascii", "backslashreplace").decode(), words, words)
@@ -169,10 +180,10 @@ def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) ->
 def load_hoa(
     path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
 ) -> Fspa:
-    """The automaton of a HOA file whose atomic propositions are predicates of the library ``predicates``.
+    """Return the automaton of a HOA file whose atomic propositions are predicates of the library ``predicates``.
 
-    Errors: :class:`TltlError` where one of the files cannot be read, the automaton is not deterministic or not
-    complete, or a proposition is no predicate.
+    Raises :class:`TltlError` if one of the files cannot be read, the automaton is not deterministic
+    or not complete, or a proposition is no predicate.
 
     >>> import tltlc, tempfile, pathlib
     >>> from tltlc.backends import emit

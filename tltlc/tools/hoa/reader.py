@@ -1,4 +1,4 @@
-"""From the text of a HOA file to its tree."""
+"""Parse the text of a HOA file to its tree."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.tools.hoa.problems import broken, other_kind
 from tltlc.tools.hoa.tree import Alias, Edge, Header, Hoa, Name, Sets, State, Targets, Term
 
 _OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*(?:"|\\?\Z)|/\*', re.DOTALL)
-"""A text in quotes, which may lack its end, or the beginning of a comment."""
+"""A string in quotes, whose end may be missing, or the beginning of a comment."""
 _IN_A_COMMENT: Final = re.compile(r"/\*|\*/")
 _ESCAPE: Final = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U(000[0-9a-fA-F]{5}|0010[0-9a-fA-F]{4})|(.))", re.DOTALL)
 _LARGEST: Final = 2**31 - 1
@@ -31,7 +31,7 @@ _NAMES: Final = {
     "STRING": "a text in double quotes",
     "VERSION": "a version as `v1`",
 }
-"""What messages call the terminals that are not written as themselves."""
+"""The names in messages of terminals that are patterns, not fixed words."""
 _MOST_EXPECTED: Final = 5
 _LONGEST_SHOWN: Final = 40
 
@@ -39,26 +39,30 @@ _ONCE: Final = ("States:", "AP:", "Acceptance:", "name:")
 
 
 def read(source: SourceFile) -> Hoa:
-    """The one automaton of a file, as it stands there; nothing is known yet of what its numbers mean.
+    """Return the automaton of a file as it is written; its numbers are not checked.
 
     Raises:
-        TltlError: TLT0651, the text is not of the format; TLT0652, it holds several automata, or was given up.
+        TltlError: TLT0651 if the text does not follow the format; TLT0652 if the file has several
+            automata, or ends with ``--ABORT--``.
     """
     if source.text.lstrip().startswith("{"):
-        title, way_out = f"`{source.name}` is JSON, and no automaton in the Hanoi format", "an artefact needs no import"
-        raise TltlError([Diagnostic("TLT0651", title, help=way_out)])
+        title, suggestion = (
+            f"`{source.name}` is JSON, and no automaton in the Hanoi format",
+            "an artefact needs no import",
+        )
+        raise TltlError([Diagnostic("TLT0651", title, help=suggestion)])
     text = _without_comments(source)
     try:
-        found: Hoa = _Tree(source).transform(_parser().parse(text, start="automaton"))
+        hoa: Hoa = _Tree(source).transform(_parser().parse(text, start="automaton"))
     except UnexpectedInput as error:
         raise _unreadable(source, error, Span(0, len(text.rstrip())), "the end of the file") from None
     except VisitError as error:
         raise _cause(error) from None
-    return found
+    return hoa
 
 
 def _cause(error: VisitError) -> Exception:
-    """What went wrong while the tree was built; a label is a tree within the tree."""
+    """Return the original error; it may be wrapped several times, since a label is a tree within the tree."""
     cause: Exception = error
     while isinstance(cause, VisitError):
         cause = cause.orig_exc
@@ -72,7 +76,7 @@ def _parser() -> Lark:
 
 
 def _without_comments(source: SourceFile) -> str:
-    """The text with blanks for comments, which nest, so that every place in it stays."""
+    """Return the text with comments, which nest, replaced by spaces, so that all positions stay the same."""
     pieces: list[str] = []
     kept = start = depth = 0
     place = 0
@@ -89,8 +93,8 @@ def _without_comments(source: SourceFile) -> str:
                 kept = place
                 pieces.append(" " * (kept - start))
     if depth:
-        title, way_out = "this comment does not end", "comments nest: each `/*` needs a `*/`"
-        raise broken(source, Span(start, start + 2), title, way_out)
+        title, suggestion = "this comment does not end", "comments nest: each `/*` needs a `*/`"
+        raise broken(source, Span(start, start + 2), title, suggestion)
     return "".join([*pieces, source.text[kept:]])
 
 
@@ -98,12 +102,15 @@ def _without_comments(source: SourceFile) -> str:
 
 
 def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
-    """The message for where reading a part of the text stopped, behind which there is what ``at_end`` names."""
+    """Return the error for a part of the text that could not be parsed.
+
+    ``whole`` is the span of the part, and ``at_end`` the name of what follows it.
+    """
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)
         if source.text.startswith("--ABORT--", start):
-            title, way_out = "the tool that wrote this automaton gave it up", "have it written again, to its end"
-            return other_kind(source, Span(start, start + len("--ABORT--")), title, way_out)
+            title, suggestion = "the tool that wrote this automaton gave it up", "have it written again, to its end"
+            return other_kind(source, Span(start, start + len("--ABORT--")), title, suggestion)
         character = source.text[start]
         endless = {'"': "this text does not end", "[": "this label does not end"}
         return broken(source, Span(start, start + 1), endless.get(character, f"`{character}` is not expected here"))
@@ -116,9 +123,9 @@ def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end:
         here = Span(whole.end, whole.end)
         return broken(source, here, "the file ends too soon", "it was cut off: an automaton ends with `--END--`")
     if error.accepts == {"$END"} and token == "HOA:":
-        title, way_out = f"`{source.name}` holds several automata", "give a file with one of them"
-        return other_kind(source, span, title, way_out, "another one")
-    expected = sorted(at_end if name == "$END" else _said(name) for name in error.accepts)
+        title, suggestion = f"`{source.name}` holds several automata", "give a file with one of them"
+        return other_kind(source, span, title, suggestion, "another one")
+    expected = sorted(at_end if name == "$END" else _terminal_name(name) for name in error.accepts)
     remark = f"expected {_listed(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
     return broken(source, span, title, remark=remark)
 
@@ -128,15 +135,15 @@ def _moved(span: Span, by: int) -> Span:
 
 
 def _listed(names: list[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} or {last}" if others else last
+    *head, last = names
+    return f"{', '.join(head)} or {last}" if head else last
 
 
-def _said(terminal: str) -> str:
-    written = next((each.pattern for each in _parser().terminals if each.name == terminal), None)
-    if terminal in _NAMES or written is None:
+def _terminal_name(terminal: str) -> str:
+    pattern = next((definition.pattern for definition in _parser().terminals if definition.name == terminal), None)
+    if terminal in _NAMES or pattern is None:
         return _NAMES.get(terminal, terminal)
-    return f"`{written.value}`"
+    return f"`{pattern.value}`"
 
 
 def _short(token: str) -> str:
@@ -148,20 +155,22 @@ def _short(token: str) -> str:
 
 @v_args(inline=True)
 class _Tree(Transformer_NonRecursive[Token, Hoa]):
-    """Makes the records of :mod:`tltlc.tools.hoa.tree`, and tells what the grammar does not of the header."""
+    """Builds the records of :mod:`tltlc.tools.hoa.tree`, and checks rules of the header that the
+    grammar cannot express.
+    """
 
     def __init__(self, source: SourceFile) -> None:
         super().__init__()
         self._source = source
         self._labels: dict[str, Term] = {}
         self._start = 0
-        """Where the text begins in the file that is being read: a label is read on its own."""
+        """The position in the file of the text that is being parsed: labels are parsed separately."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
-        """The whole file."""
+        """Build the whole automaton."""
         if version != "v1":
-            way_out = "this reads version 1 of the format, `HOA: v1`"
-            raise broken(self._source, self._span(version), f"`{_short(version)}` is no version known", way_out)
+            suggestion = "this reads version 1 of the format, `HOA: v1`"
+            raise broken(self._source, self._span(version), f"`{_short(version)}` is no version known", suggestion)
         states = tuple(item for item in items if isinstance(item, State))
         header: dict[str, list[Any]] = {}
         for kind, value, span in (item for item in items if not isinstance(item, State)):
@@ -170,8 +179,8 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
                 raise broken(self._source, span, f"`{kind}` stands here again", "keep one of the two")
             known.append(value)
         if "Acceptance:" not in header:
-            title, way_out = "the header says nothing of acceptance", "it needs a line as `Acceptance: 1 Inf(0)`"
-            raise broken(self._source, Span(0, 4), title, way_out)
+            title, suggestion = "the header says nothing of acceptance", "it needs a line as `Acceptance: 1 Inf(0)`"
+            raise broken(self._source, Span(0, 4), title, suggestion)
         ((sets, condition),) = header["Acceptance:"]
         return Hoa(
             source=self._source,
@@ -186,7 +195,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
             states=states,
         )
 
-    # Of an item of the header: what it is, its value, and where it stands.
+    # The methods for items of the header return the item's name, its value and its span.
 
     def states(self, word: Token, count: Token) -> Any:
         """``States: 3``."""
@@ -216,10 +225,10 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         return "name:", text, self._span(word)
 
     def header(self, name: Token, *values: Token) -> Any:
-        """Any other item, as ``acc-name: Buchi``."""
+        """Any other item, e.g. ``acc-name: Buchi``."""
         return "", Header(str(name), tuple(map(_as_text, values)), self._span(name)), self._span(name)
 
-    # The body.
+    # The methods for the body.
 
     def state(self, label: Token | None, number: Token, name: Name | None, sets: Sets, *edges: Edge) -> State:
         """``State: 0 "F a" {0}`` and its edges."""
@@ -231,7 +240,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         return Edge(self._label(label), targets, sets)
 
     def _label(self, label: Token | None) -> Term | None:
-        """What stands in square brackets; places in it are those where it stands first."""
+        """Parse a label in square brackets; equal labels share one term, with the positions of the first."""
         if label is None:
             return None
         if label not in self._labels:
@@ -249,15 +258,15 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
 
     def sets(self, *numbers: Token | None) -> Sets:
         """``{0 1}``."""
-        there = [number for number in numbers if number is not None]
-        return Sets(tuple(map(self._number, there)), self._span(there[0], there[-1])) if there else Sets()
+        present = [number for number in numbers if number is not None]
+        return Sets(tuple(map(self._number, present)), self._span(present[0], present[-1])) if present else Sets()
 
     def targets(self, *states: Token) -> Targets:
         """``3``, or ``3 & 4``."""
         return Targets(tuple(map(self._number, states)), self._span(states[0], states[-1]))
 
     def string(self, text: Token) -> Name:
-        """A text in double quotes."""
+        """A string in double quotes."""
         whole = self._span(text)
         return Name(_ESCAPE.sub(_escaped, text[1:-1]), Span(whole.start + 1, whole.end - 1))
 
@@ -290,18 +299,18 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def set(self, kind: Token, outside: Token | None, number: Token) -> Term:
         """``Fin(0)`` or ``Inf(!0)``."""
         if kind not in ("Fin", "Inf"):
-            title, way_out = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
-            raise broken(self._source, self._span(kind), title, way_out)
+            title, suggestion = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
+            raise broken(self._source, self._span(kind), title, suggestion)
         op: Any = kind.lower()
         return Term(op, (), self._number(number), outside is not None, self._span(number))
 
     # Tokens.
 
     def _number(self, digits: Token) -> int:
-        # Python refuses to read thousands of digits.
+        # Check the length first: Python refuses to convert thousands of digits.
         if len(digits) > len(str(_LARGEST)) or int(digits) > _LARGEST:
-            title, way_out = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
-            raise broken(self._source, self._span(digits), title, way_out)
+            title, suggestion = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
+            raise broken(self._source, self._span(digits), title, suggestion)
         return int(digits)
 
     def _span(self, first: Token, last: Token | None = None) -> Span:

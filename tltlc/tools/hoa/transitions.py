@@ -1,4 +1,4 @@
-"""The edges of a state as one function of the letter, which has to be deterministic and complete."""
+"""Combine the edges of a state to one function of the letter; they must be deterministic and complete."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from tltlc.tools.hoa.tree import Edge, Hoa, State, Term
 
 _MOST_UNLABELLED: Final = 64
 YES, NO = "yes", "no"
-"""Not True and False, which the table would take for numbers."""
+"""Strings, since the table of letters could not tell True and False from 1 and 0."""
 
 Move = tuple[int, frozenset[int]]
-"""A state and the acceptance sets that an edge to it is in, be it by itself or by where it begins."""
+"""The target of an edge, and the acceptance sets of the edge and of its source."""
 
 NOT_ALLOWED: Final = None
-"""Where a letter leads that ``exclusive`` rules out."""
+"""The value on letters that ``exclusive`` rules out."""
 
 
 class Transitions:
-    """Labels of edges over ``atoms``, which are names; letters do not count that are not ``allowed``, a function to
-    "yes" or "no".
+    """The moves of states, as functions of letters over ``atoms``, which are names.
 
-    Raises TltlError, TLT0651, where aliases are wrong.
+    ``allowed`` is a function of the letter to :data:`YES` or :data:`NO`; letters that are not
+    allowed are ignored.  Raises TltlError, TLT0651, if an alias is wrong.
     """
 
     def __init__(self, hoa: Hoa, atoms: Sequence[str], letters: Letters[Any], allowed: int) -> None:
@@ -33,21 +33,21 @@ class Transitions:
         self._letters, self._allowed = letters, allowed
         self._aliases: dict[str, int] = {}
         self._known: dict[int, int] = {}
-        """The functions of labels, by their identity."""
+        """The functions of labels, by the label's ``id``."""
         for alias in hoa.aliases:
             if alias.name in self._aliases:
                 raise broken(hoa.source, alias.span, f"`{alias.name}` is declared again", "rename one")
             self._aliases[alias.name] = self._function(alias.term)
 
     def moves(self, state: State) -> int:
-        """Where a letter leads from a state and the sets that are met, as a function of the letter: :data:`Move`, and
-        ``NOT_ALLOWED`` for some.
+        """Return the moves of a state, as a function of the letter to :data:`Move` or :data:`NOT_ALLOWED`.
 
-        Raises TltlError: TLT0651, a label is wrong; TLT0653, two edges are taken; TLT0654, none is.
+        Raises TltlError: TLT0651 if a label is wrong; TLT0653 if two edges are taken on some
+        letter; TLT0654 if none is.
         """
         letters = self._letters
-        found = self._unlabelled(state) if self._is_unlabelled(state) else self._labelled(state)
-        step = letters.combined(lambda taken, yes: taken if yes == YES else NOT_ALLOWED, found, self._allowed, {})
+        edges = self._unlabelled(state) if self._is_unlabelled(state) else self._labelled(state)
+        step = letters.combined(lambda taken, yes: taken if yes == YES else NOT_ALLOWED, edges, self._allowed, {})
         for taken in letters.values(step):
             if taken is not NOT_ALLOWED and len(taken) != 1:
                 raise TltlError([self._not_one(state, taken, self._letter(step, taken))])
@@ -61,9 +61,9 @@ class Transitions:
         return letters.mapped(move, step, {})
 
     def _labelled(self, state: State) -> int:
-        """The places of the edges that a letter takes, of two at most: these are enough to know."""
+        """Return the places of the edges that a letter takes, at most two: two are enough for a counterexample."""
         letters = self._letters
-        found = letters.leaf(())
+        edges = letters.leaf(())
         for place, edge in enumerate(state.edges):
 
             def also(taken: tuple[int, ...], yes: str, place: int = place, edge: Edge = edge) -> tuple[int, ...]:
@@ -73,13 +73,17 @@ class Transitions:
 
             label = edge.label or state.label
             assert label is not None
-            found = letters.combined(also, found, self._of_label(label), {})
-        return found
+            edges = letters.combined(also, edges, self._of_label(label), {})
+        return edges
 
     def _unlabelled(self, state: State) -> int:
-        """The first edge is that of the letter without atoms, the next one that of atom 0 alone, and so on."""
+        """Return the place of the edge that a letter takes, if edges have no labels.
+
+        The first edge is for the letter without atoms, the next one for the letter with atom 0
+        alone, and so on: the atoms of the letter are the bits of the place.
+        """
         count, letters = len(self._hoa.atoms), self._letters
-        # Python refuses to write numbers of thousands of digits.
+        # The message says 2^count: Python refuses to print numbers of thousands of digits.
         if count > _MOST_UNLABELLED or len(state.edges) != 2**count:
             edges = f"{len(state.edges)} edge{'' if len(state.edges) == 1 else 's'}"
             title = f"state {state.number} has {edges} without labels, for 2^{count} letters"
@@ -100,22 +104,24 @@ class Transitions:
         return self._known[id(label)]
 
     def _function(self, term: Term) -> int:
-        """A label as a function to "yes" or "no"."""
+        """Return a label as a function to :data:`YES` or :data:`NO`."""
         letters = self._letters
         yes, no = letters.leaf(YES), letters.leaf(NO)
         match term.op:
             case "true" | "false":
                 return yes if term.op == "true" else no
             case "not":
-                return letters.mapped(lambda each: NO if each == YES else YES, self._function(term.args[0]), {})
+                return letters.mapped(lambda value: NO if value == YES else YES, self._function(term.args[0]), {})
             case "and" | "or":
-                # What decides alone.
-                strong = NO if term.op == "and" else YES
-                found = no if strong == YES else yes
+                # The value that decides the result if one operand has it.
+                absorbing = NO if term.op == "and" else YES
+                result = no if absorbing == YES else yes
                 for operand in term.args:
                     function = self._function(operand)
-                    found = letters.combined(lambda x, y: strong if strong in (x, y) else x, found, function, {})
-                return found
+                    result = letters.combined(
+                        lambda x, y: absorbing if absorbing in (x, y) else x, result, function, {}
+                    )
+                return result
             case "alias":
                 if term.value not in self._aliases:
                     title = f"there is no alias `{term.value}` before this"
@@ -128,27 +134,31 @@ class Transitions:
         return letters.node(term.value, no, yes)
 
     def _is_unlabelled(self, state: State) -> bool:
-        """Whether the edges of a state stand for the letters in order; those of one without edges do not."""
+        """Whether the edges of a state have no labels and stand for the letters in order; False without edges.
+
+        Raises TltlError, TLT0651, if only some edges have labels, or an edge has a label and its
+        state too.
+        """
         if state.label is not None:
             for edge in state.edges:
                 if edge.label is not None:
                     raise self._label_problem(edge, "this edge has a label, and its state has one, too")
             return False
-        without = [edge for edge in state.edges if edge.label is None]
-        if without and len(without) < len(state.edges):
-            raise self._label_problem(without[0], "this edge has no label, and others of its state have one")
-        return bool(without)
+        unlabelled = [edge for edge in state.edges if edge.label is None]
+        if unlabelled and len(unlabelled) < len(state.edges):
+            raise self._label_problem(unlabelled[0], "this edge has no label, and others of its state have one")
+        return bool(unlabelled)
 
     def _label_problem(self, edge: Edge, title: str) -> TltlError:
-        way_out = "label the state alone, all of its edges, or none of them"
-        return broken(self._hoa.source, edge.targets.span, title, way_out)
+        suggestion = "label the state alone, all of its edges, or none of them"
+        return broken(self._hoa.source, edge.targets.span, title, suggestion)
 
-    # --- what is not one edge ---------------------------------------------------------------------
+    # --- letters with no edge or two --------------------------------------------------------------
 
     def _letter(self, step: int, taken: tuple[int, ...]) -> str:
-        """A letter with that value, as few atoms as may be holding."""
-        holding = self._letters.letter_with(step, taken)
-        names = [name if place in holding else f"!{name}" for place, name in enumerate(self._atoms)]
+        """Return some letter on which ``step`` has the value ``taken``, as a conjunction of literals."""
+        present = self._letters.letter_with(step, taken)
+        names = [name if place in present else f"!{name}" for place, name in enumerate(self._atoms)]
         return " & ".join(names) or "true"
 
     def _not_one(self, state: State, taken: tuple[int, ...], letter: str) -> Diagnostic:
@@ -163,5 +173,5 @@ class Transitions:
 
 
 def _same(one: Edge, other: Edge) -> bool:
-    """Whether two edges lead to the same state, in the same sets: a file may say so twice."""
+    """Whether two edges have the same target and the same sets: a file may contain an edge twice."""
     return one.targets.states == other.targets.states and set(one.sets.numbers) == set(other.sets.numbers)

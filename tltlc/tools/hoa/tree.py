@@ -1,4 +1,4 @@
-"""An automaton as a HOA file has it, before anything is known of its atoms."""
+"""The syntax tree of a HOA file; its atoms are not resolved."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tltlc.core.source import SourceFile, Span
 class Term:
     """A Boolean expression over atoms, or an acceptance condition over sets.
 
-    ``value`` is the index of an ``atom``, the name of an ``alias``, or the number of the set of a ``fin`` or ``inf``,
-    which is then of the edges that are in it, or ``outside``.
+    ``value`` is the index of an ``atom``, the name of an ``alias``, or the number of the set of a
+    ``fin`` or ``inf``.  If ``outside``, the condition is about the edges outside of the set.
     """
 
     op: Literal["true", "false", "not", "and", "or", "atom", "alias", "fin", "inf"]
@@ -25,7 +25,7 @@ class Term:
 
 @record
 class Sets:
-    """The acceptance sets that a state or an edge is in."""
+    """The acceptance sets of a state or an edge."""
 
     numbers: tuple[int, ...] = ()
     span: Span = Span(0, 0)
@@ -33,7 +33,7 @@ class Sets:
 
 @record
 class Targets:
-    """Where an edge leads; several states at once make an automaton alternating."""
+    """The targets of an edge, or the initial states; an edge with several targets makes the automaton alternating."""
 
     states: tuple[int, ...]
     span: Span
@@ -41,7 +41,7 @@ class Targets:
 
 @record
 class Edge:
-    """An edge; without a label it is that of its place among the letters, or has that of its state."""
+    """An edge; if ``label`` is None, the state's label applies, or the edge is for the letter of its position."""
 
     label: Term | None
     targets: Targets
@@ -50,7 +50,7 @@ class Edge:
 
 @record
 class State:
-    """A state; ``span`` is that of its number."""
+    """A state; ``span`` is the span of its number."""
 
     number: int
     name: str | None
@@ -62,7 +62,7 @@ class State:
 
 @record
 class Name:
-    """A text in quotes, without them and with its escapes resolved; ``span`` is what stands between the quotes."""
+    """A string without its quotes, with escapes resolved; ``span`` is the span between the quotes."""
 
     text: str
     span: Span
@@ -79,7 +79,7 @@ class Alias:
 
 @record
 class Header:
-    """A line of the header that has no field of its own; texts among its values are without quotes."""
+    """An item of the header without a field of its own in :class:`Hoa`; strings in ``values`` have no quotes."""
 
     name: str
     values: tuple[str, ...]
@@ -88,7 +88,7 @@ class Header:
 
 @record
 class Hoa:
-    """The whole file; ``count`` is None where it does not say how many states there are."""
+    """The whole file; ``count`` is the declared number of states, None if it is not declared."""
 
     source: SourceFile
     count: int | None
