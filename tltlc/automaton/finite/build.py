@@ -232,13 +232,13 @@ def verdicts(
 
 def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Diagrams) -> tuple[Edge, ...]:
     number = {leaf: index for index, leaf in enumerate(order)}
-    made: dict[int, Guard] = {}
+    guard_of: dict[int, Guard] = {}
     edges: list[Edge] = []
     for source, leaf in enumerate(order):
         for target, guard in guards.by_leaf(minimal.transitions[diagrams.low[leaf]]).items():
-            if guard not in made:
-                made[guard] = Guard(guards.text(guard), guards.primes(guard))
-            edges.append(Edge(source, number[target], made[guard]))
+            if guard not in guard_of:
+                guard_of[guard] = Guard(guards.text(guard), guards.primes(guard))
+            edges.append(Edge(source, number[target], guard_of[guard]))
     return tuple(sorted(edges, key=lambda edge: (edge.source, edge.target)))
 
 

@@ -51,8 +51,8 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
     transitions: dict[int, int] = {}
     seen = {initial}
     queue = [initial]
-    # Transitions share nodes: the leaves below a node that was met before are already queued.
-    met = {IMPOSSIBLE}
+    # Transitions share nodes: the leaves below a visited node are already queued.
+    visited = {IMPOSSIBLE}
     for state in queue:
         if len(queue) > state_budget:
             raise OutOfStates
@@ -63,9 +63,9 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
         stack = [transition]
         while stack:
             node = stack.pop()
-            if node in met:
+            if node in visited:
                 continue
-            met.add(node)
+            visited.add(node)
             if atom[node] != LEAF:
                 stack.append(high[node])
                 stack.append(low[node])

@@ -98,9 +98,9 @@ class _Normaliser:
             return infinite.always_eventually(inner)
         p, q = outermost.args
         strong = infinite.always_eventually(infinite.substituted(inner, {outermost: infinite.until(p, q)}))
-        for_ever = infinite.always_eventually(infinite.substituted(inner, {outermost: TRUE}))
+        always = infinite.always_eventually(infinite.substituted(inner, {outermost: TRUE}))
         return self.normal(
-            infinite.disjunction((strong, infinite.conjunction((infinite.eventually_always(p), for_ever))))
+            infinite.disjunction((strong, infinite.conjunction((infinite.eventually_always(p), always))))
         )
 
     def _eventually_always(self, inner: Formula) -> Formula:
