@@ -3,8 +3,8 @@
 At an accepted node, the automaton visits the rejected children in turn.  It stays at a child while
 the run takes only edges of that child; otherwise it moves on to the next child and marks the
 letter.  A run with infinitely many such marks stays in no child, so it is accepted.  At a rejected
-node, all accepted children are followed at once, each with its own pair.  Nodes without a common
-state share pairs.
+node, all accepted children are followed at once, each with its own pair.  Nodes that have no state
+in common may share a pair.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _FOR_FEWER_PAIRS: Final = 100_000
 """Steps for a decomposition if the clauses already are Rabin pairs, so that it can only save pairs."""
 
 Walk = tuple[Any, ...]
-"""The position of a run in a tree: a child's index and the walk in that child, or the walks in all children."""
+"""The position of a run in a tree: a child's index and its walk, or the walks of all children with the state."""
 
 
 @record
