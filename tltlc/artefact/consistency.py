@@ -170,7 +170,7 @@ def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
     """Return the states on accepted cycles and the verdict of each state, for an automaton over infinite traces.
 
-    If that takes too much work, returns what the artefact says.
+    If that takes too much work, returns the values of the artefact.
     """
     from tltlc.automaton.infinite.analysis import analysis_of_fspa
     from tltlc.automaton.infinite.work import OutOfWork, Work

@@ -54,7 +54,7 @@ def _inlined(node: Any, definitions: dict[str, Any]) -> Any:
 
 
 def _slim(line: str) -> str:
-    """Return a line of the generated code without what is not needed.
+    """Return a line of the generated code without the parts that are not needed.
 
     Removes the value and the schema quoted in a ``raise``, decimals, and the exception for several
     errors.

@@ -31,9 +31,10 @@ class Text:
 class State:
     """A state of the automaton.
 
-    ``label`` says what remains to be satisfied; ``accepting`` is true if a trace that ends here is
-    accepted (over infinite traces: if the state lies on an accepted cycle); ``distance`` is the
-    least number of transitions to an accepting state, None for traps.
+    ``label`` is the formula that remains to be satisfied.  ``accepting`` is true if a trace that
+    ends here is accepted (over infinite traces: if the state lies on an accepted cycle).
+    ``verdict`` is the verdict of a trace that ends here.  ``distance`` is the least number of
+    transitions to an accepting state, None for traps.
     """
 
     id: int

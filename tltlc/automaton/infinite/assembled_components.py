@@ -30,7 +30,7 @@ def joined(
     """
     steps = _steps(letters, pieces, entry)
     reached = _reached(letters, steps, initial)
-    number = _told_apart(letters, steps, reached, [pieces[piece].labels[state] in apart for piece, state in reached])
+    number = _numbered(letters, steps, reached, [pieces[piece].labels[state] in apart for piece, state in reached])
     first: dict[int, Place] = {}
     for place in reached:
         first.setdefault(number[place], place)
@@ -67,7 +67,7 @@ def _reached(letters: Letters[Any], steps: Mapping[Place, int], initial: Place) 
     return reached
 
 
-def _told_apart(
+def _numbered(
     letters: Letters[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
 ) -> dict[Place, int]:
     """Number the states from 0 in order; states that cannot be distinguished get the same number.

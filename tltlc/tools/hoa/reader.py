@@ -98,7 +98,7 @@ def _without_comments(source: SourceFile) -> str:
     return "".join([*pieces, source.text[kept:]])
 
 
-# --- what is not of the format --------------------------------------------------------------------
+# --- syntax errors --------------------------------------------------------------------------------
 
 
 def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
