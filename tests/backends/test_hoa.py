@@ -227,7 +227,8 @@ def test_hostile_texts_stay_texts(fspa: Fspa, doc: str, infinite: bool) -> None:
 
 def test_characters_that_are_not_seen_are_escapes_as_in_c() -> None:
     names = ["\ud800", "\\ud800", "\U000e0001", "\u200b\n"]
-    atoms = tuple(replace(atom, name=name) for atom, name in zip(cover_and_hide().atoms, names, strict=True))
+    pairs = zip(cover_and_hide().atoms, names, strict=True)
+    atoms = tuple(replace(atom, base=name, arguments=()) for atom, name in pairs)
     fspa = replace(cover_and_hide(), atoms=atoms, doc="\ud800")
     assert r'AP: 4 "\ud800" "\\ud800" "\U000e0001" "\u200b\u000a"' in emitted(fspa)
     emitted(fspa).encode()

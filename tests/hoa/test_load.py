@@ -48,7 +48,7 @@ def again(fspa: Fspa) -> Fspa:
     found = imported(text, library(fspa), options)
     # The same names, to be compared.
     names = {f"{atom.name}_": atom.name for atom in fspa.atoms}
-    return replace(found, atoms=tuple(replace(atom, name=names[atom.name]) for atom in found.atoms))
+    return replace(found, atoms=tuple(replace(atom, base=names[atom.name], arguments=()) for atom in found.atoms))
 
 
 @settings(max_examples=80, deadline=None)

@@ -267,7 +267,9 @@ def test_hostile_texts_run_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPat
             doc=text,
             formula=label,
             states=tuple(replace(state, label=label) for state in fspa.states),
-            atoms=tuple(replace(atom, name=f"{text}{index}", doc=text) for index, atom in enumerate(fspa.atoms)),
+            atoms=tuple(
+                replace(atom, base=f"{text}{index}", arguments=(), doc=text) for index, atom in enumerate(fspa.atoms)
+            ),
             edges=tuple(replace(edge, guard=replace(edge.guard, text=text)) for edge in fspa.edges),
         )
         step = module_of(fspa).Monitor().step(FAR)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State, Text
+from tltlc.core.names import split_name
 from tltlc.expression.json import from_json
 from tltlc.resolve.spec import Atom, Param, Signal
 
@@ -49,7 +50,8 @@ def _number(value: float | None) -> float | None:
 
 def _signal(signal: dict[str, Any]) -> Signal:
     low, high = signal["range"]
-    return Signal(signal["name"], signal["type"], _number(low), _number(high), signal.get("doc", ""))
+    base, arguments = split_name(signal["name"])
+    return Signal(base, signal["type"], _number(low), _number(high), signal.get("doc", ""), arguments)
 
 
 def _param(param: dict[str, Any]) -> Param:
@@ -59,7 +61,8 @@ def _param(param: dict[str, Any]) -> Param:
 
 
 def _atom(atom: dict[str, Any]) -> Atom:
-    return Atom(atom["name"], from_json(atom["expression"]), atom.get("doc", ""))
+    base, arguments = split_name(atom["name"])
+    return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments)
 
 
 def _state(state: dict[str, Any]) -> State:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import islice
 from typing import Any
 
+from tltlc.core.names import full_name
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Label
@@ -38,8 +39,7 @@ class SignalInfo:
 
     def of(self, entities: tuple[str, ...]) -> Signal:
         """Return the signal of these entities."""
-        name = f"{self.name}({', '.join(entities)})" if entities else self.name
-        return Signal(name, self.type, self.low, self.high, self.doc)
+        return Signal(self.name, self.type, self.low, self.high, self.doc, entities)
 
 
 @record
@@ -112,15 +112,24 @@ class Context:
         signal = info.of(entities)
         return self.signals.setdefault(signal.name, signal)
 
-    def atom(self, name: str, expression: Expression, doc: str, source: SourceFile, span: Span) -> Formula:
-        """Return the atom of that name.
+    def atom(
+        self,
+        base: str,
+        expression: Expression,
+        doc: str,
+        source: SourceFile,
+        span: Span,
+        arguments: tuple[str, ...] = (),
+    ) -> Formula:
+        """Return the atom of that base with these arguments.
 
         Raises ResolutionError if the name already belongs to another expression (TLT0216), or if
         the arithmetic of all atoms together is too large (TLT0315).
         """
+        name = full_name(base, arguments)
         if name not in self.atoms:
             self._arithmetic += self.arithmetic_of(expression, source, span, self._arithmetic)
-        known = self.atoms.setdefault(name, Atom(name, expression, doc))
+        known = self.atoms.setdefault(name, Atom(base, expression, doc, arguments))
         if known.expression != expression:
             raise problem(
                 "TLT0216",

@@ -49,4 +49,12 @@ def of_signal(signal: Signal) -> Quantity:
     low = -inf if signal.low is None else signal.low
     high = inf if signal.high is None else signal.high
     dimension = units.TYPES[signal.type]
-    return Quantity(SignalNode(signal.name), dimension, low, high, signal.name, is_bool=signal.type == "bool")
+    return Quantity(
+        SignalNode(signal.name),
+        dimension,
+        low,
+        high,
+        signal.name,
+        is_bool=signal.type == "bool",
+        call=(signal.base, signal.arguments),
+    )

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Const, Op
+from tltlc.expression.tree import Const, Expression, Op
 from tltlc.grammar.tree import Binary, Call, Constant, Expr, Group, LetDecl, Name, Quantified, SignalDecl, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic import formula as logic
@@ -116,7 +116,7 @@ def _named(expr: Name | Call, env: Env) -> Steps:
         use = predicate(expr, binding, env)
         if env.symbolic:
             return logic.atom(use.value.text)
-        return env.context.atom(use.value.text, use.value.expression, use.doc, env.scope.source, expr.span)
+        return _atom(use.value, use.value.expression, use.doc, expr, env)
     if binding.kind == "let":
         return (yield _let(expr, binding, env))
     declaration = binding.declaration
@@ -135,7 +135,13 @@ def _bool_atom(value: Quantity, doc: str, expr: Name | Call, env: Env) -> Formul
     if env.symbolic:
         return logic.atom(value.text)
     scaled = Op("-", (Op("*", (Const(2.0), value.expression)), Const(1.0)))
-    return env.context.atom(value.text, scaled, doc, env.scope.source, expr.span)
+    return _atom(value, scaled, doc, expr, env)
+
+
+def _atom(value: Quantity, robustness: Expression, doc: str, expr: Name | Call, env: Env) -> Formula:
+    """Return the atom that is called like a value."""
+    base, arguments = value.call or (value.text, ())
+    return env.context.atom(base, robustness, doc, env.scope.source, expr.span, arguments)
 
 
 def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final, cast
 
+from tltlc.core.names import full_name
 from tltlc.core.record import record, replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label, instead
@@ -65,9 +66,8 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
             place = Label(env.scope.source, use.span)
             # A symbolic number gets its value where the enclosing definition is used; the range is checked there.
             settled = settled and (value.is_constant or not env.symbolic)
-    name = f"{declaration.name}({', '.join(shown)})" if shown else declaration.name
     try:
-        value = _instantiate(name, declaration, binding.scope, values, env, depth, place, settled)
+        value = _instantiate(tuple(shown), declaration, binding.scope, values, env, depth, place, settled)
     except ResolutionError as failure:
         if place:
             failure.used_at(place, binding.scope.source, declaration.body.span)
@@ -97,7 +97,7 @@ def check_unused(binding: Binding, env: Env) -> None:
         declared_range(declaration, binding.scope, env)
         _body(declaration, binding.scope, values, replace(env, symbolic=True), 0)
     else:
-        _instantiate(declaration.name, declaration, binding.scope, values, env, 0)
+        _instantiate((), declaration, binding.scope, values, env, 0)
 
 
 def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> Value:
@@ -186,7 +186,7 @@ def _text(value: Value) -> str:
 
 
 def _instantiate(
-    name: str,
+    arguments: tuple[str, ...],
     declaration: PredicateDecl,
     scope: Scope,
     values: Mapping[str, Value],
@@ -206,7 +206,9 @@ def _instantiate(
     low, high = declared_range(declaration, scope, env)
     env = replace(env, symbolic=not settled)
     body = _body(declaration, scope, values, env, depth)
-    result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth)
+    name = full_name(declaration.name, arguments)
+    call = (declaration.name, arguments)
+    result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth, call=call)
     if settled:
         _note_instance(declaration, scope, values, (low, high), env, depth, place)
         context.values[memo] = result

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from tltlc.core.names import full_name
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression
@@ -20,14 +21,20 @@ Judge = Literal["goal", "limit"]
 class Signal:
     """A number that the game supplies at each step, in SI units.
 
-    A bound is None where the range is open.
+    A bound is None where the range is open. ``arguments`` are the entities that the signal is about.
     """
 
-    name: str
+    base: str
     type: ValueType
     low: float | None
     high: float | None
     doc: str = ""
+    arguments: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The full name: ``distance(s1)`` for the base ``distance`` with the argument ``s1``."""
+        return full_name(self.base, self.arguments)
 
 
 @record
@@ -44,11 +51,21 @@ class Param:
 
 @record
 class Atom:
-    """An atom: it holds iff its expression, with values in [-1, 1], is > 0."""
+    """An atom: it holds iff its expression, with values in [-1, 1], is > 0.
 
-    name: str
+    ``arguments`` are those of a predicate or a signal as they are written. An atom that is a comparison, such
+    as ``x > 3``, has none, and its text as its base.
+    """
+
+    base: str
     expression: Expression
     doc: str = ""
+    arguments: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The full name: ``near(s1)`` for the base ``near`` with the argument ``s1``."""
+        return full_name(self.base, self.arguments)
 
 
 @record

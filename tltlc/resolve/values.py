@@ -33,7 +33,7 @@ class Quantity:
     ``text`` is its unique spelling in the names of atoms, and ``binding`` how tightly that spelling
     binds. ``depth`` is the depth of the expression. ``is_bool`` marks a value that is 0 or 1 by
     type. ``overflows`` marks a value whose arithmetic may overflow although all its inputs have
-    finite ranges.
+    finite ranges. ``call`` is the base and the arguments of a signal or a predicate.
     """
 
     expression: Expression
@@ -45,6 +45,7 @@ class Quantity:
     depth: int = 1
     is_bool: bool = False
     overflows: bool = False
+    call: tuple[str, tuple[str, ...]] | None = None
 
     @property
     def is_constant(self) -> bool:

@@ -152,11 +152,12 @@ def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diag
             yield say.signal(difference, specs, place)
         elif difference.what == "param" and difference.name not in new_names.values():
             yield say.param(difference, new_names.get(difference.name), place)
-        elif isinstance(difference.b, Atom) and difference.b.name != difference.name:
-            renamed.setdefault(difference.name.partition("(")[0], []).append(difference)
-        elif difference.apart is not None:
-            predicate = difference.name.partition("(")[0]
-            by_predicate.setdefault((predicate, difference.apart.is_judged_otherwise), []).append(difference)
+        elif isinstance(difference.a, Atom) and isinstance(difference.b, Atom):
+            if difference.b.name != difference.name:
+                renamed.setdefault(difference.a.base, []).append(difference)
+            elif difference.apart is not None:
+                key = difference.a.base, difference.apart.is_judged_otherwise
+                by_predicate.setdefault(key, []).append(difference)
     for same_predicate in renamed.values():
         yield say.atoms_called(same_predicate, places[users[same_predicate[0]][0].b.name])
     for first, *rest in by_predicate.values():

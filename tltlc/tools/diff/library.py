@@ -88,7 +88,7 @@ def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meanin
         dimension = units.TYPES[type_] if parameter.type else None
         low, high = (0.0, 1.0) if bounded else (-inf, inf)
         local[parameter.name] = Quantity(
-            SignalNode(signal.name), dimension, low, high, signal.name, is_bool=type_ == "bool"
+            SignalNode(signal.name), dimension, low, high, signal.name, is_bool=type_ == "bool", call=(signal.base, ())
         )
     span = binding.span
     arguments = tuple(Argument(parameter.name, Name(parameter.name, span), span) for parameter in given)

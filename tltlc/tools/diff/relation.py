@@ -160,5 +160,7 @@ def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ..
 def _renamed(fspa: Fspa, names: tuple[str, ...], ending: str) -> Fspa:
     if not names:
         return fspa
-    atoms = tuple(replace(atom, name=atom.name + ending) if atom.name in names else atom for atom in fspa.atoms)
-    return replace(fspa, atoms=atoms)
+    atoms = [
+        replace(atom, base=atom.name + ending, arguments=()) if atom.name in names else atom for atom in fspa.atoms
+    ]
+    return replace(fspa, atoms=tuple(atoms))

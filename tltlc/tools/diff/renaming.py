@@ -12,6 +12,7 @@ from tltlc.tools.diff.expression_shapes import Leaf, with_leaves
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
+    from tltlc.resolve.spec import Atom
     from tltlc.resolve.spec import Param as ParamValue
 
 
@@ -21,15 +22,15 @@ def with_names_of(old: Fspa, new: Fspa) -> Fspa:
     An atom counts as renamed if its expression is the same except for the names of params.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
-    removed: dict[object, str] = {}
+    removed: dict[object, Atom] = {}
     for atom in old.atoms:
         if atom.name not in new_names:
-            removed.setdefault(_form(atom.expression, old), atom.name)
-    atoms = tuple(
-        atom if atom.name in names else replace(atom, name=removed.pop(_form(atom.expression, new), atom.name))
-        for atom in new.atoms
-    )
-    return replace(new, atoms=atoms)
+            removed.setdefault(_form(atom.expression, old), atom)
+    atoms: list[Atom] = []
+    for atom in new.atoms:
+        known = atom if atom.name in names else removed.pop(_form(atom.expression, new), atom)
+        atoms.append(replace(atom, base=known.base, arguments=known.arguments))
+    return replace(new, atoms=tuple(atoms))
 
 
 def renamed_signals(old: Fspa, new: Fspa) -> dict[str, str]:
@@ -61,7 +62,10 @@ def with_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
     return replace(
         fspa,
         atoms=tuple(replace(atom, expression=_with_signals(atom.expression, names)) for atom in fspa.atoms),
-        signals=tuple(replace(signal, name=names.get(signal.name, signal.name)) for signal in fspa.signals),
+        signals=tuple(
+            replace(signal, base=names[signal.name], arguments=()) if signal.name in names else signal
+            for signal in fspa.signals
+        ),
     )
 
 

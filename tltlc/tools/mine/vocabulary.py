@@ -109,8 +109,8 @@ def of_columns(columns: Mapping[str, bool]) -> Words:
     names, unread = truths[:_MOST], frozenset(truths[_MOST:])
     simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
-    entities = list(dict.fromkeys(entity for arguments in calls.values() for entity in arguments))
-    signals = {name.partition("(")[0].strip(): len(arguments) for name, arguments in calls.items()}
+    entities = list(dict.fromkeys(entity for _, arguments in calls.values() for entity in arguments))
+    signals = {signal: len(arguments) for signal, arguments in calls.values()}
     text = f"entity {', '.join(entities)}\n" if entities else ""
     text += "".join(_signal(name, number) for name, number in signals.items())
     text += "".join(f"signal {name}: bool\n" for name in simple)
@@ -140,14 +140,14 @@ def _no_columns(truths: Sequence[str]) -> TltlError:
     return TltlError([Diagnostic("TLT0760", title, help=suggestion)])
 
 
-def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str, ...]]:
-    """Return the columns such as `near(s1)` with their entities.
+def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return the columns such as `near(s1)`, each with its signal and its entities.
 
     Columns whose declarations would conflict with others are left out.
     """
     lengths: dict[str, int] = {}
     entities: set[str] = set()
-    calls: dict[str, tuple[str, ...]] = {}
+    calls: dict[str, tuple[str, tuple[str, ...]]] = {}
     for name in names:
         call = _call(name)
         if call is None:
@@ -163,7 +163,7 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
         if lengths.get(signal, len(arguments)) == len(arguments) and _declares(declared):
             lengths[signal] = len(arguments)
             entities.update(arguments)
-            calls[name] = arguments
+            calls[name] = call
     return calls
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
-from tltl_runtime.stealth.expert.goals import distant_entity
+from tltl_runtime.stealth.expert.goals import distance_signals
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import EMPTY
 from tltlc.expression.evaluate import evaluate
@@ -32,7 +32,7 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
         return None
     (name,) = names
     near, far = (_holds(fspa, expression, name, metres) for metres in (0.0, _FAR))
-    return distant_entity(name) if near and not far else None
+    return distance_signals(fspa).get(name) if near and not far else None
 
 
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:

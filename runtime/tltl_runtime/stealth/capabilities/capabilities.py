@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from math import inf, isclose
 from typing import Final
@@ -20,7 +19,6 @@ from tltlc.monitor.samples import param_values, range_text
 from tltlc.resolve.spec import Signal
 from tltlc.resolve.units import TYPES
 
-_CALL: Final = re.compile(r"([\w.]+)\((.*)\)\Z")
 _KIND_OF: Final = {"active": "switch", "open": "barrier"}
 """The signals that only one kind of entity has, with that kind."""
 
@@ -65,14 +63,14 @@ def given_params(level: Level, fspa: Fspa) -> dict[str, float]:
 def used_entities(level: Level, fspa: Fspa) -> tuple[str, ...]:
     """Return the entities of the level that the signals of a spec name, in the spec's order."""
     entities = entity_names(level)
-    return tuple(dict.fromkeys(name for signal in fspa.signals for name in _arguments(signal.name) if name in entities))
+    return tuple(dict.fromkeys(name for signal in fspa.signals for name in signal.arguments if name in entities))
 
 
 def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
     offered, entities = offers(level), entity_names(level)
     missing: set[str] = set()
     for signal in fspa.signals:
-        unknown = [name for name in _arguments(signal.name) if name not in entities]
+        unknown = [name for name in signal.arguments if name not in entities]
         for name in unknown:
             if name not in missing:
                 missing.add(name)
@@ -84,7 +82,7 @@ def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnosti
             yield from _mismatch(signal, offered[signal.name], level, places)
         else:
             title = f"the level `{level.name}` has no signal `{signal.name}`"
-            yield Diagnostic("TLT0811", title, places.signal(signal.name), _hint(signal.name, level, offered))
+            yield Diagnostic("TLT0811", title, places.signal(signal.name), _hint(signal, level, offered))
 
 
 def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
@@ -109,18 +107,13 @@ def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) ->
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
 
 
-def _hint(name: str, level: Level, offered: dict[str, Offer]) -> str:
-    call = _CALL.match(name)
-    if call and call[1] in _KIND_OF:
-        kind = _KIND_OF[call[1]]
+def _hint(signal: Signal, level: Level, offered: dict[str, Offer]) -> str:
+    if signal.arguments and signal.base in _KIND_OF:
+        kind = _KIND_OF[signal.base]
         known = [entity.name for entity in (level.switches if kind == "switch" else level.barriers)]
-        return f"it is for a {kind}: {suggestion(call[2], known)}"
-    return suggestion(name, offered, described(level)) + "\nunder `[signals]` a level gives its signals further names"
-
-
-def _arguments(signal: str) -> list[str]:
-    call = _CALL.match(signal)
-    return [name.strip() for name in call[2].split(",")] if call else []
+        return f"it is for a {kind}: {suggestion(', '.join(signal.arguments), known)}"
+    known_names = suggestion(signal.name, offered, described(level))
+    return f"{known_names}\nunder `[signals]` a level gives its signals further names"
 
 
 def _ends(low: float | None, high: float | None) -> tuple[float, float]:

@@ -81,9 +81,8 @@ def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
     for signal in fspa.signals:
         offer = offered[signal.name]
         low, high = _ends(offer.low, offer.high)
-        entity = signal.name.removeprefix("distance(").removesuffix(")")
-        if signal.name == f"distance({entity})":
-            low = max(low, reach.distances[entity])
+        if signal.base == "distance" and len(signal.arguments) == 1:
+            low = max(low, reach.distances[signal.arguments[0]])
         # A sample outside the declared range is clamped to it.
         least, most = _ends(signal.low, signal.high)
         box[Signal(signal.name)] = (min(max(low, least), most), min(max(high, least), most))

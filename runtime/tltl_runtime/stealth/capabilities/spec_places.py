@@ -47,8 +47,8 @@ class SpecPlaces:
 
         If the spec does not use the signal, return its declaration.
         """
-        users = [name, *self._atoms_of(name)]
-        used = (_use(self._own, user.partition("(")[0]) for user in users)
+        users = [self._base(name), *self._atoms_of(name)]
+        used = (_use(self._own, user) for user in users)
         return self._label(self._written(name) or next(filter(None, used), None) or self._declared(name))
 
     def declaration(self, signal: str) -> tuple[Label, ...]:
@@ -68,10 +68,15 @@ class SpecPlaces:
     def _atoms_of(self, signal: str) -> list[str]:
         """The atoms that are computed from a signal."""
         atoms = self._spec.atoms if self._spec else ()
-        return [atom.name for atom in atoms if Signal(signal) in nodes(atom.expression)]
+        return [atom.base for atom in atoms if Signal(signal) in nodes(atom.expression)]
+
+    def _base(self, signal: str) -> str:
+        """The name of a signal without its arguments."""
+        signals = self._spec.signals if self._spec else ()
+        return next((used.base for used in signals if used.name == signal), signal)
 
     def _declared(self, signal: str) -> Span | None:
-        base = signal.partition("(")[0]
+        base = self._base(signal)
         return _first(
             declaration.name_span
             for declaration in self._all

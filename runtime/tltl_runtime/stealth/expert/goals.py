@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping
-from typing import Final, SupportsFloat
+from typing import SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Signal, nodes
 from tltlc.resolve.spec import Atom
-
-_DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")
 
 
 def next_goals(
@@ -29,7 +26,8 @@ def next_goals(
         return ()
     values = {**{param.name: param.value for param in fspa.params}, **params}
     signals = {name: float(sample[name]) for name in {signal.name for signal in fspa.signals}}
-    entities = [_entity(atom, places) for atom in fspa.atoms]
+    distances = {name: entity for name, entity in distance_signals(fspa).items() if entity in places}
+    entities = [_entity(atom, distances) for atom in fspa.atoms]
     settled = [
         None if entity is not None else evaluate(atom.expression, signals, values) > 0.0
         for atom, entity in zip(fspa.atoms, entities, strict=True)
@@ -61,15 +59,16 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
     return goals
 
 
-def _entity(atom: Atom, places: Collection[str]) -> str | None:
+def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
     """The entity whose distance an atom depends on, or None."""
-    for node in nodes(atom.expression):
-        if isinstance(node, Signal) and (entity := distant_entity(node.name)) in places:
-            return entity
-    return None
+    read = (node.name for node in nodes(atom.expression) if isinstance(node, Signal))
+    return next((distances[name] for name in read if name in distances), None)
 
 
-def distant_entity(signal: str) -> str | None:
-    """Return the entity of a signal ``distance(ENTITY)``, or None for other signals."""
-    match = _DISTANCE.match(signal)
-    return match[1] if match else None
+def distance_signals(fspa: Fspa) -> dict[str, str]:
+    """Return the entities of the signals ``distance(ENTITY)``, by the full names of the signals."""
+    return {
+        signal.name: signal.arguments[0]
+        for signal in fspa.signals
+        if signal.base == "distance" and len(signal.arguments) == 1
+    }

@@ -112,10 +112,8 @@ def _alike(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
     known = set(entities)
     groups: dict[tuple[str, ...], set[int]] = {}
     for index, atom in enumerate(fspa.atoms):
-        head, _, arguments = atom.name.partition("(")
-        first, *rest = arguments.rstrip(")").split(", ")
-        if first in known:
-            groups.setdefault((head, *rest), set()).add(index)
+        if atom.arguments and atom.arguments[0] in known:
+            groups.setdefault((atom.base, *atom.arguments[1:]), set()).add(index)
     return [group for group in groups.values() if len(group) > 1]
 
 

@@ -1,0 +1,33 @@
+"""Names of signals and atoms with arguments, such as ``near(s1)`` and ``near(s1, close=3)``."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+_BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
+
+
+def full_name(base: str, arguments: tuple[str, ...]) -> str:
+    """Return the name as it is written in artefacts: ``near(s1, s2)``, or ``alive`` without arguments."""
+    return f"{base}({', '.join(arguments)})" if arguments else base
+
+
+def split_name(name: str) -> tuple[str, tuple[str, ...]]:
+    """Split a full name into its base and its arguments.
+
+    A name that is no call, such as ``distance(s1) > 3``, is its own base.
+    """
+    head = _BASE.match(name)
+    if head is None:
+        return name, ()
+    arguments: list[str] = []
+    depth, start = 1, head.end()
+    for index in range(start, len(name)):
+        depth += {"(": 1, ")": -1}.get(name[index], 0)
+        if depth == 0 and index < len(name) - 1:
+            return name, ()
+        if depth == 0 or (depth == 1 and name.startswith(", ", index)):
+            arguments.append(name[start:index])
+            start = index + 2
+    return (name[: head.end() - 1], tuple(arguments)) if depth == 0 and all(arguments) else (name, ())
