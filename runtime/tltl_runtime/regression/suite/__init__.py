@@ -1,1 +1,1 @@
-"""Suites: the file format, what cases depend on, and the cache of results."""
+"""Suites: the file format, the dependencies of cases, and the cache of results."""

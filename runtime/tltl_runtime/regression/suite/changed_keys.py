@@ -1,4 +1,4 @@
-"""Which keys of a TOML file have changed, in short words: ```walk_speed` 1.6 → 2.6``."""
+"""Describe which keys of a TOML file have changed, for example ```walk_speed` 1.6 → 2.6``."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.toml_text import parse
 
 _MOST: Final = 3
-"""Keys of a file that are named; of more it is said how many there are."""
+"""The most keys of a file that are named.  Further keys are counted."""
 
 _SHORT: Final = 24
-"""Characters of a value that is shown; of a longer one it is only said that it has changed."""
+"""The most characters of a value that is shown.  For a longer value, only the key is shown."""
 
 
 def changed_keys(before: str, now: str) -> str:
-    """The keys whose values differ between two TOML texts, with these where they are short.
+    """Describe the keys whose values differ between two TOML texts, with short values.
 
-    Tables in lists go by their `name` where all have one of their own, else by their position, counted from 1.  Empty
-    where a text is no TOML.
+    Tables in lists are matched by `name` if all names are present and distinct, else by position,
+    counted from 1.  The description is empty if a text is not TOML.
     """
     try:
         old, new = (parse(SourceFile("", text), "TLT0801", "") for text in (before, now))
@@ -32,45 +32,45 @@ def changed_keys(before: str, now: str) -> str:
 
 
 def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    """What differs between two tables at a path, in the order of the new one."""
+    """Describe the differences between two tables at a path, in the order of the new table."""
     for key in dict.fromkeys((*new, *old)):
-        here = (*path, key)
-        name, before, now = f"`{'.'.join(here)}`", old.get(key), new.get(key)
+        key_path = (*path, key)
+        name, before, now = f"`{'.'.join(key_path)}`", old.get(key), new.get(key)
         if key not in old:
             yield f"{name} new{_shown(': ', now)}"
         elif key not in new:
             yield f"{name} gone"
         elif isinstance(before, dict) and isinstance(now, dict):
-            yield from _changes(here, before, now)
+            yield from _changes(key_path, before, now)
         elif _are_tables(before) and _are_tables(now):
             named = _have_names(before) and _have_names(now)
             old_tables, new_tables = map(_names if named else _positions, (before, now))
             if named and before != now and old_tables == new_tables:
                 yield f"the order of {name}"
-            yield from _changes(here, old_tables, new_tables)
+            yield from _changes(key_path, old_tables, new_tables)
         elif (type(before), before) != (type(now), now):
             values = _shown(" ", before), _shown(" → ", now)
             yield name + "".join(values) if all(values) else name
 
 
 def _are_tables(value: Any) -> TypeGuard[list[dict[str, Any]]]:
-    return isinstance(value, list) and bool(value) and all(isinstance(each, dict) for each in value)
+    return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
 def _have_names(tables: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether each has a name of its own."""
-    return len({each["name"] for each in tables if isinstance(each.get("name"), str)}) == len(tables)
+    """Whether all tables have distinct names."""
+    return len({table["name"] for table in tables if isinstance(table.get("name"), str)}) == len(tables)
 
 
 def _names(tables: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
-    return {each["name"]: each for each in tables}
+    return {table["name"]: table for table in tables}
 
 
 def _positions(tables: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
-    return {str(row): each for row, each in enumerate(tables, 1)}
+    return {str(row): table for row, table in enumerate(tables, 1)}
 
 
 def _shown(before: str, value: Any) -> str:
-    """A value behind what comes before it; empty where it is long."""
+    """The value as JSON after the prefix ``before``; empty if the value is too long."""
     text = json.dumps(value, ensure_ascii=False, default=str)
     return before + text if len(text) <= _SHORT else ""

@@ -1,7 +1,7 @@
-"""What a case depends on: from the files of its level, spec, policy and suite to the cases that a change concerns.
+"""The files that a case depends on, and the selection of the cases that a change affects.
 
-Nothing has to load: of a file with mistakes counts what can be read of it.  A case too many costs minutes and one too
-few hides a finding, so that all counts that may matter.
+The files need not load: from a file with errors, everything readable counts.  A superfluous case
+costs minutes, but a missing one hides a finding.  When in doubt, a file counts as a dependency.
 """
 
 from __future__ import annotations
@@ -32,15 +32,16 @@ from tltlc.resolve.imports import standard_library
 
 _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
 _ESCAPE: Final = re.compile(rb"\\([0-7]{3}|.)", re.DOTALL)
-_LETTERS: Final = {bytes([key]): bytes([meant]) for key, meant in zip(b"abtnvfr", range(7, 14), strict=True)}
+_LETTERS: Final = {bytes([key]): bytes([code]) for key, code in zip(b"abtnvfr", range(7, 14), strict=True)}
 _SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 
 
 @record
 class Selection:
-    """The cases that depend on what is said to have changed, those that do not, and names on which no case depends.
+    """The result of selecting cases by changed files.
 
-    ``slips`` are those of ``unknown`` that are no file but like one, each with the name that may be meant.
+    ``cases`` depend on the changed files, ``left_out`` do not.  No case depends on the names in
+    ``unknown``.  ``slips`` are unknown names that resemble a dependency, each with the suggested name.
     """
 
     cases: tuple[Case, ...]
@@ -50,44 +51,49 @@ class Selection:
 
 
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
-    r"""The cases that depend on something of ``changed``.
+    r"""Select the cases that depend on a file in ``changed``.
 
-    A name is a file's path or its end (``assets/guard.toml``, ``guard.toml``), either without the ending, too
-    (``guard``), or the path of a folder; or one of these as git quotes it (``"assets/w\303\244chter.toml"``).
+    A name is the path of a file, the last parts of the path (``assets/guard.toml``, ``guard.toml``),
+    either of them without the extension (``guard``), or the path of a folder.  Names quoted by git are
+    accepted, too (``"assets/w\303\244chter.toml"``).
     """
-    of = {case.name: dependencies(suite, case) for case in suite.cases}
-    concerned = {case.name for case in suite.cases if any(_is_meant(name, of[case.name]) for name in changed)}
-    known = {path for paths in of.values() for path in paths}
-    unknown = tuple(name for name in dict.fromkeys(changed) if not _is_meant(name, known))
-    # What is named already is no other word for a file that was renamed.
-    others = {path for path in known if is_file(path) and not any(_is_meant(name, [path]) for name in changed)}
-    meant = ((name, _like(name, others)) for name in unknown)
+    dependencies_of = {case.name: dependencies(suite, case) for case in suite.cases}
+    concerned = {
+        case.name for case in suite.cases if any(_matches_any(name, dependencies_of[case.name]) for name in changed)
+    }
+    known = {path for paths in dependencies_of.values() for path in paths}
+    unknown = tuple(name for name in dict.fromkeys(changed) if not _matches_any(name, known))
+    # Do not suggest files that `changed` names already: the unknown name may be the old name of a renamed file.
+    candidates = {path for path in known if is_file(path) and not any(_matches_any(name, [path]) for name in changed)}
+    suggestions = ((name, _similar_name(name, candidates)) for name in unknown)
     return Selection(
         tuple(case for case in suite.cases if case.name in concerned),
         tuple(case for case in suite.cases if case.name not in concerned),
         unknown,
-        tuple((name, like) for name, like in meant if like),
+        tuple((name, suggestion) for name, suggestion in suggestions if suggestion),
     )
 
 
 def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
-    """The files that a case depends on, as absolute paths: as they are named, and where links lead.
+    """The files that a case depends on, as absolute paths, both as named and with links resolved.
 
-    Those that would take the place of another one count, too, so that it matters when they are made or deleted.
+    Paths that do not exist but would take precedence over a file count, too: creating or deleting
+    such a file affects the case.
     """
-    found = [suite.path, suite.baseline, policy_file(case.policy)]
-    found += _level_files(level_path(case.level), case.variant)
+    files = [suite.path, suite.baseline, policy_file(case.policy)]
+    files += _level_files(level_path(case.level), case.variant)
     if case.spec is not None:
-        found += _spec_files(Path(split(case.spec)[0]))
-    return tuple(dict.fromkeys(each for path in found for each in (Path(normpath(path.absolute())), path.resolve())))
+        files += _spec_files(Path(split(case.spec)[0]))
+    return tuple(dict.fromkeys(form for path in files for form in (Path(normpath(path.absolute())), path.resolve())))
 
 
 def files_of(suite: Suite) -> frozenset[Path]:
-    """The files that a suite's cases depend on, all of which it reads but for the baseline that is recorded."""
+    """The files that the cases of a suite depend on, including the baseline."""
     return frozenset(path for case in suite.cases for path in dependencies(suite, case))
 
 
-def _is_meant(name: str, paths: Iterable[Path]) -> bool:
+def _matches_any(name: str, paths: Iterable[Path]) -> bool:
+    """Whether a name as in :func:`select` stands for one of the paths."""
     given = Path(_unquoted(name))
     place, parts = given.resolve(), given.parts
     return any(
@@ -99,8 +105,8 @@ def _is_meant(name: str, paths: Iterable[Path]) -> bool:
     )
 
 
-def _like(name: str, paths: Iterable[Path]) -> str | None:
-    """What a word that a person wrote may stand for; one with a folder is what git calls a file, deleted perhaps."""
+def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
+    """Suggest a correction of a name; None for a name with a folder, which may be a deleted file listed by git."""
     given = Path(_unquoted(name))
     if len(given.parts) > 1 or exists(given):
         return None
@@ -110,17 +116,19 @@ def _like(name: str, paths: Iterable[Path]) -> str | None:
 
 
 def _unquoted(name: str) -> str:
-    """The name that git has quoted, between double quotes with the bytes of other letters in octal; else as it is."""
+    """Undo git's quoting: double quotes, with bytes of non-ASCII characters in octal.  Other names are unchanged."""
     if len(name) < 2 or not (name.startswith('"') and name.endswith('"')):
         return name
     parts = _ESCAPE.split(os.fsencode(name[1:-1]))
-    # Every second one is what followed a backslash.
-    parts[1::2] = [bytes([int(each, 8) % 256]) if each.isdigit() else _LETTERS.get(each, each) for each in parts[1::2]]
+    # Every second part is what followed a backslash.
+    parts[1::2] = [
+        bytes([int(escape, 8) % 256]) if escape.isdigit() else _LETTERS.get(escape, escape) for escape in parts[1::2]
+    ]
     return os.fsdecode(b"".join(parts))
 
 
 def _level_files(level: Path, variant: str) -> Iterator[Path]:
-    """The level, the assets and overlays of the variant, and the spec that it is made for."""
+    """The files of the level, the assets and overlays of the variant, and the level's spec."""
     yield level
     base, added = overlays_of(variant)
     text = _text(level)
@@ -129,11 +137,11 @@ def _level_files(level: Path, variant: str) -> Iterator[Path]:
         words = [first or second for first, second in _QUOTED.findall(text.text)] if text else []
         assets, overlays, specs = words, words, words
     else:
-        things = [each.get("asset") for each in _tables(table.get("use"))]
-        things += [each.get("kind") for each in _tables(table.get("enemy"))]
+        asset_names = [use.get("asset") for use in _tables(table.get("use"))]
+        asset_names += [enemy.get("kind") for enemy in _tables(table.get("enemy"))]
         named = table.get("variants")
         listed = named.get(base) if isinstance(named, dict) else None
-        assets, specs = _texts(things), _texts([table.get("spec")])
+        assets, specs = _texts(asset_names), _texts([table.get("spec")])
         overlays = _texts(listed if isinstance(listed, list) else [])
     places = (level.parent, LEVELS)
     yield from _shared(assets, "assets", places, sure=table is not None)
@@ -146,7 +154,7 @@ def _level_files(level: Path, variant: str) -> Iterator[Path]:
 
 
 def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
-    """The files of assets or overlays; of names that may be something else, the files that there are."""
+    """The files of assets or overlays.  Unless ``sure``, a name may be something else: only existing files count."""
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]
         if sure or any(map(is_file, paths)):
@@ -154,7 +162,7 @@ def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: 
 
 
 def _spec_files(spec: Path) -> Iterator[Path]:
-    """A spec's file, what it imports, directly or not, and nothing twice."""
+    """The file of a spec and all files that it imports, directly or indirectly, each once."""
     waiting, seen = [spec], {spec.resolve()}
     while waiting:
         path = waiting.pop()
@@ -170,7 +178,7 @@ def _imports(spec: Path) -> Iterator[Path]:
     if text is None or spec.suffix != ".tltl":
         return
     folder = spec.absolute().parent
-    # Where imports are looked for.
+    # The project file sets where imports are searched.
     yield from _first(place / FILE_NAME for place in (folder, *folder.parents))
     try:
         libraries = project_for(str(spec)).libraries
@@ -187,7 +195,7 @@ def _imports(spec: Path) -> Iterator[Path]:
 
 
 def _first(paths: Iterable[Path]) -> Iterator[Path]:
-    """The paths up to the first one that is a file: those before it would take its place."""
+    """The paths up to the first existing file.  The paths before it would take precedence."""
     for path in paths:
         yield path
         if is_file(path):
@@ -209,7 +217,7 @@ def _table(text: SourceFile | None) -> dict[str, Any] | None:
 
 
 def _tables(value: Any) -> list[dict[str, Any]]:
-    return [each for each in value if isinstance(each, dict)] if isinstance(value, list) else []
+    return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
 
 
 def _texts(values: Iterable[Any]) -> list[str]:

@@ -1,4 +1,4 @@
-"""The texts of the files that a level is made of: read as they are, and made a level of again."""
+"""The texts of the files of a level: read them, and load a level from them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tltlc.io.files import is_file, read_source
 from tltlc.io.temporary import temporary_folder
 
 Texts = tuple[tuple[str, str], ...]
-"""Names of files, as the files of a :class:`~tltl_runtime.stealth.level.Level` have them, and what is in them."""
+"""Names of files, as in ``files`` of a :class:`~tltl_runtime.stealth.level.Level`, each with a text or a hash."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = Archive("the baseline", damaged="record it anew", elsewhere="record it anew on this system")
@@ -26,36 +26,36 @@ _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
 def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
-    """The texts of a level's ``files``, which are given with their SHA-256, in their order.
+    """Read the texts of a level's ``files``, which are names with SHA-256 hashes, in order.
 
-    A file that was edited meanwhile is left out.
+    A file that was edited since, and so has another hash, is left out.
     """
     path = level_path(name_or_path)
-    found = []
+    texts = []
     for name, sha256 in files:
-        texts = (_text(place) for place in _places(path, variant, name))
-        text = next((each for each in texts if each is not None and text_sha256(each) == sha256), None)
+        candidates = (_text(place) for place in _places(path, variant, name))
+        text = next((text for text in candidates if text is not None and text_sha256(text) == sha256), None)
         if text is not None:
-            found.append((name, text))
-    return tuple(found)
+            texts.append((name, text))
+    return tuple(texts)
 
 
 def text_now(name_or_path: str, variant: str, name: str) -> str | None:
-    """The text of a file that a level would be made of now; None where it cannot be read."""
+    """The current text of a file of a level; None if it cannot be read."""
     path = level_path(name_or_path)
     return _text(next(filter(is_file, _places(path, variant, name)), path))
 
 
 def designed(reference: Reference) -> Level | None:
-    """The level as it was when a baseline was recorded; None where its texts do not make one any more."""
+    """Load the level from the texts of a baseline, as it was recorded; None if they do not load."""
     played, texts = reference.played, dict(reference.texts)
-    # Two overlays of one name cannot lie in one folder, and names that lead out of it are none of a level.
+    # Two overlays of the same name do not fit into one folder.  Reject names that lead out of the folder.
     if len(texts) != len(played.files) or not texts or not all(map(_NAME.fullmatch, texts)):
         return None
     name = played.files[0][0]
     if name not in texts:
         return None
-    # The spec of the level lies elsewhere, and nothing here shows it.
+    # Remove the level's spec: its file is not among the texts, and a map does not need it.
     texts[name] = _SPEC.sub("", texts[name], count=1)
     files = [(file, text.encode("utf-8", "surrogatepass")) for file, text in texts.items()]
     with temporary_folder() as folder:
@@ -67,13 +67,13 @@ def designed(reference: Reference) -> Level | None:
 
 
 def _places(level: Path, variant: str, name: str) -> Iterator[Path]:
-    """Where a file of a level may lie: the level's own, one beside it or in the package, or an overlay's."""
+    """The possible paths of a level's file: the level itself, beside the level, in the package, or an added overlay."""
     if name == level.name:
         yield level
     yield from (level.parent / name, LEVELS / name)
-    for each in overlays_of(variant)[1]:
-        if each.endswith(".toml") and f"overlays/{Path(each).name}" == name:
-            yield Path(each)
+    for overlay in overlays_of(variant)[1]:
+        if overlay.endswith(".toml") and f"overlays/{Path(overlay).name}" == name:
+            yield Path(overlay)
 
 
 def _text(path: Path) -> str | None:

@@ -1,4 +1,4 @@
-"""What a case names: whether policies and specs are there, wherever they are played, and what else may be meant."""
+"""Check the policies, specs and levels that a case names, and suggest corrections."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
 
 
 def policy_file(path: Path) -> Path:
-    """The policy of a case: a file, or that in the folder of a training."""
+    """The file of a case's policy: ``path`` itself, or the policy in the folder of a training."""
     if not is_dir(path):
         return path
     from tltl_runtime.training.run.run import POLICY
@@ -30,7 +30,10 @@ def policy_file(path: Path) -> Path:
 
 
 def policy_faults(path: Path, label: Label) -> list[Diagnostic]:
-    """Why there is no policy to play, at the ``label``: TLT0872, none is in the folder; and as of ``read_policy``."""
+    """Diagnostics, at the ``label``, of a policy that cannot be read.
+
+    TLT0872 if the folder contains no policy; otherwise the diagnostics of ``read_policy``.
+    """
     file = policy_file(path)
     if file != path and not exists(file):
         return _at(label, [_no_policy(path)])
@@ -42,21 +45,23 @@ def policy_faults(path: Path, label: Label) -> list[Diagnostic]:
 
 
 def spec_faults(spec: str, label: Label) -> list[Diagnostic]:
-    """At the ``label`` TLT0720, the file has no spec of that name, or TLT0721, none is named where it has not just one.
+    """Diagnostics, at the ``label``, of a spec that is not found.
 
-    What else is wrong with the file may come of a change, and is told where it is played.
+    TLT0720 if the file has no spec of that name; TLT0721 if no spec is named and the file does not
+    have exactly one.  A change of the file may cause other errors, which are reported when the case is
+    played.
     """
     try:
         read_spec(spec)
     except TltlError as error:
-        return _at(label, [each for each in error.diagnostics if each.code in _NO_SUCH_SPEC])
+        return _at(label, [diagnostic for diagnostic in error.diagnostics if diagnostic.code in _NO_SUCH_SPEC])
     return []
 
 
 def level_like(name: str, folder: Path) -> str | None:
-    """A way out for a name in a suite of this ``folder`` that no level has: a file, or a level of the package."""
+    """Suggest a similar level for an unknown name in a suite in ``folder``: a file or a level of the package."""
     beside: list[str] = []
-    # The system may allow no such name.
+    # The name may not be a valid path on this system.
     with suppress(OSError, ValueError):
         files = sorted(filter(_is_level, (folder / name).parent.glob("*.toml")))
         beside = [(Path(name).parent / path.name).as_posix() for path in files]
@@ -65,7 +70,7 @@ def level_like(name: str, folder: Path) -> str | None:
 
 
 def _is_level(path: Path) -> bool:
-    """Whether a file seems to be a level; pipes and devices are not read."""
+    """Whether a file looks like a level.  Pipes and devices are not read."""
     if not may_be_file(path):
         return False
     try:
@@ -75,15 +80,18 @@ def _is_level(path: Path) -> bool:
 
 
 def policy_for_its_spec(level: str) -> str | None:
-    """The level of the package whose policy may play this one, a copy perhaps: both are made for specs of one name."""
+    """The level of the package whose policy may play this level: both have specs of the same name.
+
+    This level may be a copy of it.
+    """
     with suppress(TltlError):
         made_for = {Path(load_level(name).spec).name: name for name in shipped_policies()}
         return made_for.get(Path(load_level(level, variants(level)[0]).spec).name)
     return None
 
 
-def _at(label: Label, found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    return [replace(each, labels=(label, *each.labels)) for each in found]
+def _at(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    return [replace(diagnostic, labels=(label, *diagnostic.labels)) for diagnostic in diagnostics]
 
 
 def _no_policy(folder: Path) -> Diagnostic:

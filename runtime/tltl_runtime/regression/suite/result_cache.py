@@ -1,4 +1,4 @@
-"""What a run keeps for the next one: some content, beside the hash of all that it depends on."""
+"""The cache of results between runs: some content, with a hash of everything that it depends on."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ T = TypeVar("T")
 
 
 def inputs_hash(parts: Sequence[Any]) -> str:
-    """SHA-256, in hexadecimal, of JSON data and of the code that makes something of it."""
+    """The SHA-256, in hexadecimal, of JSON data and of the source code."""
     return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
 
 
 def kept_text(inputs: str, content: object) -> str:
-    """The text of a file that keeps some content, which depends on what has the hash ``inputs``."""
+    """The text of a cache file with some content, which depends on inputs with the hash ``inputs``."""
     return json.dumps({"identity": inputs, "content": to_json(content)}, ensure_ascii=False) + "\n"
 
 
 def read_kept(kind: type[T], path: Path, inputs: str) -> T | None:
-    """The content of such a file, as :func:`~tltl_runtime.support.record_json.from_json` reads it; None where it
-    depends on
-    something else, cannot be read or is not there, and so has to be made again.
+    """Read the content of a cache file with :func:`~tltl_runtime.support.record_json.from_json`.
+
+    None if the file does not exist, cannot be read, or has another hash: compute the content again.
     """
     if not may_be_file(path):
         return None

@@ -1,4 +1,4 @@
-"""Names of cases as they stand in addresses and as folders."""
+"""Short names of cases for addresses and folders."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from typing import Final
 _OTHER: Final = re.compile(r"[^A-Za-z0-9_.+]+")
 _LONGEST: Final = 80
 _TAKEN: Final = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?\Z", re.IGNORECASE)
-"""What Windows calls devices by."""
+"""Device names that Windows reserves."""
 
 
 def slugs(names: Sequence[str]) -> tuple[str, ...]:
-    """A short name for each, of plain letters: ``navigation:v1`` becomes ``navigation-v1``.
+    """Return a short ASCII name for each name: ``navigation:v1`` becomes ``navigation-v1``.
 
-    No two are equal, not even where lower and upper case are; each can be the name of a folder on any system.
+    The results are distinct, even without regard to case.  Each is a valid folder name on any system.
     """
-    found: list[str] = []
+    unique: list[str] = []
     taken: set[str] = set()
     for name in names:
         plain = _OTHER.sub("-", name)[:_LONGEST].strip("-.") or "case"
@@ -28,10 +28,10 @@ def slugs(names: Sequence[str]) -> tuple[str, ...]:
             number += 1
             slug = f"{plain}-{number}"
         taken.add(slug.lower())
-        found.append(slug)
-    return tuple(found)
+        unique.append(slug)
+    return tuple(unique)
 
 
 def episode_link(slug: str, index: int, step: int = 0) -> str:
-    """The address, in the page, of a step of a recorded episode."""
+    """The address, within the page, of a step of a recorded episode."""
     return f"#{slug}/{index}/{step}"

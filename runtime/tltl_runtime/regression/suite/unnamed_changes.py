@@ -1,4 +1,4 @@
-"""What has changed since a baseline without being named: files of cases that are left out."""
+"""Find files that have changed since the baseline, although the user did not name them as changed."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from tltl_runtime.stealth.levels.place import shown_variant
 
 
 def unnamed(suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]) -> dict[str, tuple[str, ...]]:
-    """The files of cases that are ``left_out`` whose SHA-256 is not the baseline's, and the names of these cases.
+    """The files of ``left_out`` cases whose SHA-256 differs from the baseline, each with the cases' names.
 
-    Files count of which the levels were made when the baseline was recorded, by their names there.
+    Only files of the levels that the baseline recorded count, by their names in the baseline.
     """
-    found: dict[str, tuple[str, ...]] = {}
+    cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:
         for name in _changed(suite, case, references):
-            found[name] = (*found.get(name, ()), case.name)
-    return found
+            cases_of[name] = (*cases_of.get(name, ()), case.name)
+    return cases_of
 
 
 def _changed(suite: Suite, case: Case, references: Sequence[Reference]) -> Iterator[str]:
     place = (level_path(case.level).stem, shown_variant(case.reference), case.place)
-    files = next((each.played.files for each in references if _place(each) == place), ())
-    # What the variant that it is compared with has alone is nothing that the case depends on.
+    files = next((reference.played.files for reference in references if _place(reference) == place), ())
+    # Files that only the reference variant uses are no dependencies of the case.
     paths = dependencies(suite, case)
     for name, sha256 in files:
         parts = Path(name).parts

@@ -1,1 +1,1 @@
-"""Baselines, play, and the statistics of verdicts."""
+"""Baselines, the play of cases, and the statistics of verdicts."""

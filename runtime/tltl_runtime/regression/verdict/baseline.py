@@ -1,4 +1,4 @@
-"""The baseline of a suite: what its policies did on the levels as they were designed, in a file beside the suite."""
+"""The baseline of a suite: what its policies did on the levels as designed, in a JSON file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ VERSION: Final = 3
 MAX_BYTES: Final = REPORT.size
 
 _ROUNDING: Final = 1e-6
-"""By which a sum of rewards may exceed what it can be."""
+"""The rounding error by which a figure may leave its range."""
 
 _REFUSALS: Final = Refusals(
     "a baseline", "TLT0900", "TLT0901", "TLT0902", again="record it again with `tltlc baseline`"
@@ -38,11 +38,11 @@ _REFUSALS: Final = Refusals(
 
 @record
 class Identity:
-    """What was played: a policy on a level in a variant, judged by a spec, with the seed of the episodes.
+    """Identifies what was played: policy, level, variant, spec and seed of the episodes.
 
-    ``level`` and ``spec`` are names; the hashes are those of :mod:`tltl_runtime.policies.identity`, and ``policy`` is
-    the SHA-256 of its file.  ``files`` are those that the level was made of, with their SHA-256; ``place`` is the
-    case's.
+    ``level`` and ``spec`` are names.  :mod:`tltl_runtime.policies.identity` computes ``level_hash``
+    and ``spec_hash``.  ``policy`` is the SHA-256 of the policy's file.  ``files`` are the files that
+    the level was loaded from, each with its SHA-256.  ``place`` is the ``place`` of the case.
     """
 
     level: str
@@ -59,8 +59,11 @@ class Identity:
 
 @record
 class Reference:
-    """What was played, the accounts of its episodes, from number 0 on, and the texts of the files that its level was
-    made of, by their names in ``played.files``.  ``sources`` is the hash of the code that played, empty if not known.
+    """The recorded episodes that cases are compared with.
+
+    ``accounts`` are the accounts of all episodes, in order from episode 0.  ``texts`` are the texts
+    of the level's files, by their names in ``played.files``.  ``sources`` is the hash of the code
+    that played, or empty if unknown.
     """
 
     played: Identity
@@ -71,22 +74,24 @@ class Reference:
 
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     """Write the baseline of a suite; raises TltlError, TLT0005."""
-    written = tuple(_Written(each.played, each.accounts, each.sources) for each in references)
-    document = _json({"format": FORMAT, "version": VERSION, "references": to_json(written)})
-    # A line for each episode and for each line of a text, so that what a change of it changes can be read.
+    references_without_texts = tuple(
+        _Written(reference.played, reference.accounts, reference.sources) for reference in references
+    )
+    document = _json({"format": FORMAT, "version": VERSION, "references": to_json(references_without_texts)})
+    # Each episode and each line of a text gets its own line, so that diffs of the file are readable.
     episodes = document.removesuffix("}").replace('{"index":', '\n{"index":')
-    texts = {text_sha256(text): text.split("\n") for each in references for _, text in each.texts}
-    lines = ",\n".join(_lines(sha256, each) for sha256, each in texts.items())
+    texts = {text_sha256(text): text.split("\n") for reference in references for _, text in reference.texts}
+    lines = ",\n".join(_lines(sha256, text_lines) for sha256, text_lines in texts.items())
     write_file(path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output", over_inputs=True)
 
 
 @bounded()
 def read_baseline(path: Path) -> tuple[Reference, ...]:
-    """The baseline in a file.
+    """Read a baseline from a file.
 
     Raises:
-        TltlError: TLT0001 it cannot be read; TLT0900 it is no baseline; TLT0901 of another version; TLT0902 something
-            in it is not as it must be.
+        TltlError: TLT0001, the file cannot be read; TLT0900, it is not a baseline; TLT0901, it has
+            another version; TLT0902, its content is invalid.
     """
     name = str(path)
     try:
@@ -97,34 +102,35 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         raise _REFUSALS.unreadable(name, "it is something else")
     _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
-        read = from_json(_Document, document, "baseline")
+        parsed = from_json(_Document, document, "baseline")
     except (RecordJsonError, RecursionError) as error:
         raise _REFUSALS.broken(name, str(error)) from None
-    texts = {sha256: "\n".join(lines) for sha256, lines in read.texts.items()}
+    texts = {sha256: "\n".join(lines) for sha256, lines in parsed.texts.items()}
     for sha256, text in texts.items():
         if text_sha256(text) != sha256:
             raise _REFUSALS.broken(name, f"baseline.texts: what is called `{sha256:.12}` has another SHA-256")
-    for row, each in enumerate(read.references):
+    for row, reference in enumerate(parsed.references):
         where = f"baseline.references[{row}].accounts"
-        # Episodes are compared by their place, and a mean of none is no figure.
-        if not each.accounts or any(account.index != place for place, account in enumerate(each.accounts)):
+        # Episodes are compared by index, and the mean of no episodes is undefined.
+        if not reference.accounts or any(account.index != place for place, account in enumerate(reference.accounts)):
             raise _REFUSALS.broken(name, f"{where}: the episodes must be there from number 0 on, without a gap")
-        for account in each.accounts:
+        for account in reference.accounts:
             for flaw in _flaws(account):
                 raise _REFUSALS.broken(name, f"{where}[{account.index}]: {flaw}")
     return tuple(
-        Reference(each.played, each.accounts, _texts(each.played, texts), each.sources) for each in read.references
+        Reference(reference.played, reference.accounts, _texts(reference.played, texts), reference.sources)
+        for reference in parsed.references
     )
 
 
 def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """The texts of what was played, those that there are."""
+    """The names and texts of the files of ``played``, as far as ``texts`` contains them."""
     return tuple((name, texts[sha256]) for name, sha256 in played.files if sha256 in texts)
 
 
 def _lines(sha256: str, lines: Sequence[str]) -> str:
-    within = ",\n".join(map(_json, lines))
-    return f'"{sha256}":[\n{within}]'
+    items = ",\n".join(map(_json, lines))
+    return f'"{sha256}":[\n{items}]'
 
 
 def _json(value: object) -> str:
@@ -132,12 +138,12 @@ def _json(value: object) -> str:
 
 
 def text_sha256(text: str) -> str:
-    """The SHA-256 of a text, in hexadecimal, as the files of a level have it."""
+    """The SHA-256 of a text, in hexadecimal, as in ``Level.files``."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _flaws(account: Account) -> Iterator[str]:
-    """What no episode can have come to."""
+    """Yield a message for each impossible value in an account."""
     for key in ("arrivals", "way"):
         if not getattr(account, key):
             yield f"`{key}` is empty, and begins where the player does"
@@ -152,14 +158,18 @@ def _flaws(account: Account) -> Iterator[str]:
 
 
 def _states(account: Account) -> Iterator[int]:
-    """The states of the automaton that an account speaks of."""
+    """The states of the automaton that an account mentions."""
     yield account.unmet
     yield from (arrival.state for arrival in account.arrivals)
     yield from (state for *_, state, _ in account.way)
 
 
 def baseline_of(suite: Suite) -> tuple[Reference, ...]:
-    """The baseline of a suite; TLT0903 where there is none, and errors as of :func:`read_baseline`."""
+    """Read the baseline of a suite.
+
+    Raises:
+        TltlError: TLT0903, the suite has no baseline; see also :func:`read_baseline`.
+    """
     if _is_missing(suite.baseline):
         title = f"the suite `{shown(suite.path)}` has no baseline: there is no `{shown(suite.baseline)}`"
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
@@ -167,7 +177,7 @@ def baseline_of(suite: Suite) -> tuple[Reference, ...]:
 
 
 def _is_missing(path: Path) -> bool:
-    """Whether there is no such file; of one that cannot be looked at, reading tells why."""
+    """Whether there is no such file.  False for an inaccessible one: reading it reports the reason."""
     try:
         path.stat()
     except (OSError, ValueError) as error:
@@ -176,28 +186,30 @@ def _is_missing(path: Path) -> bool:
 
 
 def reference_of(references: tuple[Reference, ...], wanted: Identity, suite: Suite) -> Reference:
-    """What the baseline has of the same level, variant, spec, policy and seed; the level may be another one by now.
+    """Return the reference with the same level, variant, spec, policy and seed as ``wanted``.
+
+    The level may have been edited since: its hash is not compared.
 
     Raises:
-        TltlError: TLT0903, there is none.
+        TltlError: TLT0903, the baseline has no such reference.
     """
-    named = [each for each in references if _same(each.played, wanted, ("level", "variant"))]
-    there = [each for each in named if each.played.place == wanted.place]
-    known = [each for each in there if _same(each.played, wanted, ("policy", "spec_hash", "seed"))]
-    if known:
-        return known[0]
-    # Where there is another level of that name its place tells which one is meant.
-    level = wanted.place if named and not there and wanted.place else wanted.level
+    by_name = [reference for reference in references if _same(reference.played, wanted, ("level", "variant"))]
+    by_place = [reference for reference in by_name if reference.played.place == wanted.place]
+    matches = [reference for reference in by_place if _same(reference.played, wanted, ("policy", "spec_hash", "seed"))]
+    if matches:
+        return matches[0]
+    # If only another level has this name, name the level by its place.
+    level = wanted.place if by_name and not by_place and wanted.place else wanted.level
     title = f"the baseline has no figures of `{level}:{wanted.variant}`"
-    if there:
+    if by_place:
         names = {"policy": "policy", "spec_hash": "spec", "seed": "seed"}
-        other = [what for name, what in names.items() if not _same(there[0].played, wanted, (name,))]
-        title += f" with this {other[0]}"
+        differing = [word for name, word in names.items() if not _same(by_place[0].played, wanted, (name,))]
+        title += f" with this {differing[0]}"
     raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
 
 
 def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
-    """Raise TltlError, TLT0902, where an episode was in a state that its spec's automaton does not have."""
+    """Raise TltlError, TLT0902, if an episode was in a state that the automaton does not have."""
     count, played = len(fspa.states), reference.played
     for account in reference.accounts:
         if (state := max(_states(account))) >= count:
@@ -207,12 +219,15 @@ def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
 
 
 def written_to(suite: Path) -> Path:
-    """Where `tltlc baseline` writes, unless it is told: of the suite that comes with the package not into this."""
+    """The default output path of `tltlc baseline`.
+
+    For the suite that comes with the package, it lies in the working directory, not in the package.
+    """
     return Path("shipped.baseline.json") if suite == SHIPPED else baseline_path(suite)
 
 
 def baseline_command(suite: Suite) -> str:
-    """What records the baseline of a suite, to be pasted."""
+    """The shell command that records the baseline of a suite."""
     words = ["tltlc", "baseline", *([] if suite.path == SHIPPED else [shown(suite.path)])]
     if suite.baseline != written_to(suite.path):
         words += ["--output", shown(suite.baseline)]
@@ -221,7 +236,10 @@ def baseline_command(suite: Suite) -> str:
 
 @record
 class _Written:
-    """A reference without its texts, which stand beside all of them: levels and variants share files."""
+    """A reference without its texts.
+
+    The file stores all texts in one table, since levels and variants share files.
+    """
 
     played: Identity
     accounts: tuple[Account, ...]
@@ -234,7 +252,7 @@ class _Document:
     version: int
     references: tuple[_Written, ...]
     texts: Mapping[str, tuple[str, ...]] = EMPTY
-    """Lines by the SHA-256 of the whole."""
+    """The lines of each text, by the SHA-256 of the text."""
 
 
 def _same(one: Identity, other: Identity, names: tuple[str, ...]) -> bool:

@@ -1,4 +1,4 @@
-"""The baseline of a suite is recorded: its policies play all episodes, on the levels as they are now."""
+"""Record the baseline of a suite: its policies play all episodes on the levels as they are now."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _ADVICE: Final = "name another place with --output"
 
 @record
 class Compared:
-    """What was recorded, the cases that are compared with it, and why none of them passes whose spec is another now."""
+    """A recorded reference and the cases that are compared with it.
+
+    ``outdated`` says why none of the cases passes if the level's spec has changed; otherwise None.
+    """
 
     reference: Reference
     cases: tuple[Case, ...]
@@ -36,14 +39,15 @@ class Compared:
 
 
 def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference, ...] = ()) -> Generator[Compared]:
-    """Play all episodes of each level, variant, spec and policy that the suite's cases are compared with.
+    """Play all episodes of each combination of level, variant, spec and policy in the suite.
 
-    Of cases that are compared with the same, that counts which asks for most episodes.  What is ``kept`` of an earlier
-    recording is not played again where nothing has changed since.
+    Cases that are compared with the same reference share its episodes.  The case with the most
+    episodes sets their number.  A reference in ``kept``, from an earlier recording, is not played
+    again if nothing has changed since.
 
     Raises:
-        TltlError: something does not fit, before anything is played; TLT0905, a level was edited since; what playing
-            raises.
+        TltlError: a case cannot be set up (raised before anything is played); TLT0905, a level was
+            edited meanwhile; errors from playing.
     """
     yield from _recorded(_groups(suite), pool, told, kept)
 
@@ -51,35 +55,37 @@ def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference,
 def write_recorded(
     suite: Suite, path: Path, pool: Pool, told: Told, older: tuple[Reference, ...] = (), *, fresh: bool = False
 ) -> Generator[Compared]:
-    """Record the baseline of a suite, as :func:`record_baseline` does, and write it to ``path`` when all is over.
+    """Record the baseline of a suite with :func:`record_baseline` and write it to ``path`` at the end.
 
-    Until then what is over is kept at :func:`kept_at`, so that a recording that was stopped goes on.  What an ``older``
-    baseline has is not played again where nothing has changed since, nor the code that plays, unless all is to be
-    ``fresh``, which goes on with what such a recording has left alone.
+    Until then, finished references are stored in the file :func:`kept_at`, so that a stopped
+    recording can continue.  References of an ``older`` baseline are not played again if neither they
+    nor the code that plays have changed.  With ``fresh``, only references from an earlier ``fresh``
+    recording are reused.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; what :func:`record_baseline` raises.
+        TltlError: TLT0005, a file cannot be written; errors of :func:`record_baseline`.
     """
-    groups, partial, found = _groups(suite), kept_at(path), list[Reference]()
+    groups, partial, recorded = _groups(suite), kept_at(path), list[Reference]()
     inputs = inputs_hash([fresh])
     kept = (partial and read_kept(tuple[Reference, ...], partial, inputs)) or ()
-    # The place may refuse: better to know before minutes of play.
+    # Check that the file can be written before minutes of play.
     _keep(partial, inputs, kept)
-    known = () if fresh else tuple(each for each in older if each.sources == sources_hash())
-    for each in _recorded(groups, pool, told, (*kept, *known)):
-        found.append(each.reference)
-        # What is older stays where it is.
-        new = tuple(reference for reference in found if reference not in known)
-        _keep(partial, inputs, (*new, *(other for other in kept if other not in new)))
-        yield each
-    write_baseline(path, tuple(found))
+    reusable = () if fresh else tuple(reference for reference in older if reference.sources == sources_hash())
+    for compared in _recorded(groups, pool, told, (*kept, *reusable)):
+        recorded.append(compared.reference)
+        # References of the older baseline stay in that file.
+        new = tuple(reference for reference in recorded if reference not in reusable)
+        _keep(partial, inputs, (*new, *(earlier for earlier in kept if earlier not in new)))
+        yield compared
+    write_baseline(path, tuple(recorded))
     if partial:
         remove_file(partial, _ADVICE)
 
 
 def kept_at(path: Path) -> Path | None:
-    """Where a recording keeps what is over: beside the file that ``path`` leads to, None where that is no file but a
-    device or a pipe.
+    """The path for the finished references of a recording: beside the file that ``path`` resolves to.
+
+    None if ``path`` is a device or a pipe.
     """
     if exists(path) and not is_file(path):
         return None
@@ -87,60 +93,66 @@ def kept_at(path: Path) -> Path | None:
 
 
 def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
-    """The verdict of a case whose episodes are those of its reference, one by one."""
+    """The verdict of a case if it played exactly the episodes of its reference."""
     accounts, error = reference.accounts, suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):
-        if found := judge(accounts[:played], accounts, case.episodes, case.thresholds, error):
-            return found.verdict
+        if judgement := judge(accounts[:played], accounts, case.episodes, case.thresholds, error):
+            return judgement.verdict
     raise AssertionError("the last episode settles every verdict")
 
 
 def enough_episodes(pass_rate: float, error: float) -> int:
-    """Episodes in which a spec has to be met, if it always is, for its pass rate to be certain at that error."""
+    """The least number of episodes, all passed, after which the pass rate is certain at that error."""
     return next(met for met in count(LEAST_EPISODES) if rate_interval(met, 0, error)[0] >= pass_rate)
 
 
 def _groups(suite: Suite) -> list[list[Ready]]:
-    """Cases that are compared with the same, made ready to play that."""
+    """The cases, set up to play their references, in groups that share a reference."""
     groups: list[list[Ready]] = []
     for case in suite.cases:
-        one = _ready(case, suite.seed)
-        same = [group for group in groups if group[0].played == one.played]
-        if same:
-            same[0].append(one)
+        prepared = _ready(case, suite.seed)
+        matches = [group for group in groups if group[0].played == prepared.played]
+        if matches:
+            matches[0].append(prepared)
         else:
-            groups.append([one])
+            groups.append([prepared])
     return groups
 
 
 def _ready(case: Case, seed: int) -> Ready:
-    """A case's reference made ready to play; what does not fit is said with the case's name."""
+    """Set up a case to play its reference.  Errors name the case."""
     try:
         return ready(case, seed, case.reference)
     except TltlError as error:
-        named = [replace(each, title=f"case `{case.name}`: {each.title}") for each in error.diagnostics]
-        raise TltlError(named) from None
+        diagnostics = [
+            replace(diagnostic, title=f"case `{case.name}`: {diagnostic.title}") for diagnostic in error.diagnostics
+        ]
+        raise TltlError(diagnostics) from None
 
 
 def _recorded(
     groups: Sequence[Sequence[Ready]], pool: Pool, told: Told, kept: tuple[Reference, ...]
 ) -> Generator[Compared]:
     for group in groups:
-        one = max(group, key=lambda each: each.case.episodes)
-        there = [each for each in kept if each.played == one.played and len(each.accounts) == one.case.episodes]
-        reference = there[0] if there else _played(one, pool, told)
-        outdated = next((each.outdated for each in group if each.outdated), None)
-        yield Compared(reference, tuple(each.case for each in group), outdated)
+        longest = max(group, key=lambda prepared: prepared.case.episodes)
+        matches = [
+            reference
+            for reference in kept
+            if reference.played == longest.played and len(reference.accounts) == longest.case.episodes
+        ]
+        reference = matches[0] if matches else _played(longest, pool, told)
+        outdated = next((prepared.outdated for prepared in group if prepared.outdated), None)
+        yield Compared(reference, tuple(prepared.case for prepared in group), outdated)
 
 
-def _played(one: Ready, pool: Pool, told: Told) -> Reference:
+def _played(prepared: Ready, pool: Pool, told: Told) -> Reference:
     accounts: list[Account] = []
-    # An edit while they are played ends the episodes: the texts of before are those that are played.
-    texts = level_texts(one.setup.level, one.setup.variant, one.played.files)
-    for each in episodes(one, pool):
-        accounts.append(each.account)
-        told(one.case, len(accounts), each.account)
-    return Reference(one.played, tuple(accounts), texts, sources_hash())
+    # Read the texts first: an edit during play raises an error, so these are the texts that are played.
+    texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
+    for episode in episodes(prepared, pool):
+        accounts.append(episode.account)
+        told(prepared.case, len(accounts), episode.account)
+    return Reference(prepared.played, tuple(accounts), texts, sources_hash())
 
 
 def _keep(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:

@@ -1,4 +1,4 @@
-"""The cases of a suite are played: against their baseline until the verdict is certain, or to record it."""
+"""Play the cases of a suite: until the verdict is certain, or to record a baseline."""
 
 from __future__ import annotations
 
@@ -30,17 +30,18 @@ from tltlc.io.files import read_bytes
 from tltlc.io.spec_file import split
 
 Told = Callable[[Case, int, Account], None]
-"""Is told of a case the number of episodes so far, and the last one."""
+"""A callback for each played episode: the case, the number of episodes so far, and the last account."""
 
 _PLAYER: Final = "policy"
 
 
 @record
 class Ready:
-    """A case that can be played: the evaluation, and what is recorded of what it depends on.
+    """A case that is set up to be played.
 
-    ``changes`` are what the overlays of its variant say that they change in the ``level``.  ``outdated`` says that the
-    spec that the level is made for has changed since the policy was trained, which is judged by the old one.
+    ``setup`` describes the evaluation and ``played`` identifies what it depends on.  ``changes`` are
+    the descriptions of the overlays of the variant.  ``outdated`` is a message if the spec of the
+    level has changed since the policy was trained (the old spec then judges the policy), else None.
     """
 
     case: Case
@@ -53,7 +54,7 @@ class Ready:
 
 @record
 class Recorded:
-    """An episode that was played: its account, and the bytes of its recording."""
+    """A played episode: its account and the bytes of its recording."""
 
     account: Account
     recording: bytes
@@ -61,7 +62,7 @@ class Recorded:
 
 @record
 class Result:
-    """A case that was judged by the episodes that were played, in their order."""
+    """A judged case, with the played episodes in order."""
 
     ready: Ready
     reference: Reference
@@ -70,7 +71,11 @@ class Result:
 
 
 def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
-    """A case made ready to play, by default in its own variant; raises TltlError for all that does not fit."""
+    """Set up a case to be played, by default in its own variant.
+
+    Raises:
+        TltlError: policy, level, variant or spec cannot be loaded or do not fit together.
+    """
     path = policy_file(case.policy)
     data = read_bytes(path, str(path), MAX_BYTES)
     policy = from_bytes(data, str(path))
@@ -93,27 +98,28 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
 
 
 def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
-    """The case's episodes as they are played; closing the iterator ends the workers.
+    """Play the episodes of a case and yield each.  Closing the iterator ends the workers.
 
     Raises:
-        TltlError: TLT0905, the level is not the one that was made ready, or not any more when all are over; what
-            playing raises.
+        TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
+            errors from playing.
     """
     tasks = [Task(index) for index in range(made.case.episodes)]
     with closing(results(made.setup, tasks, pool, alone=partial(_alone, made))) as playing:
-        for count, each in enumerate(playing):
-            # Before an error come all results that are there: a gap among them would leave out the slow episodes.
-            if each.played.index != count:
+        for count, result in enumerate(playing):
+            # Before it raises an error, `results` yields all finished episodes.  Skip those after a gap:
+            # counting them would favour fast episodes.
+            if result.played.index != count:
                 continue
-            episode = episode_from_bytes(each.recording, _PLAYER)
-            # Each worker has loaded the level for itself.
+            episode = episode_from_bytes(result.recording, _PLAYER)
+            # Each worker loads the level itself, so check the level of the recording.
             _check_unedited(made, episode.level)
-            yield Recorded(account(each.played, episode), each.recording)
+            yield Recorded(account(result.played, episode), result.recording)
     check_unedited(made)
 
 
 def _alone(made: Ready, task: Task) -> str:
-    """The command that plays one of the case's episodes."""
+    """The command that plays a single episode of the case."""
     place = ["--level", f"{made.setup.level}:{made.setup.variant}"]
     spec = [] if made.case.spec is None else ["--spec", made.case.spec]
     episode = ["--seed", str(made.setup.seed), "--first", str(task.index), "--episodes", "1"]
@@ -121,40 +127,46 @@ def _alone(made: Ready, task: Task) -> str:
 
 
 def check_unedited(made: Ready) -> None:
-    """Raise TltlError, TLT0905, where the level was edited since it was made ready, which workers that had loaded it do
-    not see; and what is wrong with it now.
+    """Check that the level was not edited since the setup.  Workers that had loaded it do not notice.
+
+    Raises:
+        TltlError: TLT0905, the level was edited; or the errors of the edited level.
     """
     _check_unedited(made, load_level(made.setup.level, made.setup.variant))
 
 
 def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Callable[[int, Account], None]) -> Result:
-    """Play a case until its verdict is certain; ``told`` gets the number of episodes so far and the last one."""
-    found: list[Recorded] = []
+    """Play a case until its verdict is settled.
+
+    After each episode, ``told`` is called with the number of episodes so far and the last account.
+    """
+    played: list[Recorded] = []
     with closing(episodes(made, pool)) as playing:
-        for each in playing:
-            found.append(each)
-            told(len(found), each.account)
-            now = [recorded.account for recorded in found]
+        for episode in playing:
+            played.append(episode)
+            told(len(played), episode.account)
+            now = [recorded.account for recorded in played]
             judgement = judge(now, reference.accounts, made.case.episodes, made.case.thresholds, error)
             if judgement:
                 check_unedited(made)
-                return Result(made, reference, judgement, tuple(found))
+                return Result(made, reference, judgement, tuple(played))
     raise AssertionError("the last episode settles every verdict")
 
 
 def _check_unedited(made: Ready, level: Level) -> None:
     before, now = made.level.files, level.files
     if before != now:
-        # Overlays of one name may come from several folders.
-        names = dict.fromkeys(f"`{each[0]}`" for each in (*before, *now) if (each in before) != (each in now))
+        # Names can repeat: overlays of the same name may come from several folders.
+        names = dict.fromkeys(f"`{file[0]}`" for file in (*before, *now) if (file in before) != (file in now))
         title = f"{', '.join(names)} changed while `{made.case.name}` was played"
         raise TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
 
 
 def _outdated(case: Case, setup: Setup, level: Level) -> str | None:
-    """That the level's spec has changed, where the policy's own of that name judges.
+    """Return a message if the policy's own spec judges and the level's spec of that name has changed.
 
-    Raises TltlError for what is wrong with the level's spec.
+    Raises:
+        TltlError: the level's spec cannot be read.
     """
     name = split(level.spec)[1]
     if case.spec is not None or name != setup.fspa.name:

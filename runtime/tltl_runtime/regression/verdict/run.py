@@ -1,4 +1,4 @@
-"""A suite is run: its cases one after the other, each kept in a folder, so that a run that was stopped goes on."""
+"""Run a suite: judge its cases one after the other, and cache each result so that a stopped run can continue."""
 
 from __future__ import annotations
 
@@ -24,26 +24,28 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.writing import remove_file, write_files
 
 CASES: Final = "cases"
-"""In the folder of a run, with a folder for each case."""
+"""The name of the folder, in the folder of a run, that contains a folder for each case."""
 
 _REPORT: Final = "case.json"
 _VERSION: Final = 3
 _RECORDINGS: Final = 3
-"""Of how many episodes of each finding there are recordings."""
+"""The number of episodes of each finding whose recordings are written."""
 
 _EDITED: Final = "TLT0905"
 NOT_THE_CASE: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
-"""Codes of what is wrong with the workers."""
+"""Codes of errors of the workers, which are no faults of the case."""
 
 WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
-"""What to do where the folder of a run refuses a file."""
+"""The help of the error that a file cannot be written to the folder of a run."""
 
 
 @record
 class Done:
-    """A case that is over; ``kept``: it was played by an earlier run, of which nothing has changed.
+    """A finished case.
 
-    ``ready`` and ``reference`` are what was played and compared with, None for a case that could not be played.
+    ``kept`` says that an earlier run played the case and nothing has changed since.  ``ready`` and
+    ``reference`` are what was played and what it was compared with, or None if the case could not be
+    played.
     """
 
     report: CaseReport
@@ -53,21 +55,19 @@ class Done:
 
     @property
     def to_train(self) -> Ready | None:
-        """What a training could tell more of: a case that was played and did not pass, unless one has done so, or
-        nothing comes of it.
-        """
+        """The case if it was played, did not pass, was not yet retrained, and training can help; else None."""
         return None if self.report.retrained or self.useless_training else self._not_passed
 
     @property
     def useless_training(self) -> str | None:
-        """Why nothing would come of a training for a case that was played and did not pass; None where it may help."""
-        one = self._not_passed
-        if one is None:
+        """Why training cannot help a case that was played and did not pass; None if it can."""
+        prepared = self._not_passed
+        if prepared is None:
             return None
-        if one.outdated:
+        if prepared.outdated:
             return "it was trained for another spec"
-        if is_infeasible(one.level, one.setup.fspa):
-            return f"nobody can do what `{one.setup.fspa.name}` asks, as was said above"
+        if is_infeasible(prepared.level, prepared.setup.fspa):
+            return f"nobody can do what `{prepared.setup.fspa.name}` asks, as was said above"
         return None
 
     @property
@@ -76,13 +76,21 @@ class Done:
 
 
 def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
-    """Raise TltlError, TLT0903, where the baseline lacks a case that can be played, and TLT0902, where it is broken."""
+    """Check the baseline of the cases that can be played.
+
+    Raises:
+        TltlError: TLT0903, the baseline lacks a case; TLT0902, the baseline is invalid.
+    """
     for case in cases:
         _prepared(suite, case, references)
 
 
 def owned(folder: Path) -> AbstractContextManager[None]:
-    """Within, no other run of a suite uses the folder, which is made where it is missing; raises TLT0904, TLT0005."""
+    """Lock the folder of a run; create it if it is missing.
+
+    Raises:
+        TltlError: TLT0904, another run uses the folder; TLT0005, it cannot be written.
+    """
     title = f"another run of `tltlc regress` plays in `{folder}`"
     busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
     return held(folder, busy, WRITABLE)
@@ -98,21 +106,21 @@ def regress(
     *,
     fresh: bool = False,
 ) -> Generator[Done]:
-    """Judge some cases of a suite, in their order, each as soon as it is over.
+    """Judge some cases of a suite in order, and yield each as soon as it is finished.
 
-    What was played is kept below ``folder``, which is to be :func:`owned`; a case of which nothing has changed since is
-    not played again, unless ``fresh``.  A case that cannot be played fails, one whose level is edited while it is
-    played is to be reviewed, and the others go on.
+    Results are cached below ``folder``, which must be :func:`owned`.  A case is not played again if
+    nothing has changed since, unless ``fresh``.  A case that cannot be played fails.  A case whose
+    level is edited while it is played gets the verdict ``review``.  Neither stops the other cases.
 
     Raises:
-        TltlError: TLT0903 where the baseline lacks a case, or a policy or its spec has become another one meanwhile;
-            TLT0902 where its episodes were in states that the spec does not have; TLT0730, TLT0850 and TLT0852 of the
-            workers; TLT0005 for the folder.
+        TltlError: TLT0903, the baseline lacks a case, or a policy or its spec was replaced meanwhile;
+            TLT0902, the episodes of the baseline were in states that the spec does not have; TLT0730,
+            TLT0850 and TLT0852, errors of the workers; TLT0005, the folder cannot be written.
     """
     if fresh:
         _forget(suite, cases, folder)
     for case in cases:
-        # Its files may have changed while others were played.
+        # Set the case up again: its files may have changed while other cases were played.
         prepared = _prepared(suite, case, references)
         if isinstance(prepared, TltlError):
             yield Done(report_on_broken(case, prepared), kept=False)
@@ -121,98 +129,99 @@ def regress(
 
 
 def _forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Remove at once what is kept of all of the cases, so that a run that is stopped goes on with fresh ones."""
+    """Remove the cached results of all cases, so that a stopped ``fresh`` run continues with fresh results only."""
     for case in cases:
         remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
-    """The folder of the case of that name, below the one that has a folder for each of them."""
+    """The folder of the case called ``name``, below ``folder``, which contains a folder for each case."""
     names = [case.name for case in suite.cases]
     return folder / slugs(names)[names.index(name)]
 
 
 def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tuple[Ready, Reference] | TltlError:
-    """A case that can be played and its reference, or why it cannot be played."""
+    """Set up a case: return it with its reference, or the error if it cannot be played."""
     try:
-        one = ready(case, suite.seed)
+        prepared = ready(case, suite.seed)
     except TltlError as error:
         return error
-    wanted = replace(one.played, variant=case.reference)
+    wanted = replace(prepared.played, variant=case.reference)
     reference = reference_of(references, wanted, suite)
-    check_states(reference, one.setup.fspa, suite)
+    check_states(reference, prepared.setup.fspa, suite)
     if len(reference.accounts) < case.episodes:
         title = (
             f"the baseline of `{case.name}` has {len(reference.accounts)} episodes, and {case.episodes} are asked for"
         )
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
-    return one, reference
+    return prepared, reference
 
 
-def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:
-    """A case as an earlier run has left it, or played now.
+def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:
+    """Return the cached result of a case, or play it now.
 
-    Raises TltlError for what is no fault of the case.
+    Raises:
+        TltlError: an error that is no fault of the case.
     """
-    case, error = one.case, suite.error / len(suite.cases)
-    place, inputs = case_folder(suite, case.name, folder / CASES), _inputs(one, reference, error)
-    kept = _kept(place, inputs)
+    case, error = prepared.case, suite.error / len(suite.cases)
+    own_folder, inputs = case_folder(suite, case.name, folder / CASES), _inputs(prepared, reference, error)
+    kept = _kept(own_folder, inputs)
     if kept:
-        return Done(kept, kept=True, ready=one, reference=reference)
+        return Done(kept, kept=True, ready=prepared, reference=reference)
     try:
-        result = judged(one, reference, error, pool, lambda count, last: told(case, count, last))
+        result = judged(prepared, reference, error, pool, lambda count, last: told(case, count, last))
     except TltlError as fault:
-        codes = {each.code for each in fault.diagnostics}
+        codes = {diagnostic.code for diagnostic in fault.diagnostics}
         if codes & NOT_THE_CASE:
             raise
         report = report_on_edited if _EDITED in codes else report_on_broken
         return Done(report(case, fault), kept=False)
     except RuntimeError as problem:
-        found = player_fault(problem)
-        if found is None:
+        player_error = player_fault(problem)
+        if player_error is None:
             raise
-        return Done(report_on_broken(case, found), kept=False)
-    return Done(_write(place, inputs, result), kept=False, ready=one, reference=reference)
+        return Done(report_on_broken(case, player_error), kept=False)
+    return Done(_write(own_folder, inputs, result), kept=False, ready=prepared, reference=reference)
 
 
-def _inputs(one: Ready, reference: Reference, error: float) -> str:
-    """The identity of all that the report on a case depends on."""
-    case, fspa = one.case, one.setup.fspa
+def _inputs(prepared: Ready, reference: Reference, error: float) -> str:
+    """The hash of everything that the report on a case depends on."""
+    case, fspa = prepared.case, prepared.setup.fspa
     parts = [
         _VERSION,
         case.name,
         case.episodes,
         to_json(case.thresholds),
         error,
-        to_json(one.played),
+        to_json(prepared.played),
         to_json(reference),
-        # What reasons are worded with.
-        [each.name for each in fspa.signals],
-        [each.name for each in fspa.atoms],
-        [each.label.english for each in fspa.states],
-        one.outdated,
+        # Sentences of the report contain these names.
+        [signal.name for signal in fspa.signals],
+        [atom.name for atom in fspa.atoms],
+        [state.label.english for state in fspa.states],
+        prepared.outdated,
     ]
     return inputs_hash(parts)
 
 
-def _kept(place: Path, inputs: str) -> CaseReport | None:
-    """The report that an earlier run has left, if nothing has changed since, nor a recording been removed."""
-    found = read_kept(CaseReport, place / _REPORT, inputs)
-    return found if found and all((place / name).is_file() for _, name in found.recordings) else None
+def _kept(folder: Path, inputs: str) -> CaseReport | None:
+    """The cached report, if nothing has changed since and all of its recordings exist; else None."""
+    report = read_kept(CaseReport, folder / _REPORT, inputs)
+    return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 
 
-def _write(place: Path, inputs: str, result: Result) -> CaseReport:
-    """Write the report on a case and the recordings of the episodes that it speaks of."""
+def _write(folder: Path, inputs: str, result: Result) -> CaseReport:
+    """Write the report on a case and the recordings of the episodes that its findings name."""
     report = report_on(result)
-    by_index = {each.account.index: each.recording for each in result.episodes}
-    successes = [each.index for each in report.accounts if each.success]
-    spoken_of = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
-    named = {index: f"{index}{SUFFIX}" for index in sorted({*spoken_of, *successes[:1]})}
+    by_index = {episode.account.index: episode.recording for episode in result.episodes}
+    successes = [account.index for account in report.accounts if account.success]
+    mentioned = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
+    named = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))
     recordings = {name: by_index[index] for index, name in named.items()}
-    write_files(place, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE, over_inputs=True)
-    for path in place.glob(f"*{SUFFIX}"):
-        # Of an earlier run, on another level perhaps.
+    write_files(folder, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE, over_inputs=True)
+    for path in folder.glob(f"*{SUFFIX}"):
+        # Remove recordings of earlier runs, which may be of another level.
         if path.name not in recordings:
             path.unlink(missing_ok=True)
     return report

@@ -1,23 +1,25 @@
-"""The verdict of a case: by statistics, looked at after every episode, until it is certain.
+"""The verdict of a case, by sequential statistics that are evaluated after every episode.
 
-The rule, for a case whose share of the suite's ``error`` is e (the error divided by the number of cases):
+The rule, where e is the case's share of the suite's ``error`` (the error divided by the number of
+cases):
 
-1. Nothing is decided before 25 episodes.
-2. ``fail`` where the pass rate is certainly below ``thresholds.fail_rate``.
-3. ``review`` where it is certainly not, but certainly below ``thresholds.pass_rate``, or progress or reward has
-   certainly changed.
-4. ``pass`` where it is certainly at least ``thresholds.pass_rate``, and the means of progress and reward differ from
-   the baseline's by half of their thresholds at most.
-5. Where all of the case's episodes are played and nothing is certain: ``pass`` where the pass rate is certainly at
-   least ``thresholds.pass_rate``, and the means differ by less than their thresholds, else ``review``.
+1. There is no verdict before 25 episodes.
+2. ``fail`` if the pass rate is certainly below ``thresholds.fail_rate``.
+3. ``review`` if the pass rate is certainly at least ``thresholds.fail_rate``, and it is certainly
+   below ``thresholds.pass_rate`` or progress or reward has certainly changed.
+4. ``pass`` if the pass rate is certainly at least ``thresholds.pass_rate``, and the means of
+   progress and reward differ from the baseline by half of their thresholds at most.
+5. If all episodes of the case are played and nothing is certain: ``pass`` if the pass rate is
+   certainly at least ``thresholds.pass_rate`` and the means differ by less than their thresholds;
+   else ``review``.
 
-The pass rate is certainly outside of its interval, which has the error e over all looks at once
-(:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`).  Means are compared over equal seeds.  A figure has
-certainly changed where they differ by its threshold at least, and the p-value of its mean being that near to the
-baseline's, over all looks at once, is e/4 at most (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`):
-the mean
-of the policy's episodes is then further from the one that was recorded.  So e bounds the probability of a wrong verdict
-that is certain, by the rate or by the figures, whatever the pass rate is.
+A statement on the pass rate is certain if it follows from the confidence interval of the rate, whose
+error over all looks is e (:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`).  Means
+are compared over equal seeds.  A figure has certainly changed if both of these hold: the means differ
+by its threshold at least; and the p-value of the hypothesis that the policy's mean is within the
+threshold of the recorded one is e/4 at most, over all looks
+(:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).  So e bounds the probability of a
+certain verdict that is wrong, by the rate or by the figures, for every pass rate.
 """
 
 from __future__ import annotations
@@ -35,18 +37,19 @@ from tltlc.core.record import record
 Verdict = Literal["pass", "review", "fail"]
 
 FIGURES: Final[Mapping[str, tuple[float, float]]] = {"progress": (0.0, 1.0), "reward": (-1.0, 1.0)}
-"""What is compared with the baseline, and between which values it lies.
+"""The figures that are compared with the baseline, each with its range.
 
-A reward is progress less the share of the limit that it took, the rest of which a violation costs, too (Algorithm 1).
+The reward of an episode is its progress minus the share of the step limit that it used.  A violation
+also costs the rest of the limit (Algorithm 1).
 """
 
 _ALIKE: Final = 0.5
-"""Means are alike that differ by this share of the threshold at most."""
+"""Means that differ by at most this share of the threshold count as equal."""
 
 
 @record
 class Change:
-    """A figure's mean, and the baseline's that it is further from than its threshold; how likely that is by chance."""
+    """A figure whose mean has certainly changed: the baseline's mean, the mean now, and the p-value."""
 
     figure: str
     before: float
@@ -56,7 +59,11 @@ class Change:
 
 @record
 class Judgement:
-    """A verdict: ``certain`` unless it is only since all episodes are played; ``rate_interval`` of the pass rate."""
+    """A verdict.
+
+    ``certain`` is False if the verdict was only given because all episodes were played.
+    ``rate_interval`` is the confidence interval of the pass rate.
+    """
 
     verdict: Verdict
     certain: bool
@@ -67,13 +74,14 @@ class Judgement:
 def judge(
     now: Sequence[Outcome], before: Sequence[Outcome], episodes: int, thresholds: Thresholds, error: float
 ) -> Judgement | None:
-    """The verdict on the episodes ``now``, of ``episodes`` at the most; None where more have to be played.
+    """Return the verdict on the episodes ``now``, or None if more episodes have to be played.
 
-    ``before`` are the baseline's, of the same seeds in the same order, ``error`` is the case's share.
+    ``before`` are the baseline's episodes, with the same seeds in the same order.  ``episodes`` is the
+    most that may be played.  ``error`` is the case's share of the suite's error.
     """
     if len(now) < LEAST_EPISODES:
         return None
-    passed = sum(each.success for each in now)
+    passed = sum(outcome.success for outcome in now)
     low, high = interval = rate_interval(passed, len(now) - passed, error)
     differences = _differences(now, before)
     apart = _beyond(differences, thresholds)
@@ -83,7 +91,7 @@ def judge(
     if low >= thresholds.fail_rate and (high < thresholds.pass_rate or changes):
         return Judgement("review", True, interval, changes)
     is_met = low >= thresholds.pass_rate
-    if is_met and all(by <= _ALIKE * getattr(thresholds, figure) for figure, by in differences.items()):
+    if is_met and all(difference <= _ALIKE * getattr(thresholds, figure) for figure, difference in differences.items()):
         return Judgement("pass", True, interval, changes)
     if len(now) < episodes:
         return None
@@ -91,16 +99,16 @@ def judge(
 
 
 def beyond(now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds) -> tuple[str, ...]:
-    """The figures whose means differ over equal seeds by their thresholds at least, which may be by chance."""
+    """The figures whose means over equal seeds differ by at least their thresholds, possibly by chance."""
     return _beyond(_differences(now, before), thresholds)
 
 
 def _beyond(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[str, ...]:
-    return tuple(figure for figure, by in differences.items() if 0 < by >= getattr(thresholds, figure))
+    return tuple(figure for figure, difference in differences.items() if 0 < difference >= getattr(thresholds, figure))
 
 
 def _differences(now: Sequence[Outcome], before: Sequence[Outcome]) -> dict[str, float]:
-    """By how much the means of each figure differ over the seeds that both have."""
+    """The absolute difference of the means of each figure, over the seeds that both have."""
     count = min(len(now), len(before))
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
     return {figure: abs(fmean(new) - fmean(old)) for figure, (new, old) in pairs.items()}
@@ -109,7 +117,7 @@ def _differences(now: Sequence[Outcome], before: Sequence[Outcome]) -> dict[str,
 def _changes(
     figures: Sequence[str], now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds, error: float
 ) -> Iterator[Change]:
-    """Those of the figures that have certainly changed."""
+    """The changes of those figures that have certainly changed."""
     for figure in figures:
         values, old, most = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
         p_value = mean_p_value(values, old - most, old + most, *FIGURES[figure])
