@@ -1,1 +1,1 @@
-"""Explanations: what an agent does differently from its baseline."""
+"""Explanations: what a policy does differently from its baseline."""

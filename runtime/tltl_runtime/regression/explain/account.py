@@ -1,4 +1,4 @@
-"""The account of an episode: what verdicts count, what explanations tell, what pictures draw of it."""
+"""The account of an episode: the data that verdicts, explanations and pictures use."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.tables import tables
 
 _SEEN_S: Final = 3.0
-"""Seconds before the end in which who saw the player counts."""
+"""Enemies that saw the player in this many seconds before the end are reported."""
 
 
 @record
 class Arrival:
-    """A state of the automaton that was entered: at which decision, and where the player's feet were."""
+    """The entry into a state of the automaton: the step, and the position of the player's feet."""
 
     state: int
     step: int
@@ -30,12 +30,13 @@ class Arrival:
 
 @record
 class Nearest:
-    """How near an episode came to leaving the state in which it failed, towards acceptance.
+    """The nearest miss: how near a failed episode came to leaving its last state towards acceptance.
 
-    ``atom`` is the one that was the limit at the best moment: it had to hold, or not to where ``wanted`` is false.
-    ``robustness`` is the guard's then, in [-1, 1], ``place`` where that was.  Where the atom had to hold and speaks of
-    one distance, ``target`` is to what and ``distance`` the least, in metres, at which it did not hold.  All of this is
-    of the last time that the episode was in that state.
+    ``robustness``, in [-1, 1], is the guard's greatest robustness, and ``place`` is where the player
+    was then.  ``atom`` is the atom that limited it: it had to hold, or had to be false if ``wanted`` is
+    False.  If the atom had to hold and depends on a single distance, ``target`` is the entity that the
+    distance is measured to, and ``distance``, in metres, is the least distance at which the atom did
+    not hold.  Only the last stay in the state counts.
     """
 
     atom: str
@@ -48,13 +49,14 @@ class Nearest:
 
 @record
 class Account:
-    """How episode ``index`` of a case went.
+    """The account of episode ``index`` of a case.
 
     ``progress``, ``reward``, ``steps`` and ``unmet`` are as in
-    :class:`~tltl_runtime.evaluation.play.Played`; ``arrivals`` begin with the first sample.  ``cause``, ``by`` and
-    ``place`` say how the episode ended, ``seen_by`` who saw the player in the seconds before, ``broke`` which atoms
-    broke the spec; ``arrived`` that these alone were missing then of what leads on.  ``shut`` are the barriers that
-    stopped bodies at the end.
+    :class:`~tltl_runtime.evaluation.play.Played`.  ``arrivals`` start with the first sample.
+    ``cause``, ``by`` and ``place`` describe the end of the episode.  ``seen_by`` are the enemies that
+    saw the player shortly before.  ``broke`` are the atoms that broke the spec; ``arrived`` says that
+    without them a transition towards acceptance would have been possible.  ``way`` is the simplified
+    trajectory.  ``shut`` are the solid barriers that were closed at the end.
     """
 
     index: int
@@ -78,8 +80,8 @@ class Account:
 
 
 def account(played: Played, episode: Episode) -> Account:
-    """The account of an episode that was played and recorded."""
-    found = cause(episode)
+    """Return the account of an episode that was played and recorded."""
+    ending = cause(episode)
     return Account(
         index=played.index,
         seed=played.seed,
@@ -89,15 +91,15 @@ def account(played: Played, episode: Episode) -> Account:
         reward=played.reward,
         steps=played.steps,
         unmet=played.unmet,
-        cause=found.kind,
-        by=found.by,
-        place=_rounded(found.place),
-        seen_by=() if played.success else _seen_by(episode, found.time),
+        cause=ending.kind,
+        by=ending.by,
+        place=_rounded(ending.place),
+        seen_by=() if played.success else _seen_by(episode, ending.time),
         arrivals=_arrivals(episode),
         nearest=None if played.success else _nearest(episode, played.unmet),
         way=way_of(episode),
-        broke=found.broke,
-        arrived=_has_arrived(episode, played.unmet, found.broke),
+        broke=ending.broke,
+        arrived=_has_arrived(episode, played.unmet, ending.broke),
         shut=_shut(episode),
     )
 
@@ -109,7 +111,7 @@ def _arrivals(episode: Episode) -> tuple[Arrival, ...]:
 
 
 def _seen_by(episode: Episode, time: float) -> tuple[str, ...]:
-    """The enemies that saw the player shortly before, in the level's order."""
+    """The enemies that saw the player shortly before ``time``, in the level's order."""
     recent = [shot for shot in episode.snapshots if time - _SEEN_S <= shot.time <= time]
     return tuple(
         enemy.name for row, enemy in enumerate(episode.level.enemies) if any(shot.sees[row] for shot in recent)
@@ -117,7 +119,7 @@ def _seen_by(episode: Episode, time: float) -> tuple[str, ...]:
 
 
 def _has_arrived(episode: Episode, state: int, broke: Sequence[str]) -> bool:
-    """Whether the last sample, at which these atoms broke the spec, lacked nothing else of what leads on from there."""
+    """Whether only the atoms in ``broke`` prevented, at the last sample, a transition towards acceptance."""
     fspa, values = episode.fspa, episode.atoms[-1].tolist()
     primes = [prime for edge in tables(fspa).improving[state] for prime in edge.guard.primes]
     missing = [{fspa.atoms[atom].name for atom, wanted in prime if (values[atom] > 0.0) != wanted} for prime in primes]
@@ -130,7 +132,7 @@ def _shut(episode: Episode) -> tuple[str, ...]:
 
 
 def _nearest(episode: Episode, state: int) -> Nearest | None:
-    """None where no edge that leaves the state leads nearer to acceptance."""
+    """The nearest miss in a state; None if no edge leads from it towards acceptance, or the state was not visited."""
     fspa = episode.fspa
     guards = [edge.guard for edge in tables(fspa).improving[state]]
     steps = _last_stay(episode, state)
@@ -145,23 +147,24 @@ def _nearest(episode: Episode, state: int) -> Nearest | None:
 
 
 def _last_stay(episode: Episode, state: int) -> list[int]:
-    """The decisions of the last time that an episode was in a state."""
-    there = (episode.states[:-1] == state).tolist()
-    end = max((step + 1 for step, is_there in enumerate(there) if is_there), default=0)
-    began = max((step + 1 for step in range(end) if not there[step]), default=0)
+    """The steps of the last stay of an episode in a state."""
+    in_state = (episode.states[:-1] == state).tolist()
+    end = max((step + 1 for step, is_in_state in enumerate(in_state) if is_in_state), default=0)
+    began = max((step + 1 for step in range(end) if not in_state[step]), default=0)
     return list(range(began, end))
 
 
 def _distance(episode: Episode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
-    """What an atom measures the distance to, and the least after those of the decisions that did not make it true; None
-    where it measures none.
+    """The target of an atom's distance, and the least distance after the given steps at which the atom did not hold.
+
+    Both are None if the atom does not depend on a single distance.
     """
     target = target_of(episode.fspa, atom)
     if target is None:
         return None, None
     column = [signal.name for signal in episode.fspa.signals].index(f"distance({target})")
-    away = [float(episode.signals[row + 1, column]) for row in rows if episode.atoms[row, atom] <= 0.0]
-    return target, round(min(away), 2)
+    distances = [float(episode.signals[row + 1, column]) for row in rows if episode.atoms[row, atom] <= 0.0]
+    return target, round(min(distances), 2)
 
 
 def _place(episode: Episode, step: int) -> Point:

@@ -1,4 +1,4 @@
-"""Explanations: what a policy does otherwise than in the baseline, in sentences that name episodes."""
+"""Explanations: what a policy does differently from the baseline, in sentences that name episodes."""
 
 from __future__ import annotations
 
@@ -16,24 +16,27 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 
 _ALIKE: Final = 0.05
-"""Shares of episodes that come to a stage and differ by less are told of as alike."""
+"""Shares of episodes that complete a stage count as equal if they differ by less than this."""
 
 _USUAL: Final = 0.8
-"""What more episodes do than this share is told of as what is done."""
+"""A stage that more than this share of the episodes completes is named in the explanation."""
 
 _OTHERWISE: Final = 0.4
-"""Shares of the successful episodes that go through a region are told of where they differ by so much."""
+"""Shares of successful episodes that pass through a region are reported if they differ by this much."""
 
 _SLOWER: Final = 1.15
-"""Mean lengths of successes whose ratio is less are alike."""
+"""Mean lengths of successes count as equal if their ratio is less than this."""
 
 _FEW: Final = 3
-"""Of fewer successes nothing is told."""
+"""The least number of successes that are described."""
 
 
 @record
 class Finding:
-    """A sentence, and the indices of the episodes that it speaks of; ``others``: of all that do not do what it says."""
+    """A sentence and the indices of episodes that show it.
+
+    If ``others`` is true, the indices are the episodes that do not do what the sentence says.
+    """
 
     text: str
     episodes: tuple[int, ...]
@@ -41,9 +44,9 @@ class Finding:
 
 
 def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> tuple[Finding, ...]:
-    """How the episodes go, stage by stage, and how those end that fail; against the baseline's.
+    """Compare the episodes with the baseline: stages, ends of failures, lengths and regions.
 
-    ``level`` is the one that was played now.
+    ``level`` is the level that was played now.
     """
     return (
         *_stages(fspa, now, before),
@@ -54,19 +57,21 @@ def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[
 
 
 def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    """Up to which stage the episodes come; one sentence for all that is as before, one for the first that is not."""
+    """Describe the completed stages in one sentence, up to the first stage whose share has changed."""
     done: list[str] = []
     for distance, states in _visited(fspa, (*now, *before)):
-        came, used = (_passed(fspa, accounts, distance) for accounts in (now, before))
-        what = deed_of_all(fspa, states, distance)
-        if abs(len(came) / len(now) - len(used) / len(before)) < _ALIKE:
-            if len(came) / len(now) > _USUAL:
-                done.append(what)
+        passed_now, passed_before = (_passed(fspa, accounts, distance) for accounts in (now, before))
+        stage = deed_of_all(fspa, states, distance)
+        if abs(len(passed_now) / len(now) - len(passed_before) / len(before)) < _ALIKE:
+            if len(passed_now) / len(now) > _USUAL:
+                done.append(stage)
             continue
         first = f"{together(done)} as before, then " if done else ""
-        failed = tuple(each.index for each in now if each not in came)
-        counts = [counted(len(some), len(all_), "episodes") for some, all_ in ((came, now), (used, before))]
-        text = f"{first}{what} in {counts[0]}; before: in {counts[1]}"
+        failed = tuple(account.index for account in now if account not in passed_now)
+        counts = [
+            counted(len(passed), len(all_), "episodes") for passed, all_ in ((passed_now, now), (passed_before, before))
+        ]
+        text = f"{first}{stage} in {counts[0]}; before: in {counts[1]}"
         yield Finding(text, failed, others=True)
         return
     if done:
@@ -74,56 +79,60 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
 
 
 def _visited(fspa: Fspa, accounts: Sequence[Account]) -> list[tuple[int, set[int]]]:
-    """The states that any of the episodes came to and that are not accepting, by their distance, the greatest first."""
-    found: dict[int, set[int]] = {}
-    for state in {arrival.state for each in accounts for arrival in each.arrivals}:
+    """The visited states that are neither accepting nor traps, grouped by distance, greatest first."""
+    states_by_distance: dict[int, set[int]] = {}
+    for state in {arrival.state for account in accounts for arrival in account.arrivals}:
         if distance := fspa.states[state].distance:
-            found.setdefault(distance, set()).add(state)
-    return sorted(found.items(), reverse=True)
+            states_by_distance.setdefault(distance, set()).add(state)
+    return sorted(states_by_distance.items(), reverse=True)
 
 
 def _passed(fspa: Fspa, accounts: Sequence[Account], distance: int) -> list[Account]:
-    """The episodes that came nearer to acceptance than ``distance``."""
-    return [each for each in accounts if min(_distances(fspa, each)) < distance]
+    """The episodes that came nearer to acceptance than ``distance`` transitions."""
+    return [account for account in accounts if min(_distances(fspa, account)) < distance]
 
 
 def _distances(fspa: Fspa, account: Account) -> list[int]:
-    found = [fspa.states[arrival.state].distance for arrival in account.arrivals]
-    return [distance for distance in found if distance is not None] or [fspa.spec_size]
+    distances = [fspa.states[arrival.state].distance for arrival in account.arrivals]
+    return [distance for distance in distances if distance is not None] or [fspa.spec_size]
 
 
 def ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    """How the failed episodes end, the most frequent first; no two sentences are equal."""
-    left = [end_of(level, fspa, each) for each in before if not each.success]
+    """Describe how failed episodes end, most frequent first.  All sentences are distinct."""
+    left = [end_of(level, fspa, account) for account in before if not account.success]
     for group in failures(level, fspa, now):
-        used = [group.alike(end) for end in left]
-        left = [end for end, is_alike in zip(left, used, strict=True) if not is_alike]
-        text = f"{group.text} in {_of(len(group.accounts), now)}; before: in {_of(sum(used), before)}{group.more}"
-        yield Finding(text, tuple(sorted(each.index for each in group.accounts)))
+        matches = [group.alike(end) for end in left]
+        left = [end for end, is_alike in zip(left, matches, strict=True) if not is_alike]
+        text = f"{group.text} in {_of(len(group.accounts), now)}; before: in {_of(sum(matches), before)}{group.more}"
+        yield Finding(text, tuple(sorted(account.index for account in group.accounts)))
 
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    new, old = ([each.steps for each in accounts if each.success] for accounts in (now, before))
+    new, old = ([account.steps for account in accounts if account.success] for accounts in (now, before))
     if min(len(new), len(old)) >= _FEW:
         ratio = fmean(new) / fmean(old)
         if not 1 / _SLOWER < ratio < _SLOWER:
             how = "longer" if ratio > 1 else "shorter"
             text = f"successes are {how}: {fmean(new):.0f} steps on average; before: {fmean(old):.0f}"
-            yield Finding(text, tuple(each.index for each in now if each.success))
+            yield Finding(text, tuple(account.index for account in now if account.success))
 
 
 def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    """The regions that more of the successful episodes pass through than before, or fewer."""
-    new, old = ([each for each in accounts if each.success] for accounts in (now, before))
+    """Describe regions that clearly more or fewer of the successful episodes pass through than before."""
+    new, old = ([account for account in accounts if account.success] for accounts in (now, before))
     if min(len(new), len(old)) < _FEW:
         return
     for region in level.regions:
-        there, used_to = ([each for each in accounts if _visits(each, region)] for accounts in (new, old))
-        share, used = len(there) / len(new), len(used_to) / len(old)
-        if abs(share - used) >= _OTHERWISE:
+        visits_now, visits_before = (
+            [account for account in accounts if _visits(account, region)] for accounts in (new, old)
+        )
+        share, share_before = len(visits_now) / len(new), len(visits_before) / len(old)
+        if abs(share - share_before) >= _OTHERWISE:
             name = region.name.replace("_", " ")
-            text = f"{percent(share)} of the successful episodes pass through the {name}; before: {percent(used)}"
-            yield Finding(text, tuple(each.index for each in there))
+            text = (
+                f"{percent(share)} of the successful episodes pass through the {name}; before: {percent(share_before)}"
+            )
+            yield Finding(text, tuple(account.index for account in visits_now))
 
 
 def _visits(account: Account, region: Region) -> bool:

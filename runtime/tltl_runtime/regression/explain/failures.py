@@ -1,4 +1,4 @@
-"""How failed episodes end, put together by what is alike: a text for each group of them."""
+"""Group failed episodes by how they end, with a text for each group."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ _T = TypeVar("_T")
 _What = tuple[Kind, tuple[str, ...]]
 
 _FEW: Final = 3
-"""Ends are told of that so many episodes have, or one in ten; of more kinds than that, the most frequent."""
+"""Both the most kinds of ends that get texts of their own, and the least number of episodes of such a kind.
+
+One tenth of all episodes is enough, too.
+"""
 
 
 @record
 class End:
-    """How and where an episode failed, and what it would have had to do next."""
+    """How and where an episode failed, and what it had to do next."""
 
     cause: Kind
     by: tuple[str, ...]
@@ -33,14 +36,16 @@ class End:
 
     @property
     def what(self) -> _What:
-        """What made it fail, wherever and whenever."""
+        """The cause and the culprits, without place and stage."""
         return self.cause, self.by
 
 
 @record
 class Failures:
-    """Episodes that fail alike: in words, and in more words.  ``alike`` says whether others do that end so, of those
-    that are alike to no earlier group.
+    """Episodes that fail alike.
+
+    ``text`` describes the failures and ``more`` adds details.  ``alike`` tells whether an end belongs to
+    the group, provided that it belongs to no earlier group.
     """
 
     text: str
@@ -50,65 +55,67 @@ class Failures:
 
 
 def end_of(level: Level, fspa: Fspa, account: Account) -> End:
-    """How a failed episode ended."""
+    """Return how a failed episode ended."""
     by = tuple(sorted(account.by))
     return End(account.cause, by, place_name(level, account.place), deed(fspa, account.unmet))
 
 
 def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[Failures]:
-    """The failed ones of some episodes, the most frequent ends first; no two texts are equal."""
+    """Group the failed episodes, most frequent ends first.  All texts are distinct."""
     groups: dict[End, list[Account]] = {}
-    for each in accounts:
-        if not each.success:
-            groups.setdefault(end_of(level, fspa, each), []).append(each)
+    for account in accounts:
+        if not account.success:
+            groups.setdefault(end_of(level, fspa, account), []).append(account)
     frequent = _often(groups, len(accounts))
     stages = Counter(replace(end, undone="") for end in groups)
     for end in frequent:
-        # Where one end comes in several stages, the texts must tell them apart.
+        # If the same end occurs in several stages, the texts must differ.
         stage = f" before it {end.undone}" if stages[replace(end, undone="")] > 1 else ""
-        found = groups[end]
-        more = f"{approach(level, fspa, end.undone, found)}; {remained(fspa, found)}"
-        yield Failures(_told(level, end, found) + stage, tuple(found), end.__eq__, more)
-    few = {end: found for end, found in groups.items() if end not in frequent}
+        group = groups[end]
+        more = f"{approach(level, fspa, end.undone, group)}; {remained(fspa, group)}"
+        yield Failures(_end_text(level, end, group) + stage, tuple(group), end.__eq__, more)
+    few = {end: group for end, group in groups.items() if end not in frequent}
     yield from _few(level, few, frequent, len(accounts))
 
 
 def _often(groups: Mapping[_T, Sequence[Account]], episodes: int) -> list[_T]:
-    """The keys of the most frequent groups, of those that are not small."""
-    found = sorted(groups, key=lambda each: -len(groups[each]))[:_FEW]
-    return [each for each in found if len(groups[each]) >= _FEW or 10 * len(groups[each]) >= episodes]
+    """The keys of the most frequent groups that are large enough."""
+    largest = sorted(groups, key=lambda key: -len(groups[key]))[:_FEW]
+    return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episodes]
 
 
 def _few(
     level: Level, groups: Mapping[End, Sequence[Account]], frequent: Collection[End], episodes: int
 ) -> Iterator[Failures]:
-    """What is left of the ends: those of one cause together, and then all of causes that have few."""
+    """Group the remaining ends: by cause if frequent, then all others together."""
     causes: dict[_What, list[Account]] = {}
-    for end, found in groups.items():
-        causes.setdefault(end.what, []).extend(found)
-    often = _often(causes, episodes)
-    left = [what for what in causes if what not in often]
+    for end, accounts in groups.items():
+        causes.setdefault(end.what, []).extend(accounts)
+    frequent_causes = _often(causes, episodes)
+    left = [cause for cause in causes if cause not in frequent_causes]
     if len(left) == 1:
-        often += left
+        frequent_causes += left
         left = []
-    for what in often:
-        same = [end for end in groups if end.what == what]
-        told, alike = _one_cause(level, same, causes[what], frequent)
-        yield Failures(told, tuple(causes[what]), alike)
+    for cause in frequent_causes:
+        same = [end for end in groups if end.what == cause]
+        text, alike = _one_cause(level, same, causes[cause], frequent)
+        yield Failures(text, tuple(causes[cause]), alike)
     if left:
-        otherwise = " otherwise" if frequent or often else ""
-        yield Failures(f"fails{otherwise}", tuple(each for what in left for each in causes[what]), lambda _: True)
+        otherwise = " otherwise" if frequent or frequent_causes else ""
+        yield Failures(
+            f"fails{otherwise}", tuple(account for cause in left for account in causes[cause]), lambda _: True
+        )
 
 
 def _one_cause(
     level: Level, ends: Sequence[End], accounts: Sequence[Account], frequent: Collection[End]
 ) -> tuple[str, Callable[[End], bool]]:
-    """How these ends of one cause are told of together, and whether another end is meant by that, too.
+    """A text for these ends of one cause, and a predicate for further ends that it covers.
 
-    Those in ``frequent`` are told of apart.
+    The ends in ``frequent`` have texts of their own.
     """
-    what, places, stages = ends[0].what, {end.where for end in ends}, {end.undone for end in ends}
-    apart = {end.where for end in frequent if end.what == what}
+    cause, places, stages = ends[0].what, {end.where for end in ends}, {end.undone for end in ends}
+    apart = {end.where for end in frequent if end.what == cause}
     if len(places) == 1:
         (where,) = places
     else:
@@ -121,34 +128,34 @@ def _one_cause(
 
     def alike(end: End) -> bool:
         there = end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in apart
-        return end.what == what and there and (not stage.startswith(" before") or end.undone in stages)
+        return end.what == cause and there and (not stage.startswith(" before") or end.undone in stages)
 
-    return _told(level, replace(ends[0], where=where), accounts) + stage, alike
+    return _end_text(level, replace(ends[0], where=where), accounts) + stage, alike
 
 
-def _told(level: Level, end: End, accounts: Sequence[Account]) -> str:
-    """The end of these episodes, in words; behind asides there is a comma, since how many they are comes next."""
+def _end_text(level: Level, end: End, accounts: Sequence[Account]) -> str:
+    """Describe the end of these episodes.  Asides end with a comma, since the number of episodes follows."""
     by = f" by {_names(end.by)}" if end.by else ""
-    broke = _mostly("breaking", [each.broke for each in accounts])
-    saw = _mostly("seen by", [[name for name in each.seen_by if name not in end.by] for each in accounts])
+    broke = _mostly("breaking", [account.broke for account in accounts])
+    saw = _mostly("seen by", [[name for name in account.seen_by if name not in end.by] for account in accounts])
     if end.cause == "killed":
         return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
     if end.cause == "violated":
         return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
-    ends = [(each.place, each.shut) for each in accounts]
+    ends = [(account.place, account.shut) for account in accounts]
     stopped = in_the_way(level, ends)
-    mostly = "" if all(set(stopped) <= set(in_the_way(level, [each])) for each in ends) else "mostly "
+    mostly = "" if all(set(stopped) <= set(in_the_way(level, [account])) for account in ends) else "mostly "
     return f"runs out of time {end.where}" + (f", {mostly}at {_names(stopped)}," if stopped else "")
 
 
-def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:
-    """The names that more than half of the episodes have, behind a comma; empty where there is none."""
+def _mostly(verb: str, named: Sequence[Sequence[str]]) -> str:
+    """A clause, starting with a comma, with the names that more than half of the episodes have; empty without any."""
     counts = Counter(name for names in named for name in names)
     often = [name for name, count in counts.items() if 2 * count > len(named)]
     if not often:
         return ""
     rarely = any(counts[name] < len(named) for name in often)
-    return f", {'mostly ' if rarely else ''}{what} {_names(often)}"
+    return f", {'mostly ' if rarely else ''}{verb} {_names(often)}"
 
 
 def _names(names: Sequence[str]) -> str:

@@ -1,4 +1,4 @@
-"""The way of an episode, in few points: between two of them the player went almost straight, and almost evenly."""
+"""The simplified trajectory of an episode: few points, between which the player moved almost linearly."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.recordings.episode import Episode
 
 Way = tuple[tuple[float, float, int, float], ...]
-"""Points: x and y in metres, the automaton's state from there on, and when that was, in seconds from the beginning."""
+"""Points (x, y, state, time): metres, the automaton's state from there on, and seconds since the start."""
 
 EVERY: Final = 0.1
-"""Seconds between two places along a way."""
+"""Seconds between two places along a trajectory."""
 
 _WITHIN: Final = 0.2
-"""Metres that the player was away, at most, from where the way has it at that time: less than from a wall."""
+"""The greatest error of the simplified trajectory, in metres.
+
+It is less than the distance that a player keeps from a wall.
+"""
 
 
 def way_of(episode: Episode) -> Way:
-    """The way of an episode, with a point wherever the state changes."""
+    """Simplify the trajectory of an episode.  Each change of the state gets a point."""
     times = np.array([shot.time for shot in episode.snapshots])
     places = np.array([shot.player.position[:2] for shot in episode.snapshots])
     changes = (np.flatnonzero(np.diff(episode.states)) + 1).tolist()
@@ -37,7 +40,7 @@ def way_of(episode: Episode) -> Way:
 
 
 def places_along(way: Way) -> Iterator[tuple[float, float]]:
-    """Where the player was each ``EVERY`` seconds, from the beginning, before the end."""
+    """Yield the player's position every ``EVERY`` seconds, from the start until just before the end."""
     times = np.array([time for *_, time in way])
     at = np.arange(times[0], times[-1], EVERY)
     xs, ys = (np.interp(at, times, [point[axis] for point in way]) for axis in (0, 1))
@@ -45,10 +48,11 @@ def places_along(way: Way) -> Iterator[tuple[float, float]]:
 
 
 def _needed(times: NDArray[np.float64], places: NDArray[np.float64], first: int, last: int) -> Iterator[int]:
-    """The rows between two that it takes: where the player is farthest from the straight way, and so on.
+    """Yield the rows between ``first`` and ``last`` that the simplified trajectory needs.
 
-    Distances are between places at one time, as in Meratnia and de By, Spatiotemporal compression techniques for moving
-    point objects, EDBT 2004.
+    Split at the row with the greatest distance from the straight line, and repeat for both halves.
+    Distances are between positions at the same time, as in Meratnia and de By, Spatiotemporal
+    compression techniques for moving point objects, EDBT 2004.
     """
     open_ = [(first, last)]
     while open_:
@@ -57,8 +61,8 @@ def _needed(times: NDArray[np.float64], places: NDArray[np.float64], first: int,
             continue
         share = (times[first : last + 1] - times[first]) / (times[last] - times[first])
         straight = places[first] + share[:, None] * (places[last] - places[first])
-        away = np.hypot(*(places[first : last + 1] - straight).T)
-        if away.max() > _WITHIN:
-            middle = first + int(away.argmax())
+        distances = np.hypot(*(places[first : last + 1] - straight).T)
+        if distances.max() > _WITHIN:
+            middle = first + int(distances.argmax())
             yield middle
             open_ += [(first, middle), (middle, last)]

@@ -1,4 +1,4 @@
-"""What people call a place in a level."""
+"""Names, in words, of places in a level."""
 
 from __future__ import annotations
 
@@ -10,58 +10,59 @@ from typing import Final
 from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
 
 _NEAR: Final = 2.5
-"""Metres to an entity beside which a place is."""
+"""A place within this many metres of an entity is near it."""
 
 _BESIDE: Final = 0.99
-"""Of the way from a player to a box: what is met later is beside it."""
+"""A box hides another one only if it is met before this share of the way to it; otherwise it stands beside it."""
 
 _TOUCHING: Final = 0.7
-"""Metres from the middle of a player to a solid that is in its way."""
+"""A solid is in the way of a player if it is within this many metres of the player's centre."""
 
 
 def place_name(level: Level, point: Point) -> str:
-    """Where a point is: ``in the corridor``, else ``near `s2```, else ``in the north-east``."""
+    """Describe where a point is: ``in the corridor``, else ``near `s2```, else ``in the north-east``."""
     for region in level.regions:
         if _distance(point, region.box) == 0.0:
             return f"in the {region.name.replace('_', ' ')}"
-    found = nearest_entity(level, point)
-    return f"near `{found}`" if found else f"in the {_quarter(level.bounds, point)}"
+    entity = nearest_entity(level, point)
+    return f"near `{entity}`" if entity else f"in the {_quarter(level.bounds, point)}"
 
 
 def nearest_entity(level: Level, point: Point) -> str | None:
-    """The switch, exit or barrier next to a point, None where none is within 2.5 m."""
-    there = fixed_places(level)
-    near = [(hypot(x - point[0], y - point[1]), name) for name, (x, y, _) in there.items()]
+    """The nearest switch, exit or barrier; None if none is within 2.5 m."""
+    positions = fixed_places(level)
+    near = [(hypot(x - point[0], y - point[1]), name) for name, (x, y, _) in positions.items()]
     distance, name = min(near, default=(2 * _NEAR, ""))
     return name if distance <= _NEAR else None
 
 
 def in_the_way(level: Level, ends: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
-    """The solids and the shut barriers that most players touch, the most frequent and nearest first; the floor is none.
+    """The solids and closed barriers that more than half of the players touch, most frequent and nearest first.
 
-    ``ends`` are where the players' feet are, each with the names of the barriers that are shut then.
+    The floor does not count.  ``ends`` are the positions of the players' feet, each with the names of
+    the barriers that were closed then.
     """
-    solids = {each.name: each.box for each in level.solids if each.kind != "floor"}
-    barriers = {each.name: each.box for each in level.barriers}
+    solids = {solid.name: solid.box for solid in level.solids if solid.kind != "floor"}
+    barriers = {barrier.name: barrier.box for barrier in level.barriers}
     touched: dict[str, list[float]] = {}
     for feet, shut in ends:
-        there = solids | {name: barriers[name] for name in shut if name in barriers}
-        near = {name: away for name, box in there.items() if (away := _beside(feet, box)) <= _TOUCHING}
-        for name, away in near.items():
-            if not any(_hides(there[other], feet, there[name]) for other in near if near[other] < away):
-                touched.setdefault(name, []).append(away)
-    often = [name for name, each in touched.items() if 2 * len(each) > len(ends)]
+        boxes = solids | {name: barriers[name] for name in shut if name in barriers}
+        near = {name: distance for name, box in boxes.items() if (distance := _beside(feet, box)) <= _TOUCHING}
+        for name, distance in near.items():
+            if not any(_hides(boxes[other], feet, boxes[name]) for other in near if near[other] < distance):
+                touched.setdefault(name, []).append(distance)
+    often = [name for name, distances in touched.items() if 2 * len(distances) > len(ends)]
     return sorted(often, key=lambda name: (-len(touched[name]), fmean(touched[name])))
 
 
 def _beside(feet: Point, box: Box) -> float:
-    """From a player to a box beside it, on the plan; far from what is below the feet, such as a box to stand on."""
+    """The horizontal distance from a player to a box; infinite for a box below the feet, on which the player stands."""
     body = (*feet[:2], max(feet[2], box.low[2]))
     return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
 
 
 def _hides(box: Box, feet: Point, other: Box) -> bool:
-    """Whether a box stands between a player and another box: on the plan, and not above or below that."""
+    """Whether a box stands between a player and another box, seen from above; both boxes must overlap in height."""
     first, last = 0.0, 1.0
     for at, low, high, near, far in zip(feet[:2], box.low, box.high, other.low, other.high, strict=False):
         way = min(max(at, near), far) - at
@@ -70,20 +71,20 @@ def _hides(box: Box, feet: Point, other: Box) -> bool:
         else:
             enters, leaves = sorted(((low - at) / way, (high - at) / way))
             first, last = max(first, enters), min(last, leaves)
-    # What is met where the way ends is beside it.
+    # A box that is met at the very end of the way stands beside the other box.
     return first <= last and first < _BESIDE and box.low[2] < other.high[2] and other.low[2] < box.high[2]
 
 
 def _distance(point: Point, box: Box) -> float:
-    """From a point to a box, on the plan; far where the point is more than half a metre below or above the box."""
+    """The horizontal distance from a point to a box; infinite if the point is over 0.5 m below or above the box."""
     if not box.low[2] - 0.5 <= point[2] <= box.high[2] + 0.5:
         return float("inf")
-    away = [max(low - at, 0.0, at - high) for at, low, high in zip(point[:2], box.low, box.high, strict=False)]
-    return hypot(*away)
+    offsets = [max(low - at, 0.0, at - high) for at, low, high in zip(point[:2], box.low, box.high, strict=False)]
+    return hypot(*offsets)
 
 
 def _quarter(bounds: Box, point: Point) -> str:
-    """The part of the level, as on a map."""
+    """The part of the level in which a point lies, by compass direction, or ``middle``."""
     share = [(at - low) / (high - low) for at, low, high in zip(point, bounds.low, bounds.high, strict=True)]
     north = "north" if share[1] > 2 / 3 else "south" if share[1] < 1 / 3 else ""
     east = "east" if share[0] > 2 / 3 else "west" if share[0] < 1 / 3 else ""

@@ -1,4 +1,4 @@
-"""Why a case has its verdict: sentences for people, the weightiest first."""
+"""The reasons of a verdict, in sentences, most important first."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError
 
 _OVERLAYS: Final = "overlays/"
-"""How the names of overlays among the files of a level begin."""
+"""The prefix of the names of overlays among the files of a level."""
 
 
 def reasons(
     judgement: Judgement, thresholds: Thresholds, now: Sequence[Account], before: Sequence[Account]
 ) -> Iterator[str]:
-    """What the statistics say."""
-    passed, used = (sum(each.success for each in accounts) for accounts in (now, before))
+    """Describe the statistics of a verdict: the pass rate and the changed figures."""
+    passed, passed_before = (sum(account.success for account in accounts) for accounts in (now, before))
     good, bad = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
-    met = f"met in {counted(passed, len(now), 'episodes')}, before in {counted(used, len(before))}"
+    met = f"met in {counted(passed, len(now), 'episodes')}, before in {counted(passed_before, len(before))}"
     if judgement.verdict == "fail":
         yield f"{met}: certainly in less than {bad}"
     elif judgement.rate_interval[0] >= thresholds.pass_rate:
@@ -43,72 +43,79 @@ def reasons(
         yield _moved(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:
         certain = {change.figure for change in judgement.changes}
-        for figure in (each for each in beyond(now, before, thresholds) if each not in certain):
+        for figure in (name for name in beyond(now, before, thresholds) if name not in certain):
             yield f"{_apart(figure, now, before)}; that is {getattr(thresholds, figure):g} or more, but not certain"
 
 
 def _moved(figure: str, now: float, before: float) -> str:
-    """That the mean of a figure is another one."""
+    """Say that the mean of a figure has changed."""
     how = "lower" if now < before else "higher"
     return f"{figure} is {how}, {now:.2f} on average; before: {before:.2f}"
 
 
 def _apart(figure: str, now: Sequence[Account], before: Sequence[Account]) -> str:
-    """That the mean of a figure is another one over the seeds that both have.
+    """Say that the mean of a figure has changed over the seeds that both have.
 
-    The mean of all of the baseline's episodes, which stands beside it in reports, is told where it reads otherwise.
+    Reports also show the mean over all episodes of the baseline.  The sentence mentions it if it
+    looks different.
     """
     count = min(len(now), len(before))
-    new, old, of_all = (fmean(getattr(each, figure) for each in some) for some in (now[:count], before[:count], before))
-    if f"{old:.2f}" == f"{of_all:.2f}":
+    new, old, overall = (
+        fmean(getattr(account, figure) for account in accounts) for accounts in (now[:count], before[:count], before)
+    )
+    if f"{old:.2f}" == f"{overall:.2f}":
         return _moved(figure, new, old)
     how = "lower" if new < old else "higher"
-    same = f"before, in the same {count} episodes: {old:.2f} (in all {len(before)}: {of_all:.2f})"
+    same = f"before, in the same {count} episodes: {old:.2f} (in all {len(before)}: {overall:.2f})"
     return f"{figure} is {how}, {new:.2f} on average; {same}"
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
-    """What nobody can reach in the level, whoever plays; of what is shut off by the same, the first."""
-    found = [each for each in reach_warnings(level, fspa) if each.code == "TLT0814"]
-    yield from {each.help: f"{each.title}: {each.help}" for each in reversed(found)}.values()
+    """Describe what is unreachable in the level for any player.
+
+    If several things have the same cause, only the first one is described.
+    """
+    warnings = [warning for warning in reach_warnings(level, fspa) if warning.code == "TLT0814"]
+    yield from {warning.help: f"{warning.title}: {warning.help}" for warning in reversed(warnings)}.values()
 
 
 def is_infeasible(level: Level, fspa: Fspa) -> bool:
-    """Whether nobody can do what a spec asks, whoever plays; :func:`obstacles` say why.
+    """Whether no player can meet the spec; :func:`obstacles` says why.
 
-    False of a level that is too large to be searched.
+    False if the level is too large to be searched.
     """
     try:
-        found = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+        diagnostics = check_reach(level, reachable(level), fspa, SpecPlaces(None))
     except TltlError:
         return False
-    return any(each.severity == "error" for each in found)
+    return any(diagnostic.severity == "error" for diagnostic in diagnostics)
 
 
 def edits(
     now: Identity, before: Identity, changes: Sequence[str], texts: Texts = (), texts_before: Texts = ()
 ) -> Iterator[str]:
-    """What is otherwise than in the baseline: files, what overlays say that they change (``changes``), and versions.
+    """Describe the differences from the baseline: files, versions and ``changes``.
 
-    Of files whose text is there, now and before, it is told which keys have changed.
+    ``changes`` are the descriptions of the overlays.  If both texts of a file are known, its changed
+    keys are named.
     """
     old, new = dict(before.files), dict(now.files)
     differ = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
-    # The baseline of another variant says nothing of overlays that are not this one's.
-    aside = {name for name in differ if now.variant != before.variant and name.startswith(_OVERLAYS)}
-    aside -= old.keys() & new.keys()
-    if changed := [name for name in differ if name not in aside]:
+    # Overlays that only one of two different variants uses are no changes since the baseline.
+    variant_overlays = {name for name in differ if now.variant != before.variant and name.startswith(_OVERLAYS)}
+    variant_overlays -= old.keys() & new.keys()
+    if changed := [name for name in differ if name not in variant_overlays]:
         words = (f"{name}{_keys(dict(texts_before).get(name), dict(texts).get(name))}" for name in changed)
         yield f"changed since the baseline: {', '.join(words)}"
-    if aside:
-        yield f"differs from `{before.variant}` by {', '.join(name for name in differ if name in aside)}"
+    if variant_overlays:
+        yield f"differs from `{before.variant}` by {', '.join(name for name in differ if name in variant_overlays)}"
     yield from changes
     for name, version in before.versions.items():
-        if (here := now.versions.get(name)) != version:
-            yield f"the baseline was recorded with {name} {version}, and this is {here or 'without it'}"
+        if (version_now := now.versions.get(name)) != version:
+            yield f"the baseline was recorded with {name} {version}, and this is {version_now or 'without it'}"
 
 
 def _keys(before: str | None, now: str | None) -> str:
-    """The keys of a file that have changed, in brackets; nothing where they are not known."""
+    """The changed keys of a file, in parentheses; empty if they are unknown."""
     keys = "" if before is None or now is None else changed_keys(before, now)
     return f" ({keys})" if keys else ""

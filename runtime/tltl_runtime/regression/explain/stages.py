@@ -1,4 +1,4 @@
-"""The stages of a spec: what has to be done in a state of its automaton, in the words of its atoms."""
+"""The stages of a spec: what to do next in a state of its automaton, in terms of its atoms."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from tltlc.expression.tree import Expression, Param, Signal, nodes
 from tltlc.monitor.tables import tables
 
 REACHES: Final = "reaches "
-"""How a deed begins that is to be somewhere."""
+"""The prefix of the description of a stage that is reached at an entity."""
 
 MEETS: Final = "meets the spec"
 
 _FAR: Final = 1e4
-"""Metres that no level has."""
+"""A distance, in metres, that is greater than any level."""
 
 _PRECISION: Final = 1e-4
-"""Metres to which it is known from where on one is near."""
+"""The precision, in metres, of :func:`near_enough`."""
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
-    """The entity that one must come near to, and to nothing else, for an atom to hold; None where that is not so."""
+    """The entity that the player must approach for an atom to hold; None unless the atom depends on just that."""
     expression = fspa.atoms[atom].expression
     names = {node.name for node in nodes(expression) if isinstance(node, Signal)}
     if len(names) != 1:
@@ -36,7 +36,10 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
 
 
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
-    """The metres below which an atom holds that has a target; None where it has none, or other ``params`` decide."""
+    """The distance, in metres, below which an atom with a target holds.
+
+    None if the atom has no target or depends on parameters that are not in ``params``.
+    """
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
     if target is None or {node.name for node in nodes(expression) if isinstance(node, Param)} - params.keys():
         return None
@@ -58,32 +61,38 @@ def _holds(
 
 
 def deed(fspa: Fspa, state: int) -> str:
-    """What leads from a state nearer to acceptance: ``reaches `s1```, ``reaches `a` or `b```, ``makes `open` true``."""
-    found = [
+    """Describe what leads from a state towards acceptance.
+
+    For example ``reaches `s1```, ``reaches `a` or `b``` or ``makes `open` true``.
+    """
+    descriptions = [
         words for edge in tables(fspa).improving[state] for prime in edge.guard.primes if (words := _deed(fspa, prime))
     ]
-    distinct = list(dict.fromkeys(found))
-    if distinct and all(each.startswith(REACHES) for each in distinct):
-        return REACHES + " or ".join(each.removeprefix(REACHES) for each in distinct)
+    distinct = list(dict.fromkeys(descriptions))
+    if distinct and all(description.startswith(REACHES) for description in distinct):
+        return REACHES + " or ".join(description.removeprefix(REACHES) for description in distinct)
     return " or ".join(distinct) or MEETS
 
 
 def _deed(fspa: Fspa, prime: Implicant) -> str:
-    """What makes a prime implicant true: where one is to go somewhere, that alone; what is to hold before what is not
-    to; of what is kept, nothing.
+    """Describe what makes a prime implicant true.
+
+    Targets come first and are named alone; otherwise the atoms that must hold; otherwise the atoms
+    that must not hold.  Literals that every accepting run needs all the time are left out.
     """
-    asked = [(atom, holds) for atom, holds in prime if not _is_kept(fspa, atom, holds)]
-    if targets := [f"`{target}`" for atom, holds in asked if holds and (target := target_of(fspa, atom))]:
+    literals = [(atom, holds) for atom, holds in prime if not _is_kept(fspa, atom, holds)]
+    if targets := [f"`{target}`" for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
         return f"{REACHES}{' and '.join(targets)}"
     for truth in (True, False):
-        if wanted := [atom for atom, holds in asked if holds == truth]:
+        if wanted := [atom for atom, holds in literals if holds == truth]:
             return f"makes {' and '.join(f'`{fspa.atoms[atom].name}`' for atom in wanted)} {str(truth).lower()}"
     return ""
 
 
 def deed_of_all(fspa: Fspa, states: Collection[int], distance: int) -> str:
-    """What leads from these states, all of one distance to acceptance, nearer to it; where that is not the same in all
-    of them, how near.
+    """Describe what leads from these states, all at the same distance, towards acceptance.
+
+    If the descriptions differ, say how near to acceptance it leads.
     """
     deeds = {deed(fspa, state) for state in states}
     if len(deeds) == 1:
@@ -93,16 +102,20 @@ def deed_of_all(fspa: Fspa, states: Collection[int], distance: int) -> str:
 
 
 def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
-    """Whether all accepting runs need that an atom holds, or does not, all the time: every edge to no trap asks it."""
+    """Whether accepting runs need this truth value of an atom all the time.
+
+    This is so if every edge that does not lead to a trap requires it.
+    """
     kept = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
     return all((atom, truth) in prime for edge in kept for prime in edge.guard.primes)
 
 
 def together(deeds: Sequence[str]) -> str:
-    """Several deeds, one after the other: ``reaches `s1`, `s2```; with a choice among them ``reaches `s1`, then `a` or
-    `b```.
+    """Join descriptions of successive stages: ``reaches `s1`, `s2```.
+
+    If one of them contains a choice: ``reaches `s1`, then `a` or `b```.
     """
-    between = ", then " if any(" or " in each for each in deeds) else ", "
-    if deeds and all(each.startswith(REACHES) for each in deeds):
-        return REACHES + between.join(each.removeprefix(REACHES) for each in deeds)
+    between = ", then " if any(" or " in description for description in deeds) else ", "
+    if deeds and all(description.startswith(REACHES) for description in deeds):
+        return REACHES + between.join(description.removeprefix(REACHES) for description in deeds)
     return between.join(deeds)

@@ -1,1 +1,1 @@
-"""Training on the levels that no longer pass."""
+"""Retraining of policies on levels whose cases no longer pass."""

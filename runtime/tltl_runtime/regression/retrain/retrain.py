@@ -1,4 +1,4 @@
-"""Policies are trained on levels that changed, each from where it was, to see whether these are feasible after all."""
+"""Continue the training of policies on changed levels, to find out whether these levels are feasible."""
 
 from __future__ import annotations
 
@@ -44,19 +44,21 @@ from tltlc.io.files import reason
 from tltlc.io.writing import remove_file, write_files
 
 FOLDER: Final = "retrained"
-"""Below the folder of a run, with a training for each case."""
+"""The name of the folder, in the folder of a run, that contains the training of each case."""
 EPISODE: Final = "met.episode.npz"
-"""In the folder of a training: an episode of the retrained policy that met the spec."""
+"""The file, in the folder of a training, with an episode of the retrained policy that met the spec."""
 
 _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
 
 
 def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: Pool) -> Run:
-    """The training of a case's policy on its level, for so many minutes at the most, below the ``folder`` of a run.
+    """Configure the retraining of a case's policy on its level, below the ``folder`` of a run.
+
+    It stops after ``minutes`` at the latest.
 
     Raises:
-        TltlError: TLT0942, the policy of a case lies where the training goes.
+        TltlError: TLT0942, the policy of a case lies in the folder of the training.
     """
     place, path = _place(suite, ready.case, folder), policy_file(ready.case.policy)
     setup, card, settings = ready.setup, ready.setup.policy.card, read_settings()
@@ -77,34 +79,34 @@ def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: P
 
 
 def is_kept(run: Run) -> bool:
-    """Whether the folder has this very training, be it over or not: the same level, spec, policy, seed and settings.
+    """Whether the folder contains this training, finished or not: same level, spec, policy, seed and settings.
 
     Raises:
-        TltlError: what is wrong with the level, which nothing in the folder is to be blamed for.
+        TltlError: the level does not load, which is no fault of the folder.
     """
     wanted = identity(run)
     try:
-        # Its level may be named otherwise there; what was in it then counts.
-        there = replace(read_run(run.folder), level=run.level, variant=run.variant)
-        if {**identity(there), "level": read_level_hash(run.folder)} != wanted:
+        # The folder may name the level differently.  Compare the hash of its content instead.
+        stored = replace(read_run(run.folder), level=run.level, variant=run.variant)
+        if {**identity(stored), "level": read_level_hash(run.folder)} != wanted:
             return False
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, wanted)
     except TltlError:
-        # It is damaged, or of another version.
+        # The training is damaged or has another version.
         return False
-    # A search that was not over has none yet, and begins anew.
-    over = (run.folder / RECORD).exists()
-    return not over or (checkpoint is not None and (run.folder / POLICY).exists())
+    # A training that was stopped during its search has no checkpoint yet; the search starts again.
+    is_finished = (run.folder / RECORD).exists()
+    return not is_finished or (checkpoint is not None and (run.folder / POLICY).exists())
 
 
 def check_places(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Raise TltlError, TLT0942, where a policy lies in the place of a training for one of the cases."""
+    """Raise TltlError, TLT0942, if a policy lies in the folder of the training for one of the cases."""
     for case in cases:
         _place(suite, case, folder)
 
 
 def _place(suite: Suite, case: Case, folder: Path) -> Path:
-    """Where the training for a case goes; raises TltlError, TLT0942, where the policy of a case lies there."""
+    """The folder of the training for a case; raises TltlError, TLT0942, if the policy of a case lies there."""
     place = case_folder(suite, case.name, folder / FOLDER)
     for other in suite.cases:
         if policy_file(other.policy).resolve().parent == place.resolve():
@@ -116,12 +118,14 @@ def _place(suite: Suite, case: Case, folder: Path) -> Path:
 
 
 def make_room(suite: Suite, folder: Path) -> Path | None:
-    """Make room for another training in a folder: where the one that is there was moved to, None where it is removed.
+    """Make room for another training in a folder.
 
-    One that is over is moved as a whole, beside itself; of another nothing is left, but for files that are not its own.
+    A finished training is moved to a new folder beside it, whose path is returned.  The files of an
+    unfinished training are removed, and None is returned.  Other files in the folder remain.
 
     Raises:
-        TltlError: TLT0005, a file cannot be removed, or the folder not be moved; TLT0865, another process trains there.
+        TltlError: TLT0005, a file cannot be removed, or the folder cannot be moved; TLT0865, another
+            process trains there.
     """
     names = (RUN, CHECKPOINT, POLICY, CURVE, METRICS, EPISODE, _RESULT)
     with held(folder):
@@ -129,36 +133,38 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
             for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
                 remove_file(path, WRITABLE)
             return None
-    # Not before the lock's file is closed: Windows would refuse.
-    aside = _free_beside(suite, folder)
+    # Windows refuses to move the folder before the lock file is closed.
+    new_folder = _free_beside(suite, folder)
     try:
-        folder.rename(aside)
+        folder.rename(new_folder)
     except OSError as error:
-        title = f"cannot move `{folder}` to `{aside}`: {reason(error)}"
+        title = f"cannot move `{folder}` to `{new_folder}`: {reason(error)}"
         raise TltlError([Diagnostic("TLT0005", title, help=WRITABLE)]) from None
-    return aside
+    return new_folder
 
 
 def _free_beside(suite: Suite, folder: Path) -> Path:
-    """The first of ``FOLDER-2``, ``FOLDER-3`` and so on that is not there, and where no training of the suite goes."""
+    """The first of ``FOLDER-2``, ``FOLDER-3`` and so on that does not exist and is not reserved for another case."""
     taken = {case_folder(suite, case.name, folder.parent) for case in suite.cases}
-    beside = (folder.with_name(f"{folder.name}-{number}") for number in count(2))
-    return next(path for path in beside if path not in taken and not path.exists())
+    candidates = (folder.with_name(f"{folder.name}-{number}") for number in count(2))
+    return next(path for path in candidates if path not in taken and not path.exists())
 
 
 def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[int, Account], None]) -> Retrained:
-    """What the training in ``run.folder`` came to, which is over: its policy plays fresh episodes, or has done so.
+    """Return the result of the finished training in ``run.folder``.
 
-    They end as soon as it is certain whether the pass rate is that of the case's thresholds; ``told`` gets the number
-    of episodes so far and the last one.
+    The retrained policy plays fresh episodes, unless the result is cached.  It stops as soon as it is
+    certain whether the pass rate reaches the case's threshold.  After each episode, ``told`` is
+    called with the number of episodes so far and the last account.
 
     Raises:
-        TltlError: what is wrong with the policy's file; what playing raises; TLT0005.
+        TltlError: the policy's file cannot be read; errors from playing; TLT0005, a file cannot be
+            written.
     """
     assert done.ready is not None
     policy, trained = read_policy(run.folder / POLICY), trained_of(run)
     error = suite.error / len(suite.cases)
-    # Episodes of another seed: those of the suite's were played by the policy that this one comes of.
+    # Use another seed: the original policy has already played the episodes of the suite's seed.
     setup = replace(done.ready.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
     ready = replace(done.ready, setup=setup, case=replace(done.ready.case, policy=run.folder))
     inputs = _inputs(ready, weights_hash(policy), trained, error, done.report.accounts)
@@ -166,35 +172,39 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
         return kept
     accounts, recording, interval = _played(ready, error, pool, told)
     thresholds = ready.case.thresholds
-    met = sum(each.success for each in (*accounts, *done.report.accounts))
+    met = sum(account.success for account in (*accounts, *done.report.accounts))
     outcome = outcome_of(trained, interval[0], thresholds, met)
-    of_all, best = figures_of(accounts), _best(accounts, setup.fspa)
+    overall, best = figures_of(accounts), _best(accounts, setup.fspa)
     place = f"{FOLDER}/{run.folder.name}"
-    found = Retrained(
+    result = Retrained(
         outcome=outcome,
-        text=sentence(outcome, trained, of_all, interval, thresholds, best),
+        text=sentence(outcome, trained, overall, interval, thresholds, best),
         trained=trained,
-        figures=of_all,
+        figures=overall,
         rate_interval=interval,
         best=best,
         policy=f"{place}/{POLICY}",
         episode=f"{place}/{EPISODE}" if recording else None,
     )
     files: dict[str, str | bytes] = {EPISODE: recording} if recording else {}
-    write_files(run.folder, {**files, _RESULT: kept_text(inputs, found)}, WRITABLE, over_inputs=True)
-    return found
+    write_files(run.folder, {**files, _RESULT: kept_text(inputs, result)}, WRITABLE, over_inputs=True)
+    return result
 
 
 def trained_of(run: Run) -> Trained:
-    """How the training in ``run.folder`` went, which is over; raises TltlError for its checkpoint."""
+    """Summarize the finished training in ``run.folder``.
+
+    Raises:
+        TltlError: the checkpoint cannot be read; TLT0863, the end of the training is not recorded.
+    """
     state = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert state is not None
     end = recorded_end(run.folder) or state.reason(run.settings.stop)
     if end is None:
         title = f"`{run.folder / RECORD}` does not say how the training ended"
         raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then goes on to its end")])
-    # The agent's own successes are ways, too, be they shorter or the first.
-    lengths = [int(each) for process in state.processes for each in process.get("way_lengths", ())]
+    # Successes of the agent count, too: they may be shorter than the search's, or the only ones.
+    lengths = [int(length) for process in state.processes for length in process.get("way_lengths", ())]
     return Trained(
         end=end,
         steps=state.steps,
@@ -208,15 +218,17 @@ def trained_of(run: Run) -> Trained:
 def _played(
     ready: Ready, error: float, pool: Pool, told: Callable[[int, Account], None]
 ) -> tuple[list[Account], bytes, tuple[float, float]]:
-    """Episodes until it is certain whether the pass rate is the one asked for, a recording of one that met the spec,
-    and the interval of the rate.
+    """Play episodes until it is certain whether the pass rate reaches the case's threshold.
+
+    Return their accounts, the recording of the first that met the spec (or empty bytes), and the
+    confidence interval of the pass rate.
     """
     wanted, accounts, recording, interval = ready.case.thresholds.pass_rate, list[Account](), b"", (0.0, 1.0)
     with closing(episodes(ready, pool)) as playing:
-        for each in playing:
-            accounts.append(each.account)
-            told(len(accounts), each.account)
-            recording = recording or (each.recording if each.account.success else b"")
+        for episode in playing:
+            accounts.append(episode.account)
+            told(len(accounts), episode.account)
+            recording = recording or (episode.recording if episode.account.success else b"")
             passed = sum(account.success for account in accounts)
             interval = rate_interval(passed, len(accounts) - passed, error)
             if len(accounts) >= LEAST_EPISODES and (interval[0] >= wanted or interval[1] < wanted):
@@ -225,21 +237,21 @@ def _played(
 
 
 def _best(accounts: Sequence[Account], fspa: Fspa) -> Best | None:
-    failed = [each for each in accounts if not each.success]
+    failed = [account for account in accounts if not account.success]
     if not failed:
         return None
-    farthest = max(failed, key=lambda each: each.progress)
+    farthest = max(failed, key=lambda account: account.progress)
     return Best(farthest.progress, fspa.states[farthest.unmet].label.english)
 
 
 def _inputs(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:
-    """The identity of all that the outcome depends on; ``own`` are the episodes by which the case was judged."""
+    """The hash of everything that the outcome depends on; ``own`` are the episodes by which the case was judged."""
     case = ready.case
     parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
-    return inputs_hash([*parts, sum(each.success for each in own)])
+    return inputs_hash([*parts, sum(account.success for account in own)])
 
 
 def _kept(folder: Path, inputs: str) -> Retrained | None:
-    """What an earlier run has found, if nothing has changed since, nor its episode been removed."""
-    found = read_kept(Retrained, folder / _RESULT, inputs)
-    return found if found and (found.episode is None or (folder / EPISODE).is_file()) else None
+    """The cached result, if nothing has changed since and its episode's file exists; else None."""
+    result = read_kept(Retrained, folder / _RESULT, inputs)
+    return result if result and (result.episode is None or (folder / EPISODE).is_file()) else None

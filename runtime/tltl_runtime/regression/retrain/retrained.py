@@ -1,4 +1,4 @@
-"""What came of training a case's policy on the level as it is now: whether that is feasible after all."""
+"""The result of retraining a case's policy on the changed level: whether the level is feasible."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from tltlc.core.record import record
 Outcome = Literal["learned", "feasible", "no_way"]
 
 OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
-"""What outcomes are called."""
+"""The displayed names of outcomes."""
 
 
 @record
 class Trained:
-    """A training that began with a case's policy, and its end.
+    """A finished training that started from a case's policy.
 
-    It took ``steps`` of the agent and ``seconds``, the search included, which took ``searched`` decisions and was
-    ``complete`` unless a limit broke it off.  ``shortest`` is the length in steps of the shortest way to meet the spec
-    that is known, of the search or of the agent; None where there is none.
+    ``steps`` are the agent's steps.  ``seconds`` include the search, which took ``searched`` decisions
+    and was ``complete`` unless a limit stopped it.  ``shortest`` is the length, in steps, of the
+    shortest known trajectory that meets the spec, by the search or by the agent; None if none is known.
     """
 
     end: Literal["met", "steps", "minutes"]
@@ -35,7 +35,7 @@ class Trained:
 
 @record
 class Best:
-    """The fresh episode that came farthest: its progress, in [0, 1], and in English what remained to be done then."""
+    """The best failed episode: its progress, in [0, 1], and in English what remained to be done at that point."""
 
     progress: float
     remained: str
@@ -43,13 +43,14 @@ class Best:
 
 @record
 class Retrained:
-    """Whether a changed level is feasible, as far as a training tells.
+    """Whether a changed level is feasible, according to a training.
 
-    ``outcome`` is ``learned`` where the retrained policy certainly meets the spec in at least the case's ``pass_rate``
-    of episodes, ``feasible`` where the spec was met, by whomever, and ``no_way`` where it never was.  ``figures`` are
-    those of the retrained policy in fresh episodes, ``rate_interval`` is what can be said of its pass rate for certain,
-    and ``best`` is of the episodes that failed, None where all met the spec.  ``policy`` and ``episode``, a recording
-    of one that met it, are files in the folder of the run.
+    ``outcome`` is ``learned`` if the retrained policy's pass rate is certainly at least the case's
+    ``pass_rate``; ``feasible`` if the search or any policy met the spec; ``no_way`` if none did.
+    ``figures`` are the figures of the retrained policy in fresh episodes, and ``rate_interval`` is the
+    confidence interval of its pass rate.  ``best`` is the best failed episode, or None if all episodes
+    met the spec.  ``policy`` and ``episode`` are paths relative to the folder of the run; ``episode``
+    is a recording of an episode that met the spec.
     """
 
     outcome: Outcome
@@ -63,8 +64,10 @@ class Retrained:
 
 
 def outcome_of(trained: Trained, low: float, thresholds: Thresholds, met: int) -> Outcome:
-    """What a training shows; ``low`` is the lower end of the pass rate, ``met`` the episodes that met the spec, the
-    case's own among them.
+    """The outcome of a training.
+
+    ``low`` is the lower bound of the pass rate.  ``met`` counts the episodes that met the spec,
+    including the case's own.
     """
     if low >= thresholds.pass_rate:
         return "learned"
@@ -79,27 +82,29 @@ def sentence(
     thresholds: Thresholds,
     best: Best | None,
 ) -> str:
-    """What is told of the outcome."""
+    """Describe the outcome in a sentence."""
     took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
     if trained.searched:
-        both = f"{trained.searched:,} and {trained.steps:,} steps"
-        took = f"{duration(trained.seconds)} of search and training ({both})"
+        counts = f"{trained.searched:,} and {trained.steps:,} steps"
+        took = f"{duration(trained.seconds)} of search and training ({counts})"
     count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
     now = f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
     if outcome == "learned":
         return f"feasible: after {took} {now}"
     if outcome == "feasible":
-        said = ["feasible, but not learned"]
+        clauses = ["feasible, but not learned"]
         if trained.shortest is not None:
-            said.append(f"there are ways, the shortest that is known takes {trained.shortest:,} steps")
-        said.append(f"after {took} {now}, and {percent_exactly(thresholds.pass_rate)} are asked for")
+            clauses.append(f"there are ways, the shortest that is known takes {trained.shortest:,} steps")
+        clauses.append(f"after {took} {now}, and {percent_exactly(thresholds.pass_rate)} are asked for")
     else:
         broken = "" if trained.complete else ", which the limit broke off,"
         search, training = f"a search of {trained.searched:,} steps{broken}", f"a training of {trained.steps:,} steps"
         in_all = f"{duration(trained.seconds)} in all"
-        said = [f"no way found: neither {search} nor {training}, {in_all}, met the spec once"]
-        said.append("the level is likely infeasible" if trained.complete else "that says little: let it train longer")
+        clauses = [f"no way found: neither {search} nor {training}, {in_all}, met the spec once"]
+        clauses.append(
+            "the level is likely infeasible" if trained.complete else "that says little: let it train longer"
+        )
     if best is not None:
-        which = "the best of the failed ones" if passed else "the best of its episodes"
-        said.append(f"{which} came to progress {number(best.progress, 2)}, where this remained: {best.remained}")
-    return "; ".join(said)
+        best_of = "the best of the failed ones" if passed else "the best of its episodes"
+        clauses.append(f"{best_of} came to progress {number(best.progress, 2)}, where this remained: {best.remained}")
+    return "; ".join(clauses)

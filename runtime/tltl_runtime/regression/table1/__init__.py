@@ -1,1 +1,1 @@
-"""Table I of the paper, measured with our levels."""
+"""Table I of the paper, measured on the levels of this package."""

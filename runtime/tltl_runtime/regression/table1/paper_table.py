@@ -1,4 +1,4 @@
-"""Table I of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, and our own beside it."""
+"""Table I of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, and its comparison with our own figures."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ LEVELS: Final = ("navigation", "cover_and_hide", "branching")
 """Cases 1 to 3 of the paper."""
 VARIANTS: Final = ("v0", "v1", "v2")
 RUNS: Final = 25
-"""As many simulations the paper's figures are of."""
+"""The number of simulations for each figure in the paper."""
 
 
 @record
 class CellFigures:
-    """Of one model on one variant: the pass rate over ``runs`` episodes, progress and reward as mean and deviation."""
+    """The figures of one model on one variant over ``runs`` episodes.
+
+    ``progress`` and ``reward`` are means with standard deviations.
+    """
 
     runs: int
     pass_rate: float
@@ -30,9 +33,10 @@ class CellFigures:
 
 @record
 class Row:
-    """Of one model on one level: the figures of each variant, and the hours that its training took, None of none.
+    """The figures of one model on one level, by variant.
 
-    ``cloned`` is the share of its steps with behavioural cloning alone, None of a model that does not imitate.
+    ``hours`` is the duration of the training, or None without a training.  ``cloned`` is the share of
+    steps with behavioural cloning alone, or None if the model does not imitate.
     """
 
     figures: Mapping[str, CellFigures]
@@ -41,9 +45,12 @@ class Row:
 
 
 def _row(hours: float | None, *figures: tuple[float, float, float, float, float], cloned: float | None = None) -> Row:
-    """The paper's figures of v0, v1, v2: pass rate, mean and deviation of progress, of reward."""
-    made = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
-    return Row(dict(zip(VARIANTS, made, strict=True)), hours, cloned)
+    """A row of the paper.
+
+    For each of v0, v1 and v2: pass rate, mean and deviation of progress, mean and deviation of reward.
+    """
+    cells = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
+    return Row(dict(zip(VARIANTS, cells, strict=True)), hours, cloned)
 
 
 PAPER: Final[Mapping[tuple[str, Model], Row]] = {
@@ -87,11 +94,11 @@ PAPER: Final[Mapping[tuple[str, Model], Row]] = {
         6.8, (1.00, 1.00, 0.00, 0.66, 0.01), (0.93, 0.96, 0.17, 0.64, 0.36), (0.47, 0.89, 0.23, 0.27, 0.46)
     ),
 }
-"""The rows of the paper, whose experts are humans."""
+"""The rows of the paper.  Its experts are humans."""
 
 
 def markdown(rows: Mapping[tuple[str, Model], Row]) -> str:
-    """The table as Markdown: a row of ours, the paper's below it; what is not there yet is left out."""
+    """Format the table as Markdown: each of our rows, followed by the paper's row.  Missing rows are left out."""
     return "\n".join(_lines(rows)) + "\n"
 
 
@@ -108,17 +115,17 @@ def _lines(rows: Mapping[tuple[str, Model], Row]) -> Iterator[str]:
 
 
 def _line(level: str, model: str, row: Row) -> str:
-    there = [row.figures[variant] for variant in VARIANTS if variant in row.figures]
-    passed = " / ".join(_rate(each) for each in there)
+    cells = [row.figures[variant] for variant in VARIANTS if variant in row.figures]
+    passed = " / ".join(_rate(cell) for cell in cells)
     spreads = (
-        " / ".join(f"{spread.mean:.2f} ± {spread.std:.2f}" for spread in each)
-        for each in ([figures.progress for figures in there], [figures.reward for figures in there])
+        " / ".join(f"{spread.mean:.2f} ± {spread.std:.2f}" for spread in column)
+        for column in ([figures.progress for figures in cells], [figures.reward for figures in cells])
     )
     return f"| {level} | {model} | {passed} | {' | '.join(spreads)} | {_time(row)} |"
 
 
 def _rate(figures: CellFigures) -> str:
-    """A rate, with its interval where there are more runs than in the paper."""
+    """Format a pass rate, with its confidence interval if there are more runs than in the paper."""
     if figures.runs <= RUNS:
         return f"{figures.pass_rate:.2f}"
     low, high = wilson(round(figures.pass_rate * figures.runs), figures.runs)

@@ -1,4 +1,4 @@
-"""The cells of our Table I: a model plays 100 episodes of a level in a variant; what was played is kept in a folder."""
+"""The cells of our Table I: a model plays 100 episodes of a level in a variant.  Results are cached in a folder."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from tltlc.io.writing import write_file
 
 EPISODES: Final = 100
 SEED: Final = 25_000
-"""Of the evaluations; no training begins an episode with one of theirs but by chance."""
+"""The seed of the evaluations.  Only by chance do the seeds of their episodes occur in a training."""
 
 
 @record
 class Went:
-    """How an episode went."""
+    """The result of an episode."""
 
     success: bool
     progress: float
@@ -41,35 +41,36 @@ class Went:
 
 
 def figures(episodes: Sequence[Went], runs: int) -> CellFigures:
-    """The figures of a cell over the first ``runs`` of its episodes."""
+    """Return the figures of a cell over its first ``runs`` episodes."""
     first = episodes[:runs]
     return CellFigures(
         runs=len(first),
-        pass_rate=sum(each.success for each in first) / len(first),
-        progress=spread_of([each.progress for each in first]),
-        reward=spread_of([each.reward for each in first]),
+        pass_rate=sum(episode.success for episode in first) / len(first),
+        progress=spread_of([episode.progress for episode in first]),
+        reward=spread_of([episode.reward for episode in first]),
     )
 
 
 def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> tuple[Went, ...]:
-    """The episodes of a cell that ``folder`` has, or that are played now and kept there.
+    """Return the episodes of a cell: cached in ``folder``, or played now and stored there.
 
-    The expert plays where there is no ``policy``.  Whoever plays is judged by the spec that the level is made for now.
+    Without a ``policy``, the expert plays.  The current spec of the level judges the episodes.
 
     Raises:
-        TltlError: what playing raises, TLT0843 for a policy of another spec; TLT0005.
+        TltlError: errors from playing, among them TLT0843, the policy was trained for another spec;
+            TLT0005, the file cannot be written.
     """
     path = folder / f"{level}-{variant}-{model}.json"
     inputs = _inputs(level, variant, policy)
-    if (kept := read_kept(tuple[Went, ...], path, inputs)) is not None:
-        return kept
+    if (cached := read_kept(tuple[Went, ...], path, inputs)) is not None:
+        return cached
     episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
     write_file(path, kept_text(inputs, episodes), over_inputs=True)
     return episodes
 
 
 def _inputs(level: str, variant: str, policy: Path | None) -> str:
-    """The identity of all that a cell depends on."""
+    """The hash of everything that a cell depends on."""
     place = load_level(level, variant)
     spec = load_task(spec_of(place), offered=params(place)).fspa
     played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
@@ -78,24 +79,24 @@ def _inputs(level: str, variant: str, policy: Path | None) -> str:
 
 def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:
     spec = spec_of(load_level(level, variant))
-    for each in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
-        yield Went(each.success, each.progress, each.reward)
+    for episode in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
+        yield Went(episode.success, episode.progress, episode.reward)
 
 
 def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
-    """The careful expert's episodes, which are those of the policies, so that all play the same; on this machine."""
+    """Play the careful expert's episodes on this machine, with the same seeds as the policies."""
     tasks = [Task(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
 
     def alone(task: Task) -> str:
         return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
 
-    for each in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
-        yield Went(each.played.success, each.played.progress, each.played.reward)
+    for result in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
+        yield Went(result.played.success, result.played.progress, result.played.reward)
 
 
 class _ExpertPlayer:
-    """Has the careful expert play, as :class:`~tltl_runtime.evaluation.player.Player` has a policy."""
+    """Plays episodes with the careful expert, as :class:`~tltl_runtime.evaluation.player.Player` does with a policy."""
 
     def __init__(self, level: str, variant: str) -> None:
         self._env = RecordEpisode(make_env(level, variant))
@@ -126,5 +127,5 @@ class _ExpertPlayer:
         )
 
     def close(self) -> None:
-        """Free the game."""
+        """Close the environment."""
         self._env.close()

@@ -1,4 +1,4 @@
-"""The trainings of our Table I: which ones it takes, and what became of each."""
+"""The trainings of our Table I: their configuration, commands and results."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MINUTES: Final = 60.0
 
 @record
 class Limits:
-    """A training ends after so many ``steps`` of all environments, or after ``minutes`` (0: no such limit)."""
+    """The limits of a training: ``steps``, over all environments, and ``minutes`` (0: no limit)."""
 
     steps: int
     minutes: float
@@ -44,8 +44,9 @@ class TableTraining:
 
 @record
 class Trained:
-    """What a training of a ``seed`` came to: its policy, the hours it took, and the share of its steps in which it was
-    cloned, None of a model that does not imitate.
+    """The result of a training with a ``seed``: its policy and the hours that it took.
+
+    ``cloned`` is the share of its steps with behavioural cloning, or None if the model does not imitate.
     """
 
     policy: Path
@@ -55,34 +56,38 @@ class Trained:
 
 
 def limits(minutes: float | None) -> Limits:
-    """The limits of our trainings, by default of an hour."""
+    """The limits of our trainings, by default one hour."""
     return Limits(read_settings().stop.steps, _MINUTES if minutes is None else minutes)
 
 
 def limits_as_of(card: Card, minutes: float | None) -> Limits:
-    """The limits that the training of a policy had, but for ``minutes``: what has the same can be compared with it."""
+    """The limits of the training that made a policy, except for ``minutes`` if given.
+
+    Trainings with the same limits can be compared.
+    """
     stop = card.training["settings"]["stop"]
     return Limits(int(stop["steps"]), float(stop["minutes"]) if minutes is None else minutes)
 
 
 def table_training(folder: Path, level: str, model: Model, limits: Limits) -> TableTraining:
-    """The training of a model on a level as it is now.
+    """Configure the training of a model on a level as it is now.
 
-    Its place below ``folder`` is called after all that the agent learns from, but for the code: level, spec, senses and
-    settings; and the limits of an agent that imitates, which is cloned for a share of these.  So another of these is
-    another training, and where nothing is cloned, one with greater limits goes on.
+    The name of its folder contains a hash of level, spec, sensors and settings, but not of the code.
+    For a model that imitates, the hash includes the limits, since cloning takes a share of them.  So a
+    change of any of these gives a new training.  Without cloning, a training can continue with greater
+    limits.
 
     Raises:
         TltlError: the level or its spec cannot be read.
     """
     settings = replace(read_settings(), method="imitation" if model == "imitation" else "automaton")
-    there = load_level(level, "v0")
-    task = load_task(spec_of(there), offered=params(there))
+    level_now = load_level(level, "v0")
+    task = load_task(spec_of(level_now), offered=params(level_now))
     parts = [
-        level_hash(there),
+        level_hash(level_now),
         spec_hash(task.fspa),
         OBSERVATION,
-        to_json(chosen(there, None)),
+        to_json(chosen(level_now, None)),
         {path: value for path, value in leaves(to_json(settings)) if path not in MAY_CHANGE},
         to_json(limits) if settings.imitates else None,
     ]
@@ -91,34 +96,37 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 
 
 def train_arguments(training: TableTraining) -> list[str]:
-    """What ``tltlc train`` is to be told, so that the training begins or goes on.
+    """The arguments with which ``tltlc train`` starts or continues the training.
 
-    One that was broken off goes on to the limits that it was begun with, where these are greater: it may have passed
-    the others.
+    A stopped training keeps the limits that it started with if they are greater, since it may already
+    have passed the new limits.
     """
     steps, minutes = training.limits.steps, training.limits.minutes
     if (training.folder / RUN).exists():
-        begun = read_run(training.folder).settings.stop
-        what = ["--resume", str(training.folder)]
-        steps, minutes = max(steps, begun.steps), minutes and begun.minutes and max(minutes, begun.minutes)
+        initial_stop = read_run(training.folder).settings.stop
+        arguments = ["--resume", str(training.folder)]
+        steps, minutes = (
+            max(steps, initial_stop.steps),
+            minutes and initial_stop.minutes and max(minutes, initial_stop.minutes),
+        )
     else:
         method = ["--method", "imitation"] if training.imitates else []
-        what = ["--level", training.level, "--out", str(training.folder), *method]
-    return [*what, "--steps", str(steps), "--minutes", f"{minutes:g}"]
+        arguments = ["--level", training.level, "--out", str(training.folder), *method]
+    return [*arguments, "--steps", str(steps), "--minutes", f"{minutes:g}"]
 
 
 def trained(training: TableTraining) -> Trained | None:
-    """What a training came to that has ended by its goal or by its limits; None of any other.
+    """Return the result of a training that reached its goal or its limits; None for any other training.
 
     Raises:
-        TltlError: TLT0863, its folder cannot be read.
+        TltlError: TLT0863, the folder cannot be read.
     """
     if not all((training.folder / name).exists() for name in (RUN, RECORD, POLICY)):
         return None
     run = read_run(training.folder)
     stop = replace(run.settings.stop, steps=training.limits.steps, minutes=training.limits.minutes)
-    made = ended_as(replace(run, settings=replace(run.settings, stop=stop)))
-    if made is None:
+    ending = ended_as(replace(run, settings=replace(run.settings, stop=stop)))
+    if ending is None:
         return None
-    cloned = made["imitated"]["cloned"] / made["steps"] if training.imitates else None
-    return Trained(training.folder / POLICY, run.seed, made["seconds"] / 3600, cloned)
+    cloned = ending["imitated"]["cloned"] / ending["steps"] if training.imitates else None
+    return Trained(training.folder / POLICY, run.seed, ending["seconds"] / 3600, cloned)
