@@ -1,4 +1,4 @@
-"""The report on a case: verdict, figures, reasons and accounts, as it is written and read again."""
+"""The report on a case: verdict, figures, reasons and accounts."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 @record
 class CaseReport:
-    """What a case came to; of one that cannot be played there are ``causes`` alone.
+    """The report on a case.
 
-    ``causes`` are sentences on why it has its verdict, ``explanation`` those with the episodes that they speak of,
-    ``edits`` say what is otherwise than in the baseline.  ``certain`` and ``rate_interval`` are those of a
-    :class:`~tltl_runtime.regression.verdict.verdict.Judgement`, ``baseline`` has the figures that it is compared with.
+    ``causes`` are sentences that justify the verdict.  ``explanation`` are findings about episodes.
+    ``edits`` describe the differences from the baseline.  ``certain`` and ``rate_interval`` are as in
+    :class:`~tltl_runtime.regression.verdict.verdict.Judgement`.  ``baseline`` are the figures that the
+    case is compared with.  A case that cannot be played has ``causes`` only.
     """
 
     name: str
@@ -45,50 +46,50 @@ class CaseReport:
     reference: Identity | None = None
     accounts: tuple[Account, ...] = ()
     recordings: tuple[tuple[int, str], ...] = ()
-    """Of which episodes there are recordings, and the names of their files."""
+    """The indices of the recorded episodes and the names of their files."""
     retrained: Retrained | None = None
-    """What a training from its policy came to, None where none was asked for or needed."""
+    """The result of retraining the policy; None if it was not requested or not needed."""
     told: str = ""
-    """The headline where it is none of the reasons as they stand; empty: the first of them."""
+    """The headline; if empty, the first reason is the headline."""
     fault_at: tuple[str, int] | None = None
-    """Of a case that cannot be played, the file and the line, from 1 on, of what is wrong."""
+    """The file and the line, counted from 1, of the error for which a case cannot be played."""
 
     @property
     def headline(self) -> str:
-        """What says most where there is room for one sentence."""
+        """The most important sentence."""
         return self.told or next(iter(self.reasons), "")
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """All that is said of it, the weightiest first."""
+        """All sentences of the report, most important first."""
         return (*self.causes, *(finding.text for finding in self.explanation), *self.edits)
 
 
 def report_on(result: Result) -> CaseReport:
-    """The report on a case that was played."""
+    """Return the report on a case that was played."""
     case, setup = result.ready.case, result.ready.setup
-    now = [each.account for each in result.episodes]
+    now = [episode.account for episode in result.episodes]
     before = result.reference.accounts
     level, outdated = result.ready.level, result.ready.outdated
-    said = tuple(reasons(result.judgement, case.thresholds, now, before))
+    statistics = tuple(reasons(result.judgement, case.thresholds, now, before))
     blocked = tuple(obstacles(level, setup.fspa))
     figures, baseline = figures_of(now), figures_of(before)
-    # How a case that is only not certain fails as rarely as before says nothing of its verdict.
+    # If a case fails no more often than before, its failures do not explain an uncertain verdict.
     is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
     failed = next(ends(level, setup.fspa, now, before), None) if is_worse else None
     return CaseReport(
         name=case.name,
         level=level.name,
         variant=level.variant,
-        # By a spec that nobody asks for any more nothing passes.
+        # A case does not pass by an outdated spec.
         verdict="review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict,
         certain=result.judgement.certain,
         rate_interval=result.judgement.rate_interval,
         figures=figures,
         baseline=baseline,
         changes=result.judgement.changes,
-        causes=(*([outdated] if outdated else []), *said[:1], *blocked, *said[1:]),
-        told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, said, failed),
+        causes=(*([outdated] if outdated else []), *statistics[:1], *blocked, *statistics[1:]),
+        told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, statistics, failed),
         explanation=findings(level, setup.fspa, now, before),
         edits=tuple(_edits(result)),
         played=result.ready.played,
@@ -98,46 +99,48 @@ def report_on(result: Result) -> CaseReport:
 
 
 def _edits(result: Result) -> Iterator[str]:
-    """What is otherwise than in the baseline; of a file that was edited meanwhile it is not known what."""
+    """The differences from the baseline.  For a file that was edited meanwhile, the changed keys are unknown."""
     ready, before = result.ready, result.reference
     texts = level_texts(ready.setup.level, ready.setup.variant, ready.played.files)
     return edits(ready.played, before.played, ready.changes, texts, before.texts)
 
 
 def _headline(judgement: Judgement, thresholds: Thresholds, said: Sequence[str], failed: Finding | None) -> str:
-    """Of a case that may meet its spec too rarely how it fails, of one whose figures changed that, else how often."""
+    """The headline: how the case fails if its pass rate may be too low; else a changed figure; else the pass rate."""
     if failed and judgement.rate_interval[0] < thresholds.pass_rate:
         return failed.text.partition("; ")[0]
     return said[1] if len(said) > 1 else said[0]
 
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
-    """The report on a case that cannot be played, which is a failure of the level and not of the suite."""
-    said = ("it cannot be played", *map(_said, error.diagnostics))
-    # As a level that loads calls it: the place of an overlay's file is no part of a report.
+    """Return the report on a case that cannot be played, which is a failure of the level, not of the suite."""
+    causes = ("it cannot be played", *map(_one_line, error.diagnostics))
+    # Name the variant as for a level that loads, without the paths of overlay files.
     variant = shown_variant(case.variant)
     name = Path(case.level).stem
-    return CaseReport(case.name, name, variant, "fail", said, told=": ".join(said[:2]), fault_at=_place(error))
+    return CaseReport(case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=_place(error))
 
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:
-    """The report on a case whose level was edited while it was played, so that nothing can be said of it."""
+    """Return the report on a case whose level was edited while it was played.  It has no figures."""
     variant = shown_variant(case.variant)
-    said = tuple(map(_said, error.diagnostics))
-    return CaseReport(case.name, Path(case.level).stem, variant, "review", said, certain=False)
+    causes = tuple(map(_one_line, error.diagnostics))
+    return CaseReport(case.name, Path(case.level).stem, variant, "review", causes, certain=False)
 
 
-def _said(found: Diagnostic) -> str:
-    """A diagnostic in one line, with its place."""
+def _one_line(diagnostic: Diagnostic) -> str:
+    """Format a diagnostic in one line, with its file and line."""
     where = message = ""
-    if found.labels:
-        label = found.labels[0]
+    if diagnostic.labels:
+        label = diagnostic.labels[0]
         where = f"{label.source.name}:{label.source.position(label.span.start)[0]}: "
         message = f": {label.message}" if label.message else ""
-    return f"{where}{found.code}, {found.title}{message}" + (f" ({found.help})" if found.help else "")
+    return f"{where}{diagnostic.code}, {diagnostic.title}{message}" + (
+        f" ({diagnostic.help})" if diagnostic.help else ""
+    )
 
 
 def _place(error: TltlError) -> tuple[str, int] | None:
-    """The file and the line of the first fault that has a place."""
-    label = next((each.labels[0] for each in error.diagnostics if each.labels), None)
+    """The file and the line of the first diagnostic that has a label."""
+    label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

@@ -1,4 +1,4 @@
-"""The findings on a suite as workflow commands of GitHub Actions, which shows them beside the changed files."""
+"""The findings of a suite as workflow commands of GitHub Actions, which annotates the changed files with them."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
 
 def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
-    """An ``::error`` for each case that fails, a ``::warning`` for each to be reviewed.
+    """Yield an ``::error`` for each case with verdict ``fail`` and a ``::warning`` for each ``review``.
 
-    The file is the one with the fault for which a level does not load, with its line; else one that has changed since
-    the baseline, else the suite; its path is relative to ``root``, the top of the checkout, where it lies inside.
+    If a level does not load, the annotation is at the file and line of the error.  Otherwise it is at a
+    file that has changed since the baseline, or else at the suite.  Paths inside ``root``, the top of
+    the checkout, are relative to it.
     """
     cases = {case.name: case for case in suite.cases}
     for report in reports:
@@ -33,15 +34,16 @@ def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path
 
 
 def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
+    """The file to annotate: the level, a file that has changed since the baseline, or the suite."""
     if report.played is None:
         return level_path(case.level)
     before = dict(report.reference.files) if report.reference else {}
-    # An overlay says more than the level, which comes first.
+    # The level comes first in `files`.  Prefer overlays: they are more specific.
     changed = [name for name, sha256 in reversed(report.played.files) if before.get(name) != sha256]
-    there = dependencies(suite, case)
+    paths = dependencies(suite, case)
     for name in changed:
         parts = Path(name).parts
-        for path in there:
+        for path in paths:
             if path.parts[-len(parts) :] == parts and is_file(path):
                 return path
     return suite.path

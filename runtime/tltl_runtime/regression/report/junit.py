@@ -1,4 +1,4 @@
-"""The report on a suite as JUnit XML, which continuous integration shows as tests."""
+"""The report on a suite as JUnit XML, which continuous integration servers show as tests."""
 
 from __future__ import annotations
 
@@ -12,17 +12,21 @@ from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import Suite
 
 _NO_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What no XML 1.0 may hold, be it escaped."""
+"""The characters that XML 1.0 does not allow, not even escaped."""
 
 _ELEMENTS: Final = {"fail": "failure", "review": "error"}
-"""A review is an ``error``, by which JUnit means a test that came to no result: nothing that shows it may hide it."""
+"""The XML element of each verdict.
+
+A ``review`` is an ``error``, in JUnit a test without a result, so that no viewer hides it.
+"""
 
 
 def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
-    """A ``testsuite`` with a ``testcase`` for each case, as the schema junit-10 of Jenkins' xUnit plugin has it.
+    """Format a ``testsuite`` with a ``testcase`` for each case, by the schema junit-10 of Jenkins' xUnit plugin.
 
-    Reasons are texts, figures properties of the ``testsuite``, since a ``testcase`` has none: ``CASE.pass_rate``.
-    Cases that are ``missing``, since the run was stopped, are errors.
+    Reasons are the texts of elements.  Figures are properties of the ``testsuite``, for example
+    ``CASE.pass_rate``, since a ``testcase`` has no properties.  ``missing`` cases, which were not judged
+    because the run was stopped, are errors.
     """
     verdicts = [report.verdict for report in reports]
     counts = {

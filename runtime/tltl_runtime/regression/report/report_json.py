@@ -1,4 +1,4 @@
-"""The report on a suite for programs, as JSON data."""
+"""The report on a suite as JSON data."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ _OF_EPISODES: Final = (
 def document(
     suite: Suite, reports: Sequence[CaseReport], *, complete: bool, left_out: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """The report on a suite.
+    """Return the report on a suite as JSON data.
 
-    ``complete`` says whether all of its cases were judged, and trained for, that were asked for; ``left_out`` are the
-    names of those that were not, since they depend on nothing that was named as changed.
+    ``complete`` says whether all requested cases were judged and retrained.  ``left_out`` are the names
+    of the cases that do not depend on the changed files.
     """
     verdicts = [report.verdict for report in reports]
     return {
@@ -69,5 +69,5 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "explanation": to_json(report.explanation),
         "played": to_json(played),
         "retrained": to_json(report.retrained),
-        "accounts": [{name: to_json(getattr(each, name)) for name in _OF_EPISODES} for each in report.accounts],
+        "accounts": [{name: to_json(getattr(account, name)) for name in _OF_EPISODES} for account in report.accounts],
     }

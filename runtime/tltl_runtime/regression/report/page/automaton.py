@@ -1,4 +1,4 @@
-"""The automaton as an inline SVG, with the episodes that came through it drawn on it."""
+"""The automaton as an inline SVG, annotated with the numbers of episodes in its states and edges."""
 
 from __future__ import annotations
 
@@ -16,53 +16,54 @@ from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _LAYOUT_LIMIT_S: Final = 10.0
-"""For each attempt to lay an automaton out, in seconds."""
+"""The time limit, in seconds, of each attempt to lay out an automaton."""
 
 Ends = tuple[int, int]
-"""The states that an edge leads from and to."""
+"""The source and the target of an edge."""
 
 _NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?")
 _THINNEST, _THICKEST = 0.8, 7.0
 _HEIGHT, _MARGIN = 12.0, 4.0
-"""Of a letter, and around the picture, in its units."""
+"""The height of a letter and the margin of the picture, in the units of the picture."""
 _LETTER: Final = 6.4
-"""Width of a figure of a badge, in the units of the picture."""
+"""The width of a character of a badge, in the units of the picture."""
 _PILL: Final = 16.0
-"""Height of a badge, in the units of the picture."""
+"""The height of a badge, in the units of the picture."""
 
 
 @record
 class Drawn:
-    """The picture of an automaton as SVG, None where it could not be laid out; ``notes`` say what is not shown."""
+    """The picture of an automaton as SVG, or None if the layout failed; ``notes`` describe what is not shown."""
 
     svg: bytes | None
     notes: tuple[str, ...]
 
 
 def drawn(fspa: Fspa) -> Drawn:
-    """The automaton's picture, laid out in a process of its own; each attempt ends after some seconds."""
-    found: list[Diagnostic] = []
+    """Draw the automaton.  A separate process lays it out, with a time limit for each attempt."""
+    diagnostics: list[Diagnostic] = []
     try:
-        # What the spec is for stands above the picture already.
-        files = emit("svg", replace(fspa, doc=""), Options(layout_limit_s=_LAYOUT_LIMIT_S, report=found.append))
+        # The page already shows the description of the spec.
+        files = emit("svg", replace(fspa, doc=""), Options(layout_limit_s=_LAYOUT_LIMIT_S, report=diagnostics.append))
     except TltlError as error:
-        return Drawn(None, tuple(_said(each) for each in error.diagnostics))
+        return Drawn(None, tuple(_sentence(diagnostic) for diagnostic in error.diagnostics))
     ((name, content),) = files.items()
     if not name.endswith(".svg"):
         return Drawn(None, (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",))
     data = content.encode() if isinstance(content, str) else content
-    return Drawn(data, tuple(_said(each) for each in found))
+    return Drawn(data, tuple(_sentence(diagnostic) for diagnostic in diagnostics))
 
 
 def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
-    """The picture with badges on each state: its number, how many episodes visited it, and how many failed in it.
+    """Add badges to each state: its number, how many episodes visited it, and how many failed in it.
 
-    Edges are the thicker the more episodes took them.  Both are there twice, for ``now`` and ``before``: what is shown
-    is for the style sheet.  Groups of states have ``data-states``, the numbers of the states that they stand for.
+    The more episodes took an edge, the thicker it is.  The picture contains the badges and edge widths
+    for ``now`` and for ``before``; the style sheet shows one of them.  ``data-states`` of a group lists
+    the states that it stands for.
     """
     root = ElementTree.fromstring(svg)
-    for each in root.iter():
-        each.tag = each.tag.rpartition("}")[2]
+    for node in root.iter():
+        node.tag = node.tag.rpartition("}")[2]
     root.remove(root[0])  # its title
     states = {
         group: tuple(map(int, numbers.split())) for group in root.iter("g") if (numbers := group.get("data-states"))
@@ -80,8 +81,8 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
     _, _, width, height = map(float, _NUMBER.findall(root.get("viewBox", "")))
     top = _top(root)
     for graph in root:
-        # States come last: no edge runs over their badges.
-        graph[:] = sorted(graph, key=lambda each: each.get("class") == "node")
+        # Draw states last, so that no edge covers their badges.
+        graph[:] = sorted(graph, key=lambda child: child.get("class") == "node")
     root.attrib = {
         "class": "automaton",
         "viewBox": f"0 {short(top)} {short(width)} {short(height - top)}",
@@ -93,15 +94,21 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
 
 
 def _taken(seen: Traffic, runs: Collection[tuple[int, ...]], drawn: Set[Ends]) -> Counter[Ends]:
-    """Of each edge that is drawn, how many episodes took it or one that it stands for; runs are drawn as one state."""
+    """Count for each drawn edge the episodes that took it or an edge that it stands for.
+
+    A run of states is drawn as one state.
+    """
     first = {state: run[0] for run in runs for state in run}
     folded = [run[0] for run in runs if len(run) > 1]
 
     def shown(edge: Ends) -> Ends:
         source, target = (first[end] for end in edge)
         if source != target and (source, target) not in drawn:
-            # From the end of a run to behind another one: there is a way to that one, and one from there.
-            target = next((each for each in folded if (source, each) in drawn and (each, target) in drawn), target)
+            # The edge skips a run that is drawn as one state: count it at the edge into that run.
+            target = next(
+                (run_start for run_start in folded if (source, run_start) in drawn and (run_start, target) in drawn),
+                target,
+            )
         return source, target
 
     return Counter(edge for edges in seen.took for edge in {shown(edge) for edge in edges})
@@ -113,20 +120,20 @@ def _mark_state(
     left, top, right, bottom = _extent(group)
     name = f"State {states[0]}" if len(states) == 1 else f"States {states[0]} to {states[-1]}"
     _name(group, name.lower(), left, top, right)
-    said = []
+    parts = []
     for when, seen in (("now", now), ("before", before)):
         visited = _visits(seen, states)
         failed = sum(seen.failed.get(state, 0) for state in states)
-        said.append(f"{when}: visited by {visited} of {seen.episodes} episodes, {failed} failed in it")
+        parts.append(f"{when}: visited by {visited} of {seen.episodes} episodes, {failed} failed in it")
         badges = ElementTree.SubElement(group, "g", {"class": f"counts {when}"})
         _badge(badges, "visited", str(visited), left + 6, bottom, grows=1)
         if failed:
             _badge(badges, "failed", f"{failed} failed", right - 6, bottom, grows=-1)
-    title.text = f"{name}; {'; '.join(said)}"
+    title.text = f"{name}; {'; '.join(parts)}"
 
 
 def _visits(seen: Traffic, states: tuple[int, ...]) -> int:
-    """How many episodes came to a state, or to any of those that are drawn as one: a run may be entered anywhere."""
+    """How many episodes visited a state, or any state of a run, which can be entered at any of its states."""
     if len(states) == 1:
         return seen.visited.get(states[0], 0)
     return sum(any(target in states for _, target in edges) for edges in seen.took)
@@ -135,27 +142,27 @@ def _visits(seen: Traffic, states: tuple[int, ...]) -> int:
 def _mark_edge(
     group: ElementTree.Element, title: ElementTree.Element, ends: Ends, taken: Sequence[tuple[int, int]]
 ) -> None:
-    """Thickness and title by how many episodes took the edge, of how many, now and before."""
+    """Set the thickness and the title of an edge; ``taken`` is (taken by, episodes), now and before."""
     if ends[0] == ends[1]:
         group.set("class", "edge loop")
         group.remove(title)
         return
-    shown, said = [], []
+    widths, parts = [], []
     for when, (took, episodes) in zip(("now", "before"), taken, strict=True):
         share = took / episodes if episodes else 0.0
-        shown.append(f"--took-{when}: {short(_THINNEST + share * (_THICKEST - _THINNEST))}")
-        said.append(f"{when}: taken by {took} of {episodes} episodes")
+        widths.append(f"--took-{when}: {short(_THINNEST + share * (_THICKEST - _THINNEST))}")
+        parts.append(f"{when}: taken by {took} of {episodes} episodes")
         if not took:
             group.set("class", f"{group.get('class')} untaken-{when}")
-    group.set("style", "; ".join(shown))
-    title.text = f"From state {ends[0]} to state {ends[1]}; {'; '.join(said)}"
+    group.set("style", "; ".join(widths))
+    title.text = f"From state {ends[0]} to state {ends[1]}; {'; '.join(parts)}"
 
 
 def _name(group: ElementTree.Element, text: str, left: float, top: float, right: float) -> None:
-    """The badge of a state's name in its upper left corner, and above its distance where it would cover that."""
+    """Add a badge with a state's name in its upper left corner, above the distance mark if it would cover that."""
     x, y = min(left + 6, right - _width(text)), top
     # The mark of the distance is a filled path without an outline.
-    for mark in (each for each in group.iter("path") if each.get("stroke") == "none"):
+    for mark in (path for path in group.iter("path") if path.get("stroke") == "none"):
         mark_left, mark_top, _, _ = _extent(mark)
         if x + _width(text) > mark_left - 1:
             y = min(y, mark_top - _PILL / 2 - 1)
@@ -163,12 +170,12 @@ def _name(group: ElementTree.Element, text: str, left: float, top: float, right:
 
 
 def _width(text: str) -> float:
-    """Of a badge."""
+    """The width of a badge with this text."""
     return len(text) * _LETTER + 9
 
 
 def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float, grows: int) -> None:
-    """A pill on the outline of a state, which begins or ends at ``x``."""
+    """Add a pill-shaped badge that starts at ``x`` (``grows`` > 0) or ends there."""
     width = _width(text)
     left = x if grows > 0 else x - width
     group = ElementTree.SubElement(parent, "g", {"class": f"badge {kind}"})
@@ -178,40 +185,40 @@ def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float
 
 
 def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
-    """The least and greatest x and y of what is drawn there: left, top, right, bottom."""
+    """The bounds of what a group draws: left, top, right, bottom."""
     points = list(_points(group))
     xs, ys = [x for x, _ in points], [y for _, y in points]
     return min(xs), min(ys), max(xs), max(ys)
 
 
 def _top(root: ElementTree.Element) -> float:
-    """Where the graph itself begins, below the name of the spec, which is left out; in the units of the view box."""
-    (graph,) = (each for each in root if each.get("class") == "graph")
-    groups = [each for each in graph if each.get("class") is not None]
-    for each in set(graph) - set(groups):
-        graph.remove(each)
+    """Remove the name of the spec, and return the top of the graph itself, in the units of the view box."""
+    (graph,) = (child for child in root if child.get("class") == "graph")
+    groups = [child for child in graph if child.get("class") is not None]
+    for child in set(graph) - set(groups):
+        graph.remove(child)
     ys = [y for group in groups for _, y in _points(group)]
-    ys += [float(each.get("y", 0)) - _HEIGHT for group in groups for each in group.iter("text")]
+    ys += [float(text.get("y", 0)) - _HEIGHT for group in groups for text in group.iter("text")]
     moved = float(_NUMBER.findall(graph.get("transform", "").rpartition("translate")[2])[1])
     return max(0.0, min(ys) + moved - _MARGIN)
 
 
 def _points(group: ElementTree.Element) -> Iterator[tuple[float, float]]:
-    for each in group.iter():
-        if each.tag == "ellipse":
-            x, y, rx, ry = (float(each.get(name, 0)) for name in ("cx", "cy", "rx", "ry"))
+    for shape in group.iter():
+        if shape.tag == "ellipse":
+            x, y, rx, ry = (float(shape.get(name, 0)) for name in ("cx", "cy", "rx", "ry"))
             yield from ((x - rx, y - ry), (x + rx, y + ry))
-        numbers = [float(found) for found in _NUMBER.findall(each.get("points") or each.get("d") or "")]
+        numbers = [float(digits) for digits in _NUMBER.findall(shape.get("points") or shape.get("d") or "")]
         yield from zip(numbers[::2], numbers[1::2], strict=True)
 
 
-def _said(diagnostic: Diagnostic) -> str:
+def _sentence(diagnostic: Diagnostic) -> str:
     text = f"{diagnostic.title[:1].upper()}{diagnostic.title[1:]}"
     return f"{text}: {diagnostic.help}" if diagnostic.severity != "note" and diagnostic.help else f"{text}."
 
 
 def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
-    """The states with what remains to be done in each, and the same numbers as a table."""
+    """A table of the states: what remains to be done in each, and the numbers of episodes."""
     heads = ("State", "What remains to be done", "Visited", "Failed", "Visited before", "Failed before")
     rows = [
         element(
@@ -226,5 +233,5 @@ def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
         )
         for state in fspa.states
     ]
-    head = element("thead", element("tr", *(element("th", each, scope="col") for each in heads)))
+    head = element("thead", element("tr", *(element("th", title, scope="col") for title in heads)))
     return element("div", element("table", head, element("tbody", *rows), class_="counts-table"), class_="scroll")

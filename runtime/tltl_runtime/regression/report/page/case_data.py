@@ -1,4 +1,4 @@
-"""What the page's scripts draw of a case, as JSON data."""
+"""The data of a case that the page's scripts draw, as JSON."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tltl_runtime.regression.report.page.recorded import recorded
 from tltl_runtime.stealth.level import Box
 
 _FINE_CM: Final = 5
-"""Of the ways, of which there are many; a step of a decision is one letter then."""
+"""The resolution of trajectories, in centimetres.  There are many, and at this resolution a step takes one letter."""
 
 
 def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
-    """All that is drawn of a case onto its map and its automaton; None where it has none."""
+    """The data that is drawn on the map and the automaton of a case; None if it has no level or automaton."""
     level, fspa = case.level, case.fspa
     if level is None or fspa is None:
         return None
@@ -34,14 +34,14 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
 
 def _all_of(bounds: Box, accounts: Sequence[Account]) -> dict[str, Any]:
     return {
-        "ways": [_way(bounds, each) for each in accounts],
+        "ways": [_way(bounds, account) for account in accounts],
         "time": _heat(time_spent(bounds, accounts)),
         "failed": _heat(failed_ends(bounds, accounts)),
     }
 
 
 def _way(bounds: Box, account: Account) -> dict[str, Any]:
-    """Where an episode went, on the map, and how it ended."""
+    """The trajectory of an episode on the map, and how it ended."""
     place = account.place
     return {
         "index": account.index,

@@ -1,4 +1,4 @@
-"""The maps of a case: of the level as it is now, and of that of its baseline where this looks otherwise."""
+"""The maps of a case: the level as it is now and, if it looks different, the level of the baseline."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from tltlc.core.record import replace
 
 
 def case_maps(case: ReportedCase, level: Level) -> Markup:
-    """The map of the ``level``, its key, and a legend that the page fills in: it depends on what is shown.
+    """The map of the ``level``, its key, and an empty legend that the page's script fills in.
 
-    Where the baseline's ways were on a level that looks otherwise, its map is there, too, for the page to show instead.
+    If the level of the baseline looks different, its map is included, too.  The page shows one of them.
     """
-    said = "\n".join(case.report.reasons)
+    sentences = "\n".join(case.report.reasons)
     legend = element("ul", class_="legend shown", aria_label="Legend of the map")
-    return element("div", *_drawn(case, level, said), legend)
+    return element("div", *_drawn(case, level, sentences), legend)
 
 
-def _drawn(case: ReportedCase, level: Level, said: str) -> Iterator[Markup]:
-    now, old = level_map(level, said), case.designed
-    before = level_map(replace(old, name=level.name, variant=level.variant), said) if old is not None else None
+def _drawn(case: ReportedCase, level: Level, sentences: str) -> Iterator[Markup]:
+    now, old = level_map(level, sentences), case.designed
+    before = level_map(replace(old, name=level.name, variant=level.variant), sentences) if old is not None else None
     if not case.before or before == now:
-        yield element("div", now, map_key(level, said), class_="drawn both")
+        yield element("div", now, map_key(level, sentences), class_="drawn both")
         return
     if old is None or before is None:
-        told = "The baseline's ways are drawn on the level as it is now: what it was then is not known any more."
+        hint = "The baseline's ways are drawn on the level as it is now: what it was then is not known any more."
         yield element(
-            "div", now, element("p", told, class_="hint when-before"), map_key(level, said), class_="drawn both"
+            "div", now, element("p", hint, class_="hint when-before"), map_key(level, sentences), class_="drawn both"
         )
         return
     maps = (("now", level, "as it is now"), ("before", old, "as it was when the baseline was recorded"))
-    for when, each, words in maps:
-        caption = element("p", f"The level {words}: {each.name} {each.variant}.", class_="hint")
-        yield element("div", level_map(each, said), caption, map_key(each, said), class_=f"drawn {when}")
+    for when, shown, words in maps:
+        caption = element("p", f"The level {words}: {shown.name} {shown.variant}.", class_="hint")
+        yield element("div", level_map(shown, sentences), caption, map_key(shown, sentences), class_=f"drawn {when}")

@@ -1,4 +1,4 @@
-"""The section of a case: why it has its verdict, its automaton, its map with the player, and its curves."""
+"""The section of a case: reasons, automaton, map with player, and curves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WHEN: Final = (("now", "now"), ("before", "baseline"))
 
 
 def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
-    """The section of the case that addresses call ``slug``; without level and automaton only what is said of it.
+    """The section of a case, with the address ``slug``.  Without level and automaton, it has only texts.
 
     ``drawn`` is the picture of the case's automaton.
     """
@@ -66,7 +66,7 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
-    """The section of a case that was not judged now, and why."""
+    """The section of a case that was not judged in this run, with the reason."""
     earlier = element("p", "An earlier run said ", badge(case.earlier), " of it.") if case.earlier else None
     return element(
         "section",
@@ -93,17 +93,19 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
 
 
 def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iterator[Markup]:
-    """The reasons; those that are explanations with links to the episodes that they speak of."""
-    lines = [element("li", prose(each)) for each in report.causes]
-    lines += [element("li", prose(each.text), episode_links(each, episodes, slug)) for each in report.explanation]
-    lines += [element("li", prose(each)) for each in report.edits]
+    """The list of reasons.  Findings have links to their recorded episodes."""
+    lines = [element("li", prose(cause)) for cause in report.causes]
+    lines += [
+        element("li", prose(finding.text), episode_links(finding, episodes, slug)) for finding in report.explanation
+    ]
+    lines += [element("li", prose(edit)) for edit in report.edits]
     if lines:
         yield element("h3", "Why")
         yield element("ul", *lines, class_="reasons")
 
 
 def _retrained(case: ReportedCase) -> Iterator[Markup]:
-    """What came of training its policy on the level as it is now."""
+    """The result of retraining the policy on the changed level."""
     retrained = case.report.retrained
     if retrained is None:
         return
@@ -117,7 +119,7 @@ def _retrained(case: ReportedCase) -> Iterator[Markup]:
 
 
 def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Iterator[Markup]:
-    """The picture, and what it does not show."""
+    """The picture of the automaton, and notes on what it does not show."""
     if drawn.svg is not None:
         inside = picture(fspa, drawn.svg, now, before)
         yield element("div", inside, class_="scroll", tabindex=0, role="group", aria_label="Automaton")
@@ -131,7 +133,7 @@ def _toggles(before: Sequence[Account]) -> Markup:
 
 
 def _choice(legend: str, name: str, choices: Sequence[tuple[str, str]]) -> Markup:
-    """One of several, of which the first one is chosen."""
+    """A group of radio buttons; the first is selected."""
     labels = [
         element("label", element("input", type="radio", name=name, value=value, checked=place == 0), f" {words}")
         for place, (value, words) in enumerate(choices)

@@ -1,4 +1,4 @@
-"""What a page is made of."""
+"""The contents of the page."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tltlc.core.record import EMPTY, record
 
 @record
 class ReportedCase:
-    """A case with what the page draws of it.
+    """A case with the data that the page draws.
 
-    ``level`` and ``fspa`` are what was played, None of a case that cannot be played.  ``episodes`` are the
-    recorded ones by their index, ``before`` the accounts of the baseline, ``designed`` the level that it was recorded
-    on, None where that is not known any more, ``curve`` the picture of a training that began with its policy, a PNG,
-    empty where there is none.
+    ``level`` and ``fspa`` are None for a case that cannot be played.  ``episodes`` are the recorded
+    episodes by index.  ``before`` are the accounts of the baseline.  ``designed`` is the level that the
+    baseline was recorded on, or None if it is unknown.  ``curve`` is the plot of the retraining, as a
+    PNG, or empty.
     """
 
     report: CaseReport
@@ -34,7 +34,7 @@ class ReportedCase:
 
 @record
 class NotRun:
-    """A case of the suite that was not judged now: ``why``, as a sentence, and what an ``earlier`` run said of it."""
+    """A case that was not judged in this run: ``why``, as a sentence, and the verdict of an ``earlier`` run."""
 
     name: str
     why: str
@@ -43,11 +43,12 @@ class NotRun:
 
 @record
 class SuiteReport:
-    """What a suite came to: its name, the seed and the error bound of its verdicts, and its cases in their order.
+    """The contents of a suite's page.
 
-    ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged, and trained anew,
-    that were asked for.  ``not_run`` are the other cases of the suite.  ``note`` is what whoever reads the page should
-    know first.
+    ``suite`` is its name.  ``seed`` and ``error`` are those of the suite.  ``versions`` are the versions
+    of the software that played.  ``cases`` are the judged cases in order, and ``not_run`` the others.
+    ``complete`` says whether all requested cases were judged and retrained.  ``note`` is shown at the
+    top of the page.
     """
 
     suite: str

@@ -1,4 +1,4 @@
-"""Small diagrams as inline SVG: progress over time, and how progress is distributed now and before."""
+"""Diagrams as inline SVG: progress over time, and the distribution of progress now and before."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from tltl_runtime.support.number_text import percent
 _WIDTH, _HEIGHT = 420, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 44, 8, 10, 34
 _BINS: Final = 10
-"""Of the progress of episodes that failed."""
+"""The number of bins for the progress of failed episodes."""
 
 _GAP: Final = 0.5
-"""Between them and the bar of those that met the spec, in widths of a bin."""
+"""The gap between these bins and the bar of the successful episodes, in widths of a bin."""
 
 
 def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
-    """Progress, in [0, 1], over the seconds of each recorded episode, by index."""
-    longest = max((each.snapshots[-1].time for each in episodes.values()), default=0.0)
+    """Plot progress, in [0, 1], over time, in seconds, of each recorded episode."""
+    longest = max((recording.snapshots[-1].time for recording in episodes.values()), default=0.0)
     frame = _Frame(max(1.0, longest))
     lines = [
         element(
@@ -35,7 +35,7 @@ def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
         )
         for index, episode in episodes.items()
     ]
-    # The page moves it to the moment that it shows.
+    # The page's script moves the cursor to the current moment.
     scale = {"data_left": _LEFT, "data_right": _WIDTH - _RIGHT, "data_seconds": short(frame.x_most)}
     cursor = element("line", class_="cursor", y1=_TOP, y2=_HEIGHT - _BOTTOM, hidden="hidden", **scale)
     words = "Progress over time of the recorded episodes"
@@ -43,9 +43,10 @@ def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
 
 
 def progress_distribution(now: Sequence[Account], before: Sequence[Account]) -> Markup:
-    """The shares of episodes by their best progress: in tenths of [0, 1] those that failed, then those that did not.
+    """Plot the shares of episodes by their best progress.
 
-    The bars of now are filled, and those of the baseline are outlines around them.
+    Failed episodes are in tenths of [0, 1]; the last bar shows the successful ones.  The bars of now are
+    filled, the bars of the baseline are outlines around them.
     """
     frame = _Frame(_BINS + _GAP + 1.0)
     bars = []
@@ -65,7 +66,7 @@ def progress_distribution(now: Sequence[Account], before: Sequence[Account]) -> 
 
 
 def _left(place: int) -> float:
-    """Where a bin begins; the one of those that met the spec stands apart."""
+    """The left end of a bin; the bin of the successful episodes is set apart."""
     return place + _GAP * (place == _BINS)
 
 
@@ -76,15 +77,18 @@ def _bin(place: int) -> str:
 
 
 def _shares(accounts: Sequence[Account]) -> list[float]:
-    """Of all episodes those in each bin; one that came to 1 and broke the spec then is not among those that met it."""
+    """The share of episodes in each bin.
+
+    An episode that reached progress 1 and then broke the spec is in the last bin of the failed ones.
+    """
     counts = [0] * (_BINS + 1)
-    for each in accounts:
-        counts[_BINS if each.success else min(_BINS - 1, int(each.progress * _BINS + 1e-9))] += 1
+    for account in accounts:
+        counts[_BINS if account.success else min(_BINS - 1, int(account.progress * _BINS + 1e-9))] += 1
     return [count / max(1, len(accounts)) for count in counts]
 
 
 def _corners(frame: _Frame, episode: Episode) -> list[tuple[float, float]]:
-    """Where a curve begins, ends and changes its height: between, it is straight."""
+    """The points at which a curve starts, ends or changes its value; it is straight in between."""
     values = episode.progress.tolist()
     times = [shot.time for shot in episode.snapshots]
     rows = {0, len(values) - 1}
@@ -95,7 +99,7 @@ def _corners(frame: _Frame, episode: Episode) -> list[tuple[float, float]]:
 
 
 class _Frame:
-    """The axes of a diagram, which begin at 0; upwards they end at 1."""
+    """The axes of a diagram: x from 0 to ``x_most``, y from 0 to 1."""
 
     def __init__(self, x_most: float) -> None:
         self.x_most = x_most
@@ -107,7 +111,7 @@ class _Frame:
         return _HEIGHT - _BOTTOM - value * (_HEIGHT - _TOP - _BOTTOM)
 
     def x_ticks(self) -> list[tuple[float, str]]:
-        """Whole numbers, at most seven of them, and what is written there."""
+        """At most seven whole numbers on the x axis, with their labels."""
         step = max(1, ceil(self.x_most / 6))
         return [(float(tick), str(tick)) for tick in range(0, int(self.x_most + 1e-9) + 1, step)]
 

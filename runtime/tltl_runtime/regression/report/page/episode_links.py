@@ -1,4 +1,4 @@
-"""The links from a sentence of an explanation to the recorded ones of the episodes that it speaks of."""
+"""Links from a finding to its recorded episodes."""
 
 from __future__ import annotations
 
@@ -12,23 +12,26 @@ from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.world.player import DECISION
 
 _BEFORE_END: Final = round(4.0 / DECISION)
-"""Decisions before its end at which a failed episode is opened: what led to it is still to come."""
+"""A failed episode is opened this many steps before its end, to show what led to the failure."""
 
 
 def episode_links(finding: Finding, episodes: Mapping[int, Episode], slug: str) -> Markup | None:
-    """Links that play the ``episodes`` of a finding, those that failed from shortly before their end; None for none."""
-    there = [index for index in finding.episodes if index in episodes]
-    if not there:
+    """Links that play the recorded ``episodes`` of a finding; None if there are none.
+
+    Failed episodes start shortly before their end.
+    """
+    indices = [index for index in finding.episodes if index in episodes]
+    if not indices:
         return None
     links = []
-    for index in there:
+    for index in indices:
         episode = episodes[index]
         step = 0 if episode.success else max(0, len(episode.actions) - _BEFORE_END)
         words = f"play {'the end of ' * (step > 0)}episode {index}"
         address = episode_link(slug, index, step)
         links += [" ", element("a", str(index), class_="episode", href=address, title=words, aria_label=words)]
-    is_end = not all(episodes[index].success for index in there)
-    what = f"play {'the end of ' * is_end}episode{'s' * (len(there) > 1)}"
+    is_end = not all(episodes[index].success for index in indices)
+    label = f"play {'the end of ' * is_end}episode{'s' * (len(indices) > 1)}"
     if finding.others:
-        what = f"those that do not, {what}" if len(there) > 1 else f"one that does not, {what}"
-    return element("span", f" {what}:", *links, class_="links")
+        label = f"those that do not, {label}" if len(indices) > 1 else f"one that does not, {label}"
+    return element("span", f" {label}:", *links, class_="links")

@@ -1,4 +1,4 @@
-"""Heat maps: how much happened in which cell of a level."""
+"""Heat maps: time spent and failures by cells of a level."""
 
 from __future__ import annotations
 
@@ -12,15 +12,18 @@ from tltl_runtime.stealth.level import Box
 from tltlc.core.record import record
 
 TIME_CELL: Final = 0.5
-"""Metres to a side of the cells in which time is counted."""
+"""The side of a cell, in metres, for time spent."""
 
 ENDS_CELL: Final = 1.0
-"""Metres to a side of the cells in which ends are counted."""
+"""The side of a cell, in metres, for ends of episodes."""
 
 
 @record
 class Heat:
-    """Cells of ``cell`` metres, ``columns`` in a row, counted from the north-west: pairs of index and value, sorted."""
+    """A grid of cells of ``cell`` metres, with ``columns`` cells in a row.
+
+    ``values`` are pairs of index and value, sorted.  Indices count row by row from the north-west.
+    """
 
     cell: float
     columns: int
@@ -28,14 +31,14 @@ class Heat:
 
 
 def time_spent(bounds: Box, accounts: Sequence[Account]) -> Heat:
-    """The seconds that an episode spends in each cell, on average."""
-    places = [place for each in accounts for place in places_along(each.way)]
+    """The mean number of seconds that an episode spends in each cell."""
+    places = [place for account in accounts for place in places_along(account.way)]
     return _heat(bounds, TIME_CELL, places, EVERY / max(1, len(accounts)))
 
 
 def failed_ends(bounds: Box, accounts: Sequence[Account]) -> Heat:
-    """How many of the episodes that failed ended in each cell."""
-    return _heat(bounds, ENDS_CELL, [each.place[:2] for each in accounts if not each.success], 1.0)
+    """The number of failed episodes that ended in each cell."""
+    return _heat(bounds, ENDS_CELL, [account.place[:2] for account in accounts if not account.success], 1.0)
 
 
 def _heat(bounds: Box, cell: float, places: Iterable[tuple[float, float]], weight: float) -> Heat:
@@ -47,4 +50,4 @@ def _heat(bounds: Box, cell: float, places: Iterable[tuple[float, float]], weigh
         row = min(max(0, int((north - y) / cell)), rows - 1)
         counts[row * columns + column] += 1
     values = ((index, round(count * weight, 4)) for index, count in sorted(counts.items()))
-    return Heat(cell, columns, tuple(each for each in values if each[1]))
+    return Heat(cell, columns, tuple(pair for pair in values if pair[1]))

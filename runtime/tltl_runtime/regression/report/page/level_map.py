@@ -1,6 +1,6 @@
-"""The map of a level as an inline SVG: what stands there; who moves and what happened is drawn onto it by the page.
+"""The map of a level as an inline SVG: everything that does not move.  The page's script draws the rest onto it.
 
-Its units are centimetres from the north-western corner of the level's bounds, x eastwards, y southwards.
+The units are centimetres from the north-western corner of the level's bounds, x eastwards, y southwards.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tltl_runtime.stealth.world.geometry import around
 
 _MARGIN: Final = 30
 _LAYERS: Final = ("heat", "ways", "ends", "live")
-"""What the page draws into, from below to above."""
+"""The layers that the page's script draws into, from bottom to top."""
 
 _SIGNS: Final = {
     "start": "start",
@@ -35,13 +35,13 @@ _SIGNS: Final = {
     "solid wall": "wall",
     "solid spoken": "a reason speaks of it",
 }
-"""What there is on a map, by class, and what it is called."""
+"""The legend: the class of each sign on a map, and its meaning."""
 
 
 def level_map(level: Level, said: str = "") -> Markup:
-    """The map of a level with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
+    """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
 
-    What the sentences ``said`` speak of stands out.
+    Things that the sentences ``said`` mention are highlighted.
     """
     plan = Plan(level.bounds)
     width, height = plan.size
@@ -62,26 +62,27 @@ def level_map(level: Level, said: str = "") -> Markup:
 
 
 def map_key(level: Level, said: str = "") -> Markup:
-    """What the signs of a map mean, those that there are in it."""
-    solids, barriers = ({each.kind for each in entities} for entities in (level.solids, level.barriers))
-    there = {
+    """The legend of a map, with the signs that occur in it."""
+    solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
+    present = {
         "switch": level.switches,
         "exit": level.exits,
         "route": level.enemies,
         "mover-way": level.movers,
         **{f"barrier {kind}": kind in barriers for kind in ("solid", "laser")},
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
-        "solid spoken": any(is_spoken_of(each.name, said) for each in level.solids),
+        "solid spoken": any(is_spoken_of(solid.name, said) for solid in level.solids),
     }
-    rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if there.get(kind, True)]
+    rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if present.get(kind, True)]
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
 
 
 def map_data(level: Level) -> dict[str, Any]:
-    """What the page needs to know of a level to draw onto its map, as JSON data.
+    """The data that the page's script needs to draw onto the map of a level, as JSON.
 
-    ``blocks`` are what stops sight: sides on the map, and heights, in centimetres; ``movers`` do, too.
-    ``reach`` and ``angle``, in degrees, are those of an enemy's cone of sight, ``eyes`` the height of its eyes.
+    ``blocks`` and ``movers`` block sight.  Each block is a rectangle on the map and two heights.
+    ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its eyes.
+    Lengths are in centimetres, angles in degrees.
     """
     plan = Plan(level.bounds)
     return {
@@ -101,7 +102,7 @@ def map_data(level: Level) -> dict[str, Any]:
 
 
 def _mover(mover: Mover) -> dict[str, list[int]]:
-    """Its sides on the map, and from which height to which it stops sight, in centimetres."""
+    """The sides of a mover on the map and the heights between which it blocks sight, in centimetres."""
     low, high = around(mover.path[0], mover.size)
     return {
         "sides": [round(100 * side) for side in mover.size[:2]],
@@ -122,7 +123,7 @@ def _sign(kind: str) -> Markup:
 
 
 def _ground(level: Level, plan: Plan, said: str) -> Iterable[Markup]:
-    for solid in sorted(level.solids, key=lambda each: (is_spoken_of(each.name, said), each.box.high[2])):
+    for solid in sorted(level.solids, key=lambda item: (is_spoken_of(item.name, said), item.box.high[2])):
         kind = f"solid {solid.kind}{' spoken' * is_spoken_of(solid.name, said)}"
         yield element("rect", element("title", solid.name), class_=kind, **plan.sides(solid.box))
     for region in level.regions:
@@ -144,9 +145,9 @@ def _entities(level: Level, plan: Plan) -> Iterable[Markup]:
         radius = round(100 * switch.radius)
         title = element("title", switch.name)
         yield element("circle", title, class_="switch", cx=x, cy=y, r=radius)
-    for way_out in level.exits:
-        title = element("title", way_out.name)
-        yield element("polygon", title, class_="exit", points=_star(*plan.at(way_out.position)))
+    for exit_ in level.exits:
+        title = element("title", exit_.name)
+        yield element("polygon", title, class_="exit", points=_star(*plan.at(exit_.position)))
     x, y = plan.at(level.start.position)
     yield element("circle", element("title", "start"), class_="start", cx=x, cy=y, r=14)
 
@@ -157,11 +158,11 @@ def _name(name: Name) -> Markup:
 
 
 def _there_and_back(way: Sequence[tuple[int, int]]) -> str:
-    """A way round as a path that goes each of its stretches once: dashes on dashes would fill their gaps."""
-    found: dict[frozenset[tuple[int, int]], str] = {}
+    """A patrol as an SVG path that draws each segment once: dashes drawn twice would fill their gaps."""
+    segments: dict[frozenset[tuple[int, int]], str] = {}
     for (x, y), (to_x, to_y) in pairwise(way):
-        found.setdefault(frozenset({(x, y), (to_x, to_y)}), f"M{x},{y}L{to_x},{to_y}")
-    return "".join(found.values())
+        segments.setdefault(frozenset({(x, y), (to_x, to_y)}), f"M{x},{y}L{to_x},{to_y}")
+    return "".join(segments.values())
 
 
 def _star(x: int, y: int, radius: float = 40.0) -> str:
@@ -173,5 +174,5 @@ def _star(x: int, y: int, radius: float = 40.0) -> str:
 
 
 def _block(plan: Plan, box: Box) -> list[int]:
-    """Its rectangle on the map, and from which height to which it is, in centimetres."""
+    """The rectangle of a box on the map, and its lower and upper height, in centimetres."""
     return [*plan.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]

@@ -1,4 +1,4 @@
-"""HTML and SVG from Python: elements whose texts cannot be taken for markup."""
+"""Build HTML and SVG elements with escaped texts."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ _SCRIPT: Final = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u
 
 
 class Markup(str):
-    """Text that is HTML already."""
+    """Text that is HTML and needs no escaping."""
 
     __slots__ = ()
 
 
 def element(name: str, /, *inside: object, **attributes: object) -> Markup:
-    """An element; what is inside is escaped unless it is :class:`Markup`, and left out where it is None.
+    """Build an element.
 
-    The names of attributes are written with ``_`` for ``-``, and one at the end is dropped (``class_``).  Of an
-    attribute without a value the value is True; None and False leave it out.
+    Its contents are escaped unless they are :class:`Markup`; None is left out.  In names of attributes,
+    ``_`` becomes ``-``, and a trailing ``_`` is dropped (``class_``).  The value True gives an attribute
+    without a value; None and False omit the attribute.
     """
     written = "".join(_attribute(key, value) for key, value in attributes.items())
     if name in _VOID:
@@ -32,23 +33,23 @@ def element(name: str, /, *inside: object, **attributes: object) -> Markup:
 
 
 def joined(parts: Iterable[object]) -> Markup:
-    """The parts one after the other, each escaped unless it is :class:`Markup`."""
-    return Markup("".join(_inside(each) for each in parts if each is not None))
+    """Join parts, each escaped unless it is :class:`Markup`; None is left out."""
+    return Markup("".join(_inside(part) for part in parts if part is not None))
 
 
 def prose(text: str) -> Markup:
-    """A sentence in which names stand between backquotes."""
+    """Convert a sentence to HTML; text between backquotes becomes ``code``."""
     return Markup(_CODE.sub(r"<code>\1</code>", escape(text)))
 
 
 def as_script(data: Any) -> Markup:
-    """Data as JSON that can stand in a ``script`` element: nothing in it ends one, or begins a comment."""
+    """Encode data as JSON for a ``script`` element: it cannot end the element or start a comment."""
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    return Markup("".join(_SCRIPT.get(each, each) for each in text))
+    return Markup("".join(_SCRIPT.get(char, char) for char in text))
 
 
 def short(value: float) -> str:
-    """A number with at most two places, for coordinates."""
+    """Format a number with at most two decimals, for coordinates."""
     text = f"{value:.2f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 

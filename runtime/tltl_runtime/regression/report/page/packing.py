@@ -1,4 +1,4 @@
-"""What changes over time, packed into few numbers; ``packing.js`` unpacks it."""
+"""Compact encodings of values over time; ``packing.js`` decodes them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _MORE: Final = 32
 
 
 def steps(values: Iterable[float], scale: float) -> str:
-    """Values times ``scale`` as whole numbers, in few letters: the first one, then what each is more than the last.
+    """Encode values times ``scale``, rounded to integers: the first value, then the differences.
 
-    A number is written as in source maps (base 64 VLQ): its sign is the lowest bit, digits of five bits follow each
-    other from the lowest one, and all but the last have the sixth bit.
+    Numbers are encoded as in source maps (base64 VLQ): the lowest bit is the sign, the digits have five
+    bits each, lowest first, and all but the last digit have the sixth bit set.
     """
     whole = [round(value * scale) for value in values]
     return "".join(_written(after - before) for before, after in zip([0, *whole], whole, strict=False))
@@ -33,15 +33,15 @@ def _written(number: int) -> str:
 
 
 def runs(values: Iterable[T]) -> list[list[T | int]]:
-    """Values that change rarely, as pairs: a value, and how often it stands there one after the other."""
+    """Run-length encode values, as pairs of a value and its number of repetitions."""
     return [[value, sum(1 for _ in same)] for value, same in groupby(values)]
 
 
 def across(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
-    """:func:`steps` of x from the western bound, in so many centimetres."""
+    """:func:`steps` of x from the western bound, in units of ``centimetres``."""
     return steps((x - bounds.low[0] for x in xs), 100 / centimetres)
 
 
 def down(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
-    """:func:`steps` of y from the northern bound, southwards as on a screen, in so many centimetres."""
+    """:func:`steps` of y from the northern bound, southwards as on a screen, in units of ``centimetres``."""
     return steps((bounds.high[1] - y for y in ys), 100 / centimetres)

@@ -1,4 +1,4 @@
-"""The report on a suite as one HTML file that loads nothing."""
+"""The report on a suite as one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _SCRIPTS: Final = ("packing.js", "level_map.js", "player.js", "report.js")
 
 
 def html_report(suite: SuiteReport) -> str:
-    """The page: verdicts, and for each case its automaton, its map, its curves and a player of recorded episodes.
+    """Render the page: verdicts, and for each case its automaton, map, curves and episode player.
 
-    Equal reports give equal pages, provided that the layout of the automata is done in time.
+    Equal reports give equal pages, unless the layout of an automaton hits its time limit.
     """
-    names = slugs([*(case.report.name for case in suite.cases), *(each.name for each in suite.not_run)])
+    names = slugs([*(case.report.name for case in suite.cases), *(case.name for case in suite.not_run)])
     pairs = list(zip(suite.cases, names, strict=False))
     not_run = zip(suite.not_run, names[len(pairs) :], strict=True)
-    # Variants of a level share their spec: each is laid out once.
+    # Variants of a level share their spec, so lay out each automaton once.
     automata = {case.fspa: None for case in suite.cases}
     pictures: dict[Fspa | None, Drawn] = {fspa: drawn(fspa) for fspa in automata if fspa is not None}
     script = "\n".join(_asset(name) for name in _SCRIPTS)
@@ -52,9 +52,9 @@ def html_report(suite: SuiteReport) -> str:
 
 
 def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:
-    there = [case for case in cases if case is not None]
-    states = max((len(case["states"]) for case in there), default=0)
-    return {"colours": [state_colour(state) for state in range(states)], "cases": there}
+    drawn_cases = [case for case in cases if case is not None]
+    states = max((len(case["states"]) for case in drawn_cases), default=0)
+    return {"colours": [state_colour(state) for state in range(states)], "cases": drawn_cases}
 
 
 def _asset(name: str) -> str:
@@ -62,5 +62,8 @@ def _asset(name: str) -> str:
 
 
 def _digest(script: str) -> str:
-    """What the page's own policy knows its script by, so that no other one runs; line feeds are around it."""
+    """The hash of the page's script for the content security policy, which blocks other scripts.
+
+    The hash includes the line feeds around the script.
+    """
     return base64.b64encode(hashlib.sha256(f"\n{script}\n".encode()).digest()).decode()

@@ -1,6 +1,4 @@
-"""Where on the map of a level something is: centimetres from the north-western corner of its bounds, x eastwards, y
-southwards.
-"""
+"""Map coordinates: centimetres from the north-western corner of a level's bounds, x eastwards, y southwards."""
 
 from __future__ import annotations
 
@@ -13,30 +11,30 @@ Rect = tuple[int, int, int, int]
 
 
 class Plan:
-    """From the metres of a level to the centimetres of its map, whose width and height are ``size``."""
+    """Converts the metres of a level to the centimetres of its map.  ``size`` is the map's width and height."""
 
     def __init__(self, bounds: Box) -> None:
         (self.west, south, _), (east, self.north, _) = bounds.low, bounds.high
         self.size = (round(100 * (east - self.west)), round(100 * (self.north - south)))
 
     def at(self, point: Sequence[float]) -> tuple[int, int]:
-        """A point, seen from above."""
+        """The map coordinates of a point."""
         return round(100 * (point[0] - self.west)), round(100 * (self.north - point[1]))
 
     def middle(self, box: Box) -> tuple[int, int]:
-        """The middle of a box."""
+        """The map coordinates of the centre of a box."""
         return self.at([(low + high) / 2 for low, high in zip(box.low, box.high, strict=True)])
 
     def rect(self, box: Box) -> Rect:
-        """A box, seen from above."""
+        """The rectangle of a box on the map."""
         (left, bottom), (right, top) = self.at(box.low), self.at(box.high)
         return left, top, right, bottom
 
     def sides(self, box: Box) -> dict[str, int]:
-        """A box, seen from above, as attributes of SVG."""
+        """The rectangle of a box, as attributes of an SVG ``rect``."""
         left, top, right, bottom = self.rect(box)
         return {"x": left, "y": top, "width": right - left, "height": bottom - top}
 
     def line(self, points: Iterable[Sequence[float]]) -> str:
-        """Points as SVG has those of a line."""
+        """The ``points`` attribute of an SVG ``polyline``."""
         return " ".join(f"{x},{y}" for x, y in map(self.at, points))

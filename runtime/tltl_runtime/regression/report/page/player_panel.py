@@ -1,4 +1,4 @@
-"""What plays a recorded episode: buttons, a bar to scrub with, and the values of the moment that is shown."""
+"""The player of recorded episodes: buttons, a scrubbing bar, and the values at the current moment."""
 
 from __future__ import annotations
 
@@ -19,14 +19,17 @@ _BUTTONS: Final = (
     ("on", "a step on", {"start": "M4,2L12,8L4,14Z"}),
     ("last", "to the end", {"start": "M2,2L10,8L2,14ZM11,2H14V14H11Z"}),
 )
-"""Class, what it does, and the icons: paths in a square of 16 units, so that no font has to have them."""
+"""The class, label and icons of each button.
+
+Icons are SVG paths in a square of 16 units, so that they do not depend on fonts.
+"""
 
 _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
-"""How episodes fail, in the words of the map's key."""
+"""How episodes fail, in the words of the map's legend."""
 
 
 def player_panel(fspa: Fspa, episodes: Mapping[int, Episode]) -> Markup:
-    """The player of a case, whose episodes the page gives to it; where none is recorded, it says so."""
+    """The player of a case.  The page's script loads the episodes into it.  Without episodes, it says so."""
     if not episodes:
         return element("div", element("p", "No episode of this case was recorded."), class_="player")
     options = [
@@ -71,7 +74,7 @@ def _buttons() -> list[Markup]:
         element("button", *_icons(icons), type="button", class_=name, aria_label=words, title=words)
         for name, words, icons in _BUTTONS
     ]
-    speeds = [element("option", f"{each}×", value=each) for each in _SPEEDS]
+    speeds = [element("option", f"{speed}×", value=speed) for speed in _SPEEDS]
     return [*buttons, element("select", *speeds, class_="speed", aria_label="Speed", autocomplete="off")]
 
 

@@ -15,10 +15,11 @@ from tltl_runtime.stealth.recordings.episode import Episode
 
 
 def recorded(index: int, episode: Episode) -> dict[str, Any]:
-    """Episode ``index`` of a case as JSON data, row by row: n + 1 rows, but n of the atoms.
+    """Return episode ``index`` of a case as JSON data.
 
-    Lengths are in centimetres on the map, angles in degrees, times in milliseconds, shares and robustness in
-    hundredths, progress in thousandths; packed as :mod:`~tltl_runtime.regression.report.page.packing` has it.
+    An episode of n steps has n + 1 rows of each value, but n rows of atoms.  Lengths are in centimetres
+    on the map, angles in degrees, times in milliseconds, shares and robustness in hundredths, progress
+    in thousandths.  Values are encoded by :mod:`~tltl_runtime.regression.report.page.packing`.
     """
     shots, bounds = episode.snapshots, episode.level.bounds
     return {
@@ -54,7 +55,7 @@ def _way(points: Sequence[Point], bounds: Box) -> dict[str, str]:
 
 
 def _turns(yaws: Sequence[float]) -> str:
-    """In degrees without a jump at half a turn, so that what lies between two rows can be drawn."""
+    """Encode yaw angles in degrees, unwrapped at half a turn so that they can be interpolated."""
     return steps((degrees(yaw) for yaw in np.unwrap(yaws).tolist()), 1)
 
 

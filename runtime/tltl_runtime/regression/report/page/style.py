@@ -1,4 +1,4 @@
-"""The colours of the page's maps, which are those of all pictures of levels."""
+"""The colours of the page's maps, which are the same in all pictures of levels."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tltl_runtime.stealth.rendering.plan import BARRIERS, ENDS, EXIT, INK, MOVER
 
 
 def colours() -> str:
-    """A rule of CSS that names them."""
+    """A CSS rule that defines the colours as custom properties."""
     named = {
         **SOLIDS,
         **{f"barrier-{kind}": colour for kind, colour in BARRIERS.items()},

@@ -1,4 +1,4 @@
-"""The head of the page: which suite, how many verdicts of which kind, and a row for each case."""
+"""The head of the page: the suite, the counts of verdicts, and a row for each case."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ from tltl_runtime.support.number_text import percent
 
 _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
 _HEADS = ("Verdict", "Met", "Progress", "Reward", "Why")
-"""Of the columns behind the name of the case."""
+"""The titles of the columns after the name of the case."""
 
 _WHISKER: Final = "The thin line on a bar is the 95 % interval of its share, for reading; verdicts are by a wider one."
 
 NOT_RUN: Final = "not run"
-"""What stands in place of a verdict where a case was not judged now."""
+"""The text in place of a verdict for a case that was not judged in this run."""
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
-    """Suite, counts of verdicts, versions and the table of verdicts, whose rows lead to the sections ``slugs``, of
-    cases that were judged and of those that were not.
+    """The suite, the counts of verdicts, the versions and the table of verdicts.
+
+    ``slugs`` are the addresses of the sections, first of the judged cases, then of the others.
     """
     reports = [case.report for case in suite.cases]
     verdicts = [report.verdict for report in reports]
@@ -34,7 +35,9 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     ]
     if suite.not_run:
         counts.append(element("li", badge(NOT_RUN), f" {len(suite.not_run)}"))
-    least = element("p", "The run was stopped before all was judged and trained that was asked for.", class_="warning")
+    stopped_note = element(
+        "p", "The run was stopped before all was judged and trained that was asked for.", class_="warning"
+    )
     facts = [
         f"seed {suite.seed}",
         f"probability that any certain fail or review is wrong, or any pass has too low a rate: at most "
@@ -43,12 +46,12 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     ]
     rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=False)]
     rows += [_row_not_run(case, slug) for case, slug in zip(suite.not_run, slugs[len(reports) :], strict=True)]
-    head = element("thead", element("tr", *(element("th", each, scope="col") for each in ("Case", *_HEADS))))
+    head = element("thead", element("tr", *(element("th", title, scope="col") for title in ("Case", *_HEADS))))
     return joined(
         (
             element("h1", f"Regression report: {suite.suite}"),
             element("p", suite.note) if suite.note else None,
-            None if suite.complete else least,
+            None if suite.complete else stopped_note,
             element("ul", *counts, class_="counts-of-verdicts", aria_label="Verdicts"),
             element("p", " · ".join(facts), class_="facts"),
             element("h2", "Verdicts"),
@@ -57,14 +60,14 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
                 element("label", element("input", type="checkbox", id="page:only-findings"), " only findings"),
                 class_="filter",
             ),
-            element("p", element("small", _WHISKER)) if any(each.figures for each in reports) else None,
+            element("p", element("small", _WHISKER)) if any(report.figures for report in reports) else None,
             element("table", head, element("tbody", *rows), class_="verdicts"),
         )
     )
 
 
 def badge(verdict: str) -> Markup:
-    """A verdict, or what stands in its place, as a coloured word."""
+    """A verdict, or the text in its place, as a coloured word."""
     return element("span", verdict, class_=f"verdict {verdict}")
 
 
@@ -86,7 +89,7 @@ def _row(report: CaseReport, slug: str) -> Markup:
 
 
 def _row_not_run(case: NotRun, slug: str) -> Markup:
-    """A row for a case that was not judged now, and what an earlier run said of it."""
+    """A row for a case that was not judged in this run, with the verdict of an earlier run."""
     earlier = element("small", f"earlier: {case.earlier}") if case.earlier else None
     cells = (
         element("td", badge(NOT_RUN), earlier, data_head=_HEADS[0]),
@@ -96,31 +99,31 @@ def _row_not_run(case: NotRun, slug: str) -> Markup:
 
 
 def _name(name: str, slug: str) -> Markup:
-    """The name of a case, which leads to its section."""
+    """The name of a case, with a link to its section."""
     return element("th", element("a", name, href=f"#{slug}"), scope="row")
 
 
 def _met(now: Figures, before: Figures | None) -> Markup:
-    """The pass rate as a bar with its interval of 95 %, and the baseline's below it."""
+    """The pass rate as a bar with its 95 % confidence interval, and the baseline's bar below it."""
     words = f"{_rate_words(now)}; before: {_rate_words(before)}" if before else _rate_words(now)
     bars = [*_rate(now, "now", top=0, height=12)]
     if before:
         bars += _rate(before, "before", top=15, height=7)
     small = element("small", f"before {_with_share(before)}") if before else None
-    # It is stretched to the width that there is.
+    # Stretch the bar to the available width.
     manner = {"viewBox": "0 0 100 22", "role": "img", "preserveAspectRatio": "none"}
     bar = element("svg", element("title", words), *bars, class_="bar", **manner)
     return joined((bar, element("span", _with_share(now), class_="number"), small))
 
 
 def _rate(figures: Figures, kind: str, top: int, height: int) -> Iterator[Markup]:
-    """The bar of a pass rate, in percent, with the whiskers of its interval."""
+    """The bar of a pass rate, in percent, with the whiskers of its confidence interval."""
     low, high = (short(100 * end) for end in figures.pass_interval)
     above, middle, below = short(top + height / 6), short(top + height / 2), short(top + 5 * height / 6)
     yield element("rect", class_="track", y=top, width=100, height=height)
     yield element("rect", class_=f"rate {kind}", y=top, width=short(100 * figures.pass_rate), height=height)
     whisker = f"M{low},{middle}H{high}M{low},{above}V{below}M{high},{above}V{below}"
-    # A seam sets it off from the bar, which is about as dark.
+    # A seam separates the whiskers from the bar, which is about as dark.
     yield element("path", class_="seam", d=whisker)
     yield element("path", class_="interval", d=whisker)
 
@@ -131,7 +134,7 @@ def _rate_words(figures: Figures) -> str:
 
 
 def _of(figures: Figures) -> str:
-    """How many of how many episodes met the spec."""
+    """The number of episodes that met the spec, and of all episodes."""
     return f"{round(figures.pass_rate * figures.episodes)} of {figures.episodes}"
 
 

@@ -1,4 +1,4 @@
-"""How many episodes came to which states of the automaton, by which edges, and where they failed."""
+"""Count how many episodes visited each state of the automaton, took each edge, and failed in each state."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from tltlc.core.record import record
 
 @record
 class Traffic:
-    """Of so many ``episodes``: how many ``visited`` each state and ``failed`` in it, and the edges that each ``took``.
+    """The traffic of ``episodes`` episodes.
 
-    Edges are (source, target); loops, on which an episode stays where it is, are not counted.  An episode that fails
-    does so in the state that it could not leave, or in which the spec was broken.
+    ``visited`` and ``failed`` count the episodes that visited a state and that failed in it.  ``took``
+    are the edges (source, target) of each episode, without self-loops.  An episode fails in the state
+    that it could not leave, or in which the spec was broken.
     """
 
     episodes: int
@@ -25,12 +26,12 @@ class Traffic:
 
 
 def traffic(accounts: Sequence[Account]) -> Traffic:
-    """The traffic of some episodes, each counted once for each state and edge."""
+    """Return the traffic of some episodes.  Each counts once for each state and edge."""
     visited: Counter[int] = Counter()
     took = []
-    for each in accounts:
-        states = [arrival.state for arrival in each.arrivals]
+    for account in accounts:
+        states = [arrival.state for arrival in account.arrivals]
         visited.update(set(states))
         took.append(frozenset(pairwise(states)))
-    failed = Counter(each.unmet for each in accounts if not each.success)
+    failed = Counter(account.unmet for account in accounts if not account.success)
     return Traffic(len(accounts), visited, failed, tuple(took))
