@@ -1,1 +1,1 @@
-"""Commands that the runtime adds to `tltlc`, one module each; they alone print."""
+"""The commands that the runtime adds to `tltlc`, one module each.  Only they print."""

@@ -1,4 +1,4 @@
-"""``tltlc baseline``: the figures that a suite is judged against."""
+"""``tltlc baseline``: record the figures that a suite is compared with."""
 
 from __future__ import annotations
 
@@ -56,29 +56,29 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         from tltl_runtime.regression.verdict.baseline import written_to
         from tltl_runtime.regression.verdict.baseline_run import kept_at, write_recorded
 
-        read = read_suite(suite or SHIPPED)
-        wrote = path or written_to(read.path)
-        check_apart({"--output": wrote}, files_of(read) - {read.baseline.resolve()})
-        check_writable({"--output": wrote})
-        there, older = exists(wrote), _older(wrote)
+        loaded = read_suite(suite or SHIPPED)
+        output = path or written_to(loaded.path)
+        check_apart({"--output": output}, files_of(loaded) - {loaded.baseline.resolve()})
+        check_writable({"--output": output})
+        existed, older = exists(output), _older(output)
         try:
             with RegressionDisplay() as display:
-                for each in write_recorded(read, wrote, workers, display, older, fresh=fresh):
+                for compared in write_recorded(loaded, output, workers, display, older, fresh=fresh):
                     display.over()
-                    _tell(read, each, older, fresh=fresh)
+                    _tell(loaded, compared, older, fresh=fresh)
         except KeyboardInterrupt:
-            click.echo(f"stopped: {_left(wrote, kept_at(wrote), there=there)}", err=True)
+            click.echo(f"stopped: {_left(output, kept_at(output), existed=existed)}", err=True)
             raise
-        click.echo(f"wrote {wrote}", err=True)
-        if wrote.resolve() != read.baseline.resolve():
-            words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(wrote)]
+        click.echo(f"wrote {output}", err=True)
+        if output.resolve() != loaded.baseline.resolve():
+            words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(output)]
             click.echo(f"to judge by it: {join(words)}", err=True)
         return exits.CLEAN
     return report.status
 
 
 def _older(path: Path) -> tuple[Reference, ...]:
-    """What is in the file that is to be written, if that is a baseline."""
+    """The baseline in the output file; empty if the file is missing or is not a baseline."""
     from tltl_runtime.regression.verdict.baseline import read_baseline
 
     with suppress(TltlError):
@@ -86,27 +86,30 @@ def _older(path: Path) -> tuple[Reference, ...]:
     return ()
 
 
-def _left(path: Path, partial: Path | None, *, there: bool) -> str:
-    """What a recording that was stopped has left, and what goes on with it; ``there``: there was a file before."""
+def _left(path: Path, partial: Path | None, *, existed: bool) -> str:
+    """Describe the files of a stopped recording and how to continue.
+
+    ``existed`` says whether the output file existed before.
+    """
     from tltl_runtime.stealth.levels.made_for import shown
 
-    if partial and not there:
+    if partial and not existed:
         return f"no `{path}` was written; what is over is kept in `{shown(partial)}`: the same command goes on with it"
     return f"`{path}` is as it was; the same command {'goes on with what is over' if partial else 'begins anew'}"
 
 
 def _tell(suite: Suite, compared: Compared, older: tuple[Reference, ...], *, fresh: bool) -> None:
-    """Say what was recorded, and which cases do not pass by it even where nothing has changed."""
+    """Print what was recorded, and which cases would not pass even if nothing changed."""
     from tltl_runtime.regression.verdict.baseline_run import verdict_as_it_is
 
     reference = compared.reference
     played, passed, count = reference.played, _passed(reference), len(reference.accounts)
     before = _before(reference, older)
     if reference in older and not fresh:
-        beside = "  (as before)"
+        note = "  (as before)"
     else:
-        beside = f"; before: {_passed(before)} of {len(before.accounts)}" if before else ""
-    click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + beside)
+        note = f"; before: {_passed(before)} of {len(before.accounts)}" if before else ""
+    click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + note)
     if compared.outdated:
         click.echo(plain(f"    {compared.outdated}"), err=True)
     for case in compared.cases:
@@ -117,25 +120,31 @@ def _tell(suite: Suite, compared: Compared, older: tuple[Reference, ...], *, fre
 
 
 def _passed(reference: Reference) -> int:
-    return sum(each.success for each in reference.accounts)
+    return sum(account.success for account in reference.accounts)
 
 
 def _before(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
-    """What an older baseline has of the same level, variant and spec, of another policy only if that was the one."""
+    """The older reference of the same level, variant and spec.
+
+    A reference of the same policy is preferred.  A reference of another policy is returned only if it is
+    the only one.
+    """
     names = ("level", "variant", "place", "spec")
     played = reference.played
-    same = [each for each in older if all(getattr(each.played, key) == getattr(played, key) for key in names)]
-    its = [each for each in same if each.played.policy == played.policy]
-    return its[0] if its else same[0] if len(same) == 1 else None
+    candidates = [
+        reference for reference in older if all(getattr(reference.played, key) == getattr(played, key) for key in names)
+    ]
+    same_policy = [reference for reference in candidates if reference.played.policy == played.policy]
+    return same_policy[0] if same_policy else candidates[0] if len(candidates) == 1 else None
 
 
 def _advice(pass_rate: float, case: Case, error: float) -> str:
-    """What makes a case pass of whose baseline's episodes this share met the spec."""
+    """Advise how a case can pass, given the pass rate of its baseline."""
     if pass_rate == 1.0:
         from tltl_runtime.regression.verdict.baseline_run import enough_episodes
 
-        enough = enough_episodes(case.thresholds.pass_rate, error)
-        return f"{case.episodes} `episodes` are too few to be certain, give it {enough} at least"
+        episodes = enough_episodes(case.thresholds.pass_rate, error)
+        return f"{case.episodes} `episodes` are too few to be certain, give it {episodes} at least"
     if pass_rate < case.thresholds.pass_rate:
         return "train its policy further, or lower its `pass_rate`"
     return "train its policy further, lower its `pass_rate`, or give it more `episodes`"

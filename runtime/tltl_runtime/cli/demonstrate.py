@@ -1,4 +1,4 @@
-"""``tltlc demonstrate``: the scripted expert plays a level, and its episodes are recorded."""
+"""``tltlc demonstrate``: record episodes of the scripted expert on a level."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def command(
 
 
 def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
-    """Write the recording and the pictures of an episode; the path of the recording."""
+    """Write the recording and the pictures of an episode; return the path of the recording."""
     from tltl_runtime.stealth.recordings.file import SUFFIX, file_stem, new_path, to_bytes
     from tltl_runtime.stealth.rendering.plan import draw_episode
     from tltlc.io.writing import write_files

@@ -1,4 +1,4 @@
-"""``tltlc evaluate``: a trained policy plays episodes, and its figures are reported."""
+"""``tltlc evaluate``: a trained policy plays episodes; report its figures."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 _MOST_NAMED: Final = 6
-"""Of the files that were removed, as many are named."""
+"""The most removed files that are named."""
 
 
 @click.command(
@@ -111,20 +111,20 @@ def command(
         from tltlc.io.files import read_bytes
 
         path, name, variant = policy_place(policy, level, "tltlc evaluate")
-        # A training that goes on may write another one there meanwhile.
+        # Read the file once: a running training may replace it meanwhile.
         data = read_bytes(path, str(path), MAX_BYTES)
         trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
         sha256 = hashlib.sha256(data).hexdigest()
         if name is None:
             check_known(trained.card.level, path, "tltlc evaluate")
         setup = set_up(trained, name, variant, spec, seed, kept)
-        # A level's own spec is mostly called like it.
-        of = dict.fromkeys((trained.card.level, trained.card.fspa.name))
-        setup = replace(setup, player=f"policy {' '.join(of)} {sha256[:8]}")
+        # The spec of a level often has the level's name: do not repeat it.
+        labels = dict.fromkeys((trained.card.level, trained.card.fspa.name))
+        setup = replace(setup, player=f"policy {' '.join(labels)} {sha256[:8]}")
         report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
         again = _command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
-        # The folder, which is there by now, may be that of the report, too.
+        # Check this only now: the report may go into the folder, which EvaluationFiles has created.
         check_writable({"--json": None if is_stdout(json_file) else json_file})
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
@@ -137,14 +137,14 @@ def command(
 
 
 def _command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
-    """What plays episodes of the same evaluation again, to be pasted."""
+    """The shell command that plays episodes of the same evaluation again."""
     words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
-    words += [word for name, given in (("--level", level), ("--spec", spec)) if given for word in (name, given)]
+    words += [word for name, value in (("--level", level), ("--spec", spec)) if value for word in (name, value)]
     return join([*words, "--seed", str(seed)])
 
 
 def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
-    """The results; standard error says how far they are, with a bar on a terminal, else with a line each tenth."""
+    """Yield the results and report progress on standard error: a bar on a terminal, else a line for each tenth."""
     from tltl_runtime.evaluation.player import CHOICES
 
     played, passed = Counter[bool](), Counter[bool]()
@@ -154,12 +154,12 @@ def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
             sampled = result.task.sampled
             played[sampled] += 1
             passed[sampled] += result.played.success
-            so_far = [f"{passed[each]} of {played[each]} {name}" for each, name in CHOICES.items() if played[each]]
-            said = f"passed: {', '.join(so_far)}"
+            so_far = [f"{passed[mode]} of {played[mode]} {name}" for mode, name in CHOICES.items() if played[mode]]
+            text = f"passed: {', '.join(so_far)}"
             if bar is not None:
-                bar.update(bar.task_ids[0], completed=number, description=said)
+                bar.update(bar.task_ids[0], completed=number, description=text)
             elif number * 10 // count > (number - 1) * 10 // count:
-                click.echo(f"{number / count:.0%} played; {said}", err=True)
+                click.echo(f"{number / count:.0%} played; {text}", err=True)
 
 
 def _waiting(left: float) -> None:
@@ -178,7 +178,7 @@ def _bar(count: int) -> Any:
 
 
 def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, wanted: int) -> None:
-    """Report on what was played, which is not all of the ``wanted`` episodes of each kind where it was broken off."""
+    """Report on the played episodes: ``wanted`` of each kind, or fewer if the evaluation was stopped."""
     played = files.played
     if not any(played.values()):
         return

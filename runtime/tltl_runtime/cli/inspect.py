@@ -1,4 +1,4 @@
-"""``tltlc inspect``: what a policy was trained for, and the policy for other engines."""
+"""``tltlc inspect``: show what policies were trained for, and export them to ONNX."""
 
 from __future__ import annotations
 
@@ -42,20 +42,24 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         from tltl_runtime.policies.summary import summary, summary_text
 
         for name, (policy, so_far, ended) in read_each(files, _read, report):
-            said = {"file": name, **summary(policy), **so_far}
+            fields = {"file": name, **summary(policy), **so_far}
             if path is not None:
                 _export(policy, path)
                 report.say(f"wrote {path}")
             elif format == "text":
-                print(f"{name}\n{summary_text(said)}{ended}")
-            summaries.append(said)
+                print(f"{name}\n{summary_text(fields)}{ended}")
+            summaries.append(fields)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
     return report.status
 
 
 def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
-    """A policy; and of one in the folder of a training that has no record yet, how that goes, as JSON and in words."""
+    """Read a policy.
+
+    If its training has not ended yet, also return the progress of the training, as JSON data and as
+    text; otherwise both are empty.
+    """
     from tltl_runtime.cli.support.policy_path import policy_file, progress
     from tltl_runtime.policies.file import read_policy
     from tltl_runtime.training.run.record import record_so_far

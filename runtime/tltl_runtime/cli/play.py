@@ -1,4 +1,4 @@
-"""``tltlc play``: a level in a window, played with the keyboard and judged by a spec while it is recorded."""
+"""``tltlc play``: play a level with the keyboard in a window; a spec judges and each episode is recorded."""
 
 from __future__ import annotations
 

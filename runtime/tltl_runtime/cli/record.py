@@ -1,4 +1,4 @@
-"""``tltlc record``: demonstrations for an agent to imitate, which meet the spec all of them."""
+"""``tltlc record``: record demonstrations that meet the spec, for imitation learning."""
 
 from __future__ import annotations
 
@@ -85,35 +85,35 @@ def command(
 
         file, variant = _place(level, spec)
         env = RecordEpisode(make_env(file, variant, spec), by)
-        made: Demonstrations | None = None
+        demonstrations: Demonstrations | None = None
         try:
-            shown, task = env.get_wrapper_attr("level"), env.get_wrapper_attr("task")
-            folder = folder or Path("demonstrations") / f"{shown.name}-{shown.variant}-{task.fspa.name}"
-            made = Demonstrations(folder, shown, task)
-            for line in _begins(made, episodes):
+            loaded, task = env.get_wrapper_attr("level"), env.get_wrapper_attr("task")
+            folder = folder or Path("demonstrations") / f"{loaded.name}-{loaded.variant}-{task.fspa.name}"
+            demonstrations = Demonstrations(folder, loaded, task)
+            for line in _begins(demonstrations, episodes):
                 click.echo(line, err=True)
-            if made.count < episodes and by == "keyboard":
-                _by_keyboard(env, made, episodes, seed, view, crouch)
-            elif made.count < episodes:
-                _by_expert(env, made, episodes, seed or 0, report)
+            if demonstrations.count < episodes and by == "keyboard":
+                _by_keyboard(env, demonstrations, episodes, seed, view, crouch)
+            elif demonstrations.count < episodes:
+                _by_expert(env, demonstrations, episodes, seed or 0, report)
         except KeyboardInterrupt:
-            if made:
-                click.echo(f"stopped: {_there(made, episodes)}; the same command goes on", err=True)
+            if demonstrations:
+                click.echo(f"stopped: {_count_text(demonstrations, episodes)}; the same command goes on", err=True)
             raise
         finally:
             env.close()
-        click.echo(_there(made, episodes))
-        if made.count < episodes:
+        click.echo(_count_text(demonstrations, episodes))
+        if demonstrations.count < episodes:
             return exits.FINDINGS
-        asked = f"--level {shown.name if file == shown.name else quote(file)}:{quote(variant)}"
-        about = f"{quote(spec)} {asked}" if spec else asked
-        click.echo(f"to imitate them: tltlc train {about} --method imitation --demonstrations {quote(str(folder))}")
+        level_option = f"--level {loaded.name if file == loaded.name else quote(file)}:{quote(variant)}"
+        arguments = f"{quote(spec)} {level_option}" if spec else level_option
+        click.echo(f"to imitate them: tltlc train {arguments} --method imitation --demonstrations {quote(str(folder))}")
         return exits.CLEAN
     return report.status
 
 
 def _place(level: str | None, spec: str | None) -> tuple[str, str]:
-    """Level and variant: those that are named, or the level that the spec names."""
+    """The level and the variant that are named, or the level that the spec names."""
     if level is not None:
         file, variant = level_place(level)
         return file, variant or "v0"
@@ -124,66 +124,67 @@ def _place(level: str | None, spec: str | None) -> tuple[str, str]:
     return own_level(spec, "as LEVEL"), "v0"
 
 
-def _begins(made: Demonstrations, wanted: int) -> list[str]:
-    """What the folder holds already."""
-    # Of enough the end tells.
-    said = [f"{_there(made, wanted)} already"] if 0 < made.count < wanted else []
-    if others := len(made.others):
-        kept = f"{others} recording{'s' * (others > 1)} there" + (" is none" if others == 1 else " are none")
-        first, more = made.others[0], " and others" * (others > 1)
-        said.append(plain(f"{kept} of this level and spec: `{first.path.name}` ({first.why}){more}"))
-    return said
+def _begins(demonstrations: Demonstrations, wanted: int) -> list[str]:
+    """Describe the recordings that the folder already contains."""
+    # If there are enough demonstrations, the last line of the output says so.
+    lines = [f"{_count_text(demonstrations, wanted)} already"] if 0 < demonstrations.count < wanted else []
+    if number := len(demonstrations.others):
+        counted = f"{number} recording{'s' * (number > 1)} there" + (" is none" if number == 1 else " are none")
+        first, suffix = demonstrations.others[0], " and others" * (number > 1)
+        lines.append(plain(f"{counted} of this level and spec: `{first.path.name}` ({first.why}){suffix}"))
+    return lines
 
 
-def _by_expert(env: RecordEpisode, made: Demonstrations, wanted: int, seed: int, report: Report) -> None:
+def _by_expert(env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int, report: Report) -> None:
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings
     from tltl_runtime.training.imitation.demonstrations import by_expert
 
     report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
-    for tried in by_expert(env, made, wanted, seed):
-        click.echo(_line(tried, wanted))
+    for attempt in by_expert(env, demonstrations, wanted, seed):
+        click.echo(_line(attempt, wanted))
 
 
 def _by_keyboard(
-    env: RecordEpisode, made: Demonstrations, wanted: int, seed: int | None, view: View, crouch: str
+    env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int | None, view: View, crouch: str
 ) -> None:
     from tltl_runtime.stealth.recording import writable_folder
 
-    writable_folder(made.folder)
+    writable_folder(demonstrations.folder)
 
     def recordings(_: str) -> Recordings:
-        return _Kept(made, wanted)
+        return _Kept(demonstrations, wanted)
 
     def enough() -> bool:
-        return made.count >= wanted
+        return demonstrations.count >= wanted
 
     play_at_keyboard(env, recordings, seed=seed, view=view, crouch=crouch, enough=enough)
 
 
 class _Kept:
-    """Takes the episodes of a person, of which those are written that meet the spec.
+    """Writes those episodes of a person that meet the spec.
 
-    One that its folder refuses goes to the folder for temporary files, and does not count.
+    If the folder cannot be written, an episode goes to the folder for temporary files and does not
+    count.
 
     Raises:
-        TltlError: TLT0005, of ``save``: that refuses it, too.
+        TltlError: TLT0005, from ``save``: that folder cannot be written, either.
     """
 
     def __init__(self, made: Demonstrations, wanted: int) -> None:
         self._made, self._wanted = made, wanted
 
     def keep(self, episode: Episode) -> None:
-        """An episode that goes on has not met the spec, so there is nothing to write yet."""
+        """Do nothing: an unfinished episode has not met the spec yet."""
 
     def save(self, episode: Episode) -> str:
-        """Write the episode where it is a demonstration; what the player reads of it."""
+        """Write the episode if it is a demonstration; return the text that the player sees."""
         try:
-            tried = self._made.add(episode)
-        except TltlError as refused:
-            return self._elsewhere(episode, refused)
-        click.echo(_line(tried, self._wanted))
-        there = f"{tried.kept} of {self._wanted}"
-        return f"{tried.path.name}, {there}" if tried.path else f"not kept, {there}"
+            attempt = self._made.add(episode)
+        except TltlError as error:
+            return self._elsewhere(episode, error)
+        click.echo(_line(attempt, self._wanted))
+        count = f"{attempt.kept} of {self._wanted}"
+        return f"{attempt.path.name}, {count}" if attempt.path else f"not kept, {count}"
 
     def _elsewhere(self, episode: Episode, refused: TltlError) -> str:
         from tltl_runtime.cli.support.episode_text import episode_line
@@ -191,20 +192,20 @@ class _Kept:
         from tltl_runtime.stealth.recordings.file import file_stem
 
         path = write_elsewhere(episode, file_stem(episode), refused)
-        there = f"{self._made.count} of {self._wanted}"
-        click.echo(episode_line(episode, f"{path} ({there}, until it is moved to {self._made.folder})"))
-        return f"{path}, {there}"
+        count = f"{self._made.count} of {self._wanted}"
+        click.echo(episode_line(episode, f"{path} ({count}, until it is moved to {self._made.folder})"))
+        return f"{path}, {count}"
 
 
-def _line(tried: Tried, wanted: int) -> str:
+def _line(attempt: Tried, wanted: int) -> str:
     from tltl_runtime.cli.support.episode_text import episode_line
 
-    kept = f"{tried.kept} of {wanted}"
-    return episode_line(tried.episode, f"{tried.path} ({kept})" if tried.path else f"not kept ({kept})")
+    kept = f"{attempt.kept} of {wanted}"
+    return episode_line(attempt.episode, f"{attempt.path} ({kept})" if attempt.path else f"not kept ({kept})")
 
 
-def _there(made: Demonstrations, wanted: int) -> str:
-    if made.count > wanted:
-        asked = f"{wanted} {'is' if wanted == 1 else 'are'} asked for"
-        return f"{made.count} demonstrations are in {made.folder}, and {asked}"
-    return f"{made.count} of {wanted} demonstrations are in {made.folder}"
+def _count_text(demonstrations: Demonstrations, wanted: int) -> str:
+    if demonstrations.count > wanted:
+        requested = f"{wanted} {'is' if wanted == 1 else 'are'} asked for"
+        return f"{demonstrations.count} demonstrations are in {demonstrations.folder}, and {requested}"
+    return f"{demonstrations.count} of {wanted} demonstrations are in {demonstrations.folder}"

@@ -1,4 +1,4 @@
-"""``tltlc regress``: which levels still play as designed, and where and why not."""
+"""``tltlc regress``: report which levels still play as designed, and why others do not."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tltlc.io.files import is_file, read_source
 from tltlc.io.limits import TOML
 
 _MINUTES: Final = 10.0
-"""Of a training with --retrain, where nothing else is said."""
+"""The default limit of each training with --retrain."""
 _REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 
@@ -97,9 +97,9 @@ def command(
     printed = {name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_output(path)}
     if printed and len(users := [*["--github"] * github, *printed.values()]) > 1:
         *_, last = (_REPORTS[name] for name in printed)
-        way_out = f"write {last} to a file" if len(users) == 2 else "write the reports to files"
+        advice = f"write {last} to a file" if len(users) == 2 else "write the reports to files"
         both = "both" if len(users) == 2 else "all"
-        raise click.UsageError(f"{', '.join(users[:-1])} and {users[-1]} {both} need standard output: {way_out}")
+        raise click.UsageError(f"{', '.join(users[:-1])} and {users[-1]} {both} need standard output: {advice}")
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes are those of --retrain: give it, too")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
@@ -124,7 +124,7 @@ def command(
 
 
 def _is_suite(word: str) -> bool:
-    """Whether a word is the file of a suite."""
+    """Whether a word is the path of a suite."""
     if not word.endswith(".toml") or not is_file(word):
         return False
     try:
@@ -134,7 +134,10 @@ def _is_suite(word: str) -> bool:
 
 
 def _default_folder(suite: Path | None) -> Path:
-    """The suite's place as seen from here, without its ending: "regression/levels/game" for `levels/game.toml`."""
+    """The default folder of a run: `regression/levels/game` for `levels/game.toml`.
+
+    It follows the path of the suite relative to the working directory.
+    """
     if suite is None:
         return Path("regression", "shipped")
     try:

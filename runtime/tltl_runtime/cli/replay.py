@@ -1,4 +1,4 @@
-"""``tltlc replay``: what recorded episodes hold, whether they are true, and pictures and films of them."""
+"""``tltlc replay``: summarize and check recorded episodes, and draw plans and films of them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ONLY_FOR: Final = {
     "start": (*FILMS, ".csv"),
     "stop": (*FILMS, ".csv"),
 }
-"""The endings of what each option is for."""
+"""The kinds of output, by file extension, that each option applies to."""
 
 _SIZES: Final = (160, 4096)
 """The least and the greatest width and height, in pixels."""
@@ -119,19 +119,19 @@ def command(
     summaries: list[dict[str, Any]] = []
     with Report(format, results=True) as report:
         for name, episode in read_each(files, read_episode, report):
-            said = {"file": name, **summary(episode, notation)}
+            fields = {"file": name, **summary(episode, notation)}
             if checked:
                 judged, played = check(episode), check_replay(episode)
                 report.add((*judged, *played))
-                said |= {"follows_from_spec": not judged, "plays_again": not played}
+                fields |= {"follows_from_spec": not judged, "plays_again": not played}
             if path is not None:
                 _write(path, episode, _span(episode, start, stop), film, size)
                 report.say(f"wrote {path}")
                 if path.suffix.lower() == ".csv":
                     report.say(f"judge it with: {judged_with(episode, str(path))}")
             elif format == "text":
-                print(f"{name}\n{summary_text(said)}{_checked_text(said)}")
-            summaries.append(said)
+                print(f"{name}\n{summary_text(fields)}{_checked_text(fields)}")
+            summaries.append(fields)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
     return report.status
@@ -140,7 +140,7 @@ def command(
 def _check_usage(
     context: click.Context, files: tuple[str, ...], path: Path | None, size: tuple[int, int] | None
 ) -> None:
-    """Refuse what would be ignored."""
+    """Reject options that would be ignored."""
     ending = None if path is None else path.suffix.lower()
     if ending is not None and ending not in _ENDINGS:
         raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
@@ -159,16 +159,16 @@ def _listed(names: Sequence[str]) -> str:
     return f"{', '.join(first)} or {last}"
 
 
-def _checked_text(said: dict[str, Any]) -> str:
-    if "plays_again" not in said:
+def _checked_text(fields: dict[str, Any]) -> str:
+    if "plays_again" not in fields:
         return ""
-    follows = "follows" if said["follows_from_spec"] else "does NOT follow"
-    same = "the same" if said["plays_again"] else "ANOTHER"
+    follows = "follows" if fields["follows_from_spec"] else "does NOT follow"
+    same = "the same" if fields["plays_again"] else "ANOTHER"
     return f"\n  checked  the judgement {follows} from the signals; played again it is {same} episode\n"
 
 
 def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
-    """From where to where a film or a trace goes, in seconds."""
+    """The start and the end of a film or a trace, in seconds."""
     end = episode.snapshots[-1].time
     first, last = start or 0.0, end if stop is None else stop
     if first > min(last, end):
@@ -177,7 +177,7 @@ def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[fl
 
 
 def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
-    """Write what the ending of the path asks for; ``size`` is that of a plan, None for the natural one."""
+    """Write the output that the extension of the path selects.  ``size`` applies to plans; None: the natural size."""
     from tltlc.io.writing import write_file
 
     ending = path.suffix.lower()

@@ -1,4 +1,4 @@
-"""``tltlc table1``: the paper's Table I with our levels, our expert and our trainings."""
+"""``tltlc table1``: reproduce the paper's Table I with our levels, our expert and our trainings."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 _ELSEWHERE = "name another place with --out"
 _SAVING_S = 20.0
-"""Seconds in which a training that is asked to end has written its checkpoint."""
+"""The seconds that an interrupted training gets to write its checkpoint."""
 
 
 @record
 class _Wanted:
-    """What was asked for."""
+    """The options of the command."""
 
     folder: Path
     shipped: bool
@@ -42,7 +42,7 @@ class _Wanted:
 
     @property
     def again(self) -> str:
-        """The command that goes on."""
+        """The shell command that continues the run."""
         words = ["tltlc", "table1", "--out", str(self.folder), *["--shipped"] * self.shipped]
         words += [] if self.minutes is None else ["--minutes", f"{self.minutes:g}"]
         return join([*words, "--workers", str(self.workers)] if self.workers else words)
@@ -94,7 +94,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 
 
 def _table(wanted: _Wanted) -> str:
-    """The table over the paper's number of episodes, and over all of them, cell by cell."""
+    """The table over the paper's number of episodes, and over all episodes."""
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, Row, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, figures, measured
     from tltl_runtime.training.run.versions import versions
@@ -103,26 +103,30 @@ def _table(wanted: _Wanted) -> str:
     rows: dict[int, dict[tuple[str, Model], Row]] = {RUNS: {}, EPISODES: {}}
     for level in LEVELS:
         for model in MODELS:
-            made = _trained(wanted, level, model)
-            policy, hours, cloned = (made.policy, made.hours, made.cloned) if made else (None, None, None)
-            seeds += [f"{level} {model} {made.seed}"] if made else []
-            found = {}
+            training = _trained(wanted, level, model)
+            policy, hours, cloned = (
+                (training.policy, training.hours, training.cloned) if training else (None, None, None)
+            )
+            seeds += [f"{level} {model} {training.seed}"] if training else []
+            cells = {}
             for variant in VARIANTS:
                 click.echo(f"{level}:{variant}, {model}", err=True)
-                found[variant] = measured(wanted.folder, model, level, variant, policy, wanted.workers)
+                cells[variant] = measured(wanted.folder, model, level, variant, policy, wanted.workers)
             for runs, table in rows.items():
-                shown = {name: figures(cell, runs) for name, cell in found.items()}
+                shown = {name: figures(cell, runs) for name, cell in cells.items()}
                 table[level, model] = Row(shown, hours, cloned)
     tables = [
         f"{runs} episodes each of ours, {RUNS} of the paper's:\n\n{markdown(table)}" for runs, table in rows.items()
     ]
     made_by = ", ".join(f"{name} {version}" for name, version in versions().items())
-    how = f"Episodes of seed {SEED}, with sampled actions. Seeds of trainings: {', '.join(seeds)}. Made by {made_by}.\n"
-    return "\n".join((*tables, how))
+    footer = (
+        f"Episodes of seed {SEED}, with sampled actions. Seeds of trainings: {', '.join(seeds)}. Made by {made_by}.\n"
+    )
+    return "\n".join((*tables, footer))
 
 
 def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
-    """The training of a model, which goes on now if it is not over; None of the expert."""
+    """Return the result of a model's training, which continues now if it is unfinished; None for the expert."""
     from tltl_runtime.policies.file import read_policy
     from tltl_runtime.policies.shipped import shipped_policies
     from tltl_runtime.regression.table1 import table_trainings
@@ -138,23 +142,23 @@ def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
             return Trained(path, card.training["seed"], float(card.training["seconds"]) / 3600, None)
         limits = table_trainings.limits_as_of(card, wanted.minutes)
     training = table_training(wanted.folder, level, model, limits)
-    made = trained(training)
-    if made is None:
+    result = trained(training)
+    if result is None:
         _train(train_arguments(training))
-        made = trained(training)
-    if made is None:
+        result = trained(training)
+    if result is None:
         title = f"the training in `{training.folder}` did not end"
         raise TltlError([Diagnostic("TLT0930", title, help="run the command again")])
-    return made
+    return result
 
 
 def _train(arguments: list[str]) -> None:
-    """Train as ``tltlc train`` does, which shows how it goes; Ctrl-C reaches it, too."""
+    """Run ``tltlc train``, which shows its progress.  Ctrl-C reaches it, too."""
     with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
         try:
             training.wait()
         except BaseException:
-            # It may have heard Ctrl-C itself, and saves what it has learned; a second request would break that off.
+            # The training may have received Ctrl-C, too, and be saving its state: a second signal would interrupt it.
             try:
                 training.wait(_SAVING_S)
             except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""``tltlc train``: an agent learns to meet a spec in a level."""
+"""``tltlc train``: train an agent to meet a spec in a level."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """Refuses what a file of settings may not say, either."""
+    """A callback that checks an option by the rules of the settings file."""
 
     def checked(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
         from tltl_runtime.training.run.settings_file import KINDS
@@ -160,34 +160,34 @@ def command(
             click.echo(settings_text(settings), nl=False)
             return exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
-        again, first = resume_command(run.folder), peers().rank == 0
+        again, is_first = resume_command(run.folder), peers().rank == 0
         if resume is not None:
             from tltl_runtime.training.run.record import ended_as
 
             if record := ended_as(run):
-                if first:
+                if is_first:
                     click.echo(_over(run, record, again))
                 return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
             check_limits(run)
-        if first:
+        if is_first:
             for line in _begins(run, resume=resume is not None):
                 click.echo(line, err=True)
-        # What comes now takes seconds, these imports among it.
+        # These imports take seconds, so they come after the first messages.
         from tltl_runtime.cli.support.training_progress import stopped_line, train_shown
         from tltl_runtime.stealth.capabilities.feasible import reach_warnings
         from tltl_runtime.stealth.levels.file import load_level
         from tltl_runtime.training.run.record import write_record
 
-        if first:
+        if is_first:
             report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         try:
             last = train_shown(run, resume=resume is not None, again=again)
         except KeyboardInterrupt:
-            if first and (stopped := stopped_line(run, again)):
+            if is_first and (stopped := stopped_line(run, again)):
                 click.echo(stopped, err=True)
             raise
-        if not first:
-            # torchrun ends all processes as soon as one fails, and the first has a record to write.
+        if not is_first:
+            # Exit cleanly: if one process fails, torchrun ends all, and the first one still writes the record.
             return exits.CLEAN
         write_record(run, last)
         for line in _ended(run, last, again):
@@ -197,7 +197,7 @@ def command(
 
 
 def _begins(run: Run, *, resume: bool) -> Iterator[str]:
-    """What is trained and where; what becomes of the files of a training that is resumed without its checkpoint."""
+    """Describe the training; if it is resumed without a checkpoint, say what happens to its files."""
     from tltl_runtime.training.run.metrics import METRICS
     from tltl_runtime.training.run.run import CHECKPOINT, POLICY, RECORD
 
@@ -221,7 +221,7 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
 
 
 def _ended(run: Run, last: Trained, again: str) -> Iterator[str]:
-    """How a training ended, what there is now, and what comes next, by the command ``again`` perhaps."""
+    """Describe how a training ended, its files and the next steps.  ``again`` is the command that resumes it."""
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
     met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
@@ -234,15 +234,17 @@ def _ended(run: Run, last: Trained, again: str) -> Iterator[str]:
 
 
 def _over(run: Run, record: Mapping[str, Any], again: str) -> str:
-    """What there is to say of a training that is resumed, by the command ``again``, and has ended."""
+    """Describe a training that cannot be resumed because it has ended.  ``again`` is the command that resumes it."""
     from tltl_runtime.cli.support.training_text import minutes
 
-    over, stop = f"the training in `{run.folder}` is over", run.settings.stop
+    prefix, stop = f"the training in `{run.folder}` is over", run.settings.stop
     if record["end"] == "met":
-        return f"{over}, and stays as it is: the spec was met after {record['steps']:,} steps"
+        return f"{prefix}, and stays as it is: the spec was met after {record['steps']:,} steps"
     if record["end"] == "steps":
         took, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
     else:
         took, limit = duration(record["seconds"]), minutes(stop.minutes)
-    on = f"{again} --{record['end']} N"
-    return f"{over}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {on}"
+    resume = f"{again} --{record['end']} N"
+    return (
+        f"{prefix}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {resume}"
+    )
