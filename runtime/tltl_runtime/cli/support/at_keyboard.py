@@ -1,4 +1,4 @@
-"""A person plays a level in a window, for the commands that record this."""
+"""Let a person play a level in a window, for commands that record the episodes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SIZE: Final = (640, 400)
 
 
 def keyboard_options(function: Function) -> Function:
-    """``--view`` and ``--crouch``, which the command takes as ``view`` and ``crouch``."""
+    """Add the options ``--view`` and ``--crouch`` to a command."""
     from tltl_runtime.stealth.rendering.camera import VIEWS
 
     crouch = click.option(
@@ -41,13 +41,14 @@ def play_at_keyboard(
     crouch: str,
     enough: Callable[[], bool] = lambda: False,
 ) -> None:
-    """Open a window and play episodes of ``env`` until the player stops, or it is ``enough`` after one.
+    """Open a window and play episodes of ``env`` until the player stops, or ``enough`` returns true after one.
 
-    ``recordings`` makes of the name LEVEL-VARIANT what takes the episodes; ``seed`` is the first episode's.  What
-    nobody can do in the level is said on standard error before there is a window.
+    ``recordings`` creates the receiver of the episodes from the name LEVEL-VARIANT.  ``seed`` is the seed
+    of the first episode.  Warnings about unreachable goals are printed to standard error before the
+    window opens.
 
     Raises:
-        TltlError: TLT0830, no window can be opened; TLT0730, without pygame.
+        TltlError: TLT0830, no window can be opened; TLT0730, pygame is not installed.
     """
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings
     from tltl_runtime.stealth.keyboard import KeyboardPlayer
@@ -56,7 +57,7 @@ def play_at_keyboard(
 
     level = env.get_wrapper_attr("level")
     taking = recordings(f"{level.name}-{level.variant}")
-    # A spec that asks for what the level does not have is told before there is a window.
+    # Reset first: if the level lacks something that the spec needs, the error comes before the window opens.
     env.reset()
     show(reach_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
     window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")

@@ -13,8 +13,8 @@ _OPTION: Final = "--changed"
 class ChangedCommand(click.Command):
     """A command whose option ``--changed``, declared with ``multiple``, takes any number of words.
 
-    So it takes what ``$(git diff --name-only)`` stands for, which may be nothing: its first value is then empty, which
-    tells it from an option that is not there.
+    So it accepts the output of ``$(git diff --name-only)``, which may be empty.  The first value of the
+    option is always an empty string, which distinguishes an empty option from a missing one.
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -23,7 +23,7 @@ class ChangedCommand(click.Command):
 
 
 def _one_by_one(words: Sequence[str]) -> Iterator[str]:
-    """The words, with the option before each one that it takes."""
+    """The words, with ``--changed=`` before each value of the option."""
     taking = False
     for number, word in enumerate(words):
         if word == "--":

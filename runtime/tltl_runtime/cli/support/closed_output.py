@@ -1,4 +1,4 @@
-"""Output that nobody reads any more: no reason to end a command whose results are files."""
+"""Let a command whose results are files continue after its output pipe is closed."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ if TYPE_CHECKING:
 
 @contextmanager
 def on_without_readers() -> Iterator[None]:
-    """Within, what is printed into a pipe that was closed, as ``head`` closes it, is lost, and the command goes on."""
+    """Discard what is printed into a closed pipe, as after ``head``, instead of ending the command."""
     before = sys.stdout, sys.stderr
-    made = []
+    streams = []
     for name, stream in (("stdout", sys.stdout), ("stderr", sys.stderr)):
         try:
             number = stream.fileno()
         except (OSError, ValueError):
-            # Standard output of a test, say, is no file of the system.
+            # The stream has no file descriptor, for example in a test.
             continue
         if not stream.isatty():
             stream.flush()
             binary = BufferedWriter(_Lossy(number, "wb", closefd=False))
-            made.append(TextIOWrapper(binary, stream.encoding, stream.errors, line_buffering=True))
-            setattr(sys, name, made[-1])
+            streams.append(TextIOWrapper(binary, stream.encoding, stream.errors, line_buffering=True))
+            setattr(sys, name, streams[-1])
     try:
         yield
     finally:
         sys.stdout, sys.stderr = before
-        for each in made:
-            each.flush()
+        for lossy in streams:
+            lossy.flush()
 
 
 class _Lossy(FileIO):
-    """A file that takes what its pipe does not."""
+    """A file that discards data if its pipe is closed."""
 
     def write(self, data: ReadableBuffer, /) -> int:
-        """The number of bytes that were taken."""
+        """Write data, or discard it; return the number of bytes."""
         try:
             return super().write(data)
         except BrokenPipeError:

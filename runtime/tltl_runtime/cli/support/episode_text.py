@@ -1,4 +1,4 @@
-"""An episode in words, for the commands that have one played."""
+"""The line that commands print for an episode."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tltl_runtime.support.number_text import number, share
 
 
 def episode_line(episode: Episode, then: str) -> str:
-    """How an episode went and what became of it, ``then``; below, where it failed, why."""
+    """Describe an episode; ``then`` says what was done with it.  A failed episode has a second line with the cause."""
     steps, seconds = len(episode.actions), episode.snapshots[-1].time
     ended = f"seed {episode.seed}: {episode.end} after {steps} steps, {seconds:.2f} s"
     line = f"{ended}, progress {share(episode.progress[-1])}, return {number(episode.rewards.sum(), 3)}: {then}"

@@ -1,4 +1,4 @@
-"""What an evaluation leaves: a report for people, one for programs, recordings, and pictures of the ways."""
+"""The output of an evaluation: a text report, a JSON report, recordings and pictures of trajectories."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ from tltlc.io.writing import write_file, write_files
 _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
 _KEYS: Final = frozenset({"level", "variant", "level_hash", "spec", "policy", "versions"})
-"""What every report has had."""
+"""The keys that the reports of all versions contain."""
 
 
 class EvaluationFiles:
-    """The results of an evaluation as they come, and where they go.
+    """Collects the results of an evaluation and writes its files.
 
-    ``path`` is the policy's file, ``sha256`` that of its bytes, in hexadecimal, and ``first`` the index of the first
-    episode; ``command`` evaluates the same episodes again.  ``folder``, which is made where it is missing, gets
-    recordings and pictures, ``json_file`` the report for programs; both are optional.  The report and the pictures of
-    the ways that an earlier evaluation left in the folder are removed with the first result, and so are the recordings
-    of another policy on this level: ``removed`` has their names.
+    ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first`` the
+    index of the first episode.  ``command`` evaluates the same episodes again.  ``folder``, which is
+    created if it is missing, gets recordings and pictures.  ``json_file`` gets the JSON report.  Both are
+    optional.  The first result removes from the folder the report and the pictures of an earlier
+    evaluation, and the recordings of another policy on this level; ``removed`` are their names.
 
     Raises:
-        TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.  TLT0722, a file is in the way
-            that has the name of a report or of a picture, and that no evaluation wrote.
+        TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a file has
+            the name of a report or a picture, but no evaluation wrote it.
     """
 
     def __init__(
@@ -73,16 +73,16 @@ class EvaluationFiles:
 
     @property
     def played(self) -> dict[str, int]:
-        """How many episodes were played, by the name of the way to choose actions."""
+        """The number of played episodes, by how actions were chosen."""
         return {CHOICES[sampled]: len(played) for sampled, played in self._played.items()}
 
     @property
     def removed(self) -> tuple[str, ...]:
-        """Names of what an earlier evaluation left in the folder, and what is neither there any more nor anew."""
+        """The names of files of an earlier evaluation that were removed and not written again."""
         return tuple(name for name in self._removed if self._folder and not (self._folder / name).exists())
 
     def add(self, result: Result) -> None:
-        """Take the next result, and write its recording where there is one."""
+        """Add the next result, and write its recording if it has one."""
         sampled = result.task.sampled
         if self._folder is not None and not any(self._played.values()):
             self._removed = self._remove_older(self._folder)
@@ -98,25 +98,25 @@ class EvaluationFiles:
             self._recorded.append(path.name)
 
     def text(self) -> str:
-        """The report for people."""
+        """The text report."""
         setup = self._setup
-        # A level of one's own may be called like one that comes with tltlc.
+        # Show the path of a user's level, which may have the name of a level of the package.
         level = shown(Path(setup.level)) if setup.level.endswith(".toml") else self._level.name
         head = f"{level} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
-        found = {CHOICES[sampled]: each for sampled, each in self._evaluations().items()}
-        text = f"{head}\n{self._note()}\n{report_text(found)}"
-        failed = [each.index for episodes in self._played.values() for each in episodes if not each.success]
+        evaluations = {CHOICES[sampled]: evaluation for sampled, evaluation in self._evaluations().items()}
+        text = f"{head}\n{self._note()}\n{report_text(evaluations)}"
+        failed = [episode.index for episodes in self._played.values() for episode in episodes if not episode.success]
         if failed and self._folder is None:
             again = f"{self._command} --first {failed[0]} --episodes 1 --out evaluation"
             text += f"\nTo record one of them, for `tltlc replay`:\n  {again}\n"
         return text
 
     def document(self, complete: bool) -> dict[str, Any]:
-        """The report for programs, JSON data: figures of sampled actions, those of the likeliest under ``argmax``.
+        """The JSON report: the figures with sampled actions, and under ``argmax`` with the likeliest actions.
 
-        It does not depend on who played.  ``complete`` says whether all episodes were played.
+        It does not depend on which workers played.  ``complete`` says whether all episodes were played.
         """
-        setup, found = self._setup, self._evaluations()
+        setup, evaluations = self._setup, self._evaluations()
         card = setup.policy.card
         return {
             "level": self._level.name,
@@ -134,13 +134,14 @@ class EvaluationFiles:
                 "level_hash": card.level_hash,
             },
             "versions": {**versions(), "torch": version("torch")},
-            **(_as_json(found[True]) if True in found else {}),
-            "argmax": _as_json(found[False]) if False in found else None,
+            **(_as_json(evaluations[True]) if True in evaluations else {}),
+            "argmax": _as_json(evaluations[False]) if False in evaluations else None,
         }
 
     def write(self, text: str) -> str:
-        """Write the report for programs, and pictures of the ways where there is a folder for them; what there is in
-        it then, for people, empty without a folder.
+        """Write the JSON report and, if there is a folder, the pictures of trajectories.
+
+        Return a description of the folder's contents; empty without a folder.
         """
         if self._json is not None:
             write_file(self._json, text, "name another place with --json")
@@ -158,7 +159,7 @@ class EvaluationFiles:
         return f"{self._folder}: {recorded}, {', '.join((*pictures, _REPORT))}{look_at}"
 
     def _note(self) -> str:
-        """A line for people where the level is not the one that the policy was trained on."""
+        """A note if the level is not the one that the policy was trained on; else empty."""
         card, level = self._setup.policy.card, self._level
         if level_hash(level) == card.level_hash:
             return ""
@@ -167,23 +168,26 @@ class EvaluationFiles:
         return f"note: the policy was trained on another level, {card.level} {card.variant}\n"
 
     def _remove_older(self, folder: Path) -> tuple[str, ...]:
-        """Remove what is written anew, and recordings of this level that another policy played: their names."""
+        """Remove the files that will be written again, and recordings of another policy on this level.
+
+        Return the names of the removed files.
+        """
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
-        # The report goes last: it says that the pictures are an evaluation's.
+        # Remove the report last: it shows that the pictures belong to an evaluation.
         older = [folder / name for name in (*_PICTURES.values(), _REPORT)]
         for path in sorted(filter(may_be_file, folder.iterdir())):
-            if (found := recording.fullmatch(path.name)) and self._is_of_another(path):
-                older += [path, folder / f"{found[1]}.png"]
-        there = [path for path in older if path.is_file()]
-        for path in there:
-            # What cannot be removed cannot be replaced, either, and that is told.
+            if (match := recording.fullmatch(path.name)) and self._is_of_another(path):
+                older += [path, folder / f"{match[1]}.png"]
+        existing = [path for path in older if path.is_file()]
+        for path in existing:
+            # If a file cannot be removed, it cannot be replaced, either, and `write` raises an error.
             with suppress(OSError):
                 path.unlink()
-        return tuple(path.name for path in there)
+        return tuple(path.name for path in existing)
 
     def _is_of_another(self, path: Path) -> bool:
-        """Whether a file is a recording of what another policy played, which this evaluation says nothing of."""
+        """Whether a file is a recording of another policy."""
         try:
             player = read_episode(path).player
         except TltlError:
@@ -199,15 +203,15 @@ class EvaluationFiles:
 
 
 def _check_place(folder: Path) -> None:
-    """Raise TltlError, TLT0722, where a file of the user would be replaced by the report or by a picture."""
-    there = [folder / name for name in (_REPORT, *_PICTURES.values()) if exists(folder / name)]
-    if there and not _is_report(folder / _REPORT):
-        title = f"`{there[0]}` is there already, and no evaluation wrote it"
+    """Raise TltlError, TLT0722, if the report or a picture would replace a file of the user."""
+    existing = [folder / name for name in (_REPORT, *_PICTURES.values()) if exists(folder / name)]
+    if existing and not _is_report(folder / _REPORT):
+        title = f"`{existing[0]}` is there already, and no evaluation wrote it"
         raise TltlError([Diagnostic("TLT0722", title, help="name another folder with --out")])
 
 
 def _is_report(path: Path) -> bool:
-    """Whether an evaluation wrote this file."""
+    """Whether a file is the report of an evaluation."""
     try:
         document = load(path, REPORT) if may_be_file(path) else None
     except (TltlError, OSError, ValueError):
@@ -215,7 +219,7 @@ def _is_report(path: Path) -> bool:
     return isinstance(document, dict) and document.keys() >= _KEYS
 
 
-def _as_json(found: Evaluation) -> dict[str, Any]:
-    """The figures, how failed episodes ended, and the ``episodes``: these themselves, and not how many they are."""
-    figures = {name: each for name, each in to_json(found.figures).items() if name != "episodes"}
-    return {**figures, "ended": to_json(found.ended), "episodes": to_json(found.episodes)}
+def _as_json(evaluation: Evaluation) -> dict[str, Any]:
+    """The figures, how failed episodes ended, and the list of episodes; it replaces their number in the figures."""
+    figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
+    return {**figures, "ended": to_json(evaluation.ended), "episodes": to_json(evaluation.episodes)}

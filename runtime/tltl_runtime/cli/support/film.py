@@ -1,4 +1,4 @@
-"""Writing films of episodes, for the commands that do."""
+"""Write films of episodes."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 FILMS: Final = (".gif", ".mp4")
-"""The endings of films."""
+"""The file extensions of films."""
 
 _MOST_FRAMES_A_SECOND: Final = 30.0
-"""Unless asked for, a faster film leaves decisions out."""
+"""The greatest default frame rate.  A faster film leaves steps out."""
 
 
 @record
 class Film:
-    """How a film is made: ``rate`` in pictures a second, None for one each decision; ``size`` in pixels."""
+    """The options of a film: ``rate`` in frames per second, None for one frame per decision; ``size`` in pixels."""
 
     view: View = "third_person"
     speed: float = 1.0
@@ -37,9 +37,10 @@ class Film:
 
 
 def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
-    """Write the film of an episode from one time to another, in seconds; the ending of the path says which kind.
+    """Write the film of an episode over a span of time, in seconds.  The path's extension selects the format.
 
-    Errors: TLT0005, and TLT0730 where nothing here writes an .mp4.
+    Raises:
+        TltlError: TLT0005, the file cannot be written; TLT0730, no encoder for .mp4 is installed.
     """
     from tltl_runtime.stealth.rendering.film import frames
     from tltl_runtime.stealth.rendering.film_file import NoEncoderError, write_gif, write_mp4
@@ -50,7 +51,7 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
     count = int((stop - start) / film.speed * rate + 1e-6) + 1
     times = [start + number * film.speed / rate for number in range(count)]
     if times[-1] < stop - 1e-6 and stop == episode.snapshots[-1].time:
-        # How it ended is always to be seen.
+        # Always show the end of the episode.
         times.append(stop)
     pictures = _counted(frames(episode, times, film.view, film.size, film.notation), len(times))
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
@@ -62,7 +63,7 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
 
 
 def _counted(pictures: Iterable[T], count: int) -> Iterator[T]:
-    """The pictures, with a bar on a terminal's standard error that says how far they are."""
+    """Yield the pictures, with a progress bar if standard error is a terminal."""
     if not sys.stderr.isatty():
         yield from pictures
         return

@@ -1,4 +1,4 @@
-"""What `tltlc train --from POLICY` begins with, and what is then up to the policy: spec, senses, network, place."""
+"""`tltlc train --from POLICY`: the initial policy, and what it determines: spec, sensors, network and level."""
 
 from __future__ import annotations
 
@@ -30,25 +30,25 @@ _COMMAND = "tltlc train --from"
 
 @record
 class Beginning:
-    """A policy to begin with, and its file."""
+    """An initial policy and its file."""
 
     policy: Policy
     path: Path
 
     @property
     def card(self) -> Card:
-        """What the policy was trained for."""
+        """The policy's card, which describes what it was trained for."""
         return self.policy.card
 
 
 def beginning(named: Path) -> Beginning:
-    """The policy that ``--from`` names as `tltlc evaluate` names one; raises TltlError for one that is none."""
+    """Read the policy of ``--from``, named as for `tltlc evaluate`; raises TltlError if it cannot be read."""
     path = policy_file(named)
     return Beginning(read_policy(path), path)
 
 
 def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
-    """The level and the variant that a policy was trained on; raises TltlError where they are not known."""
+    """The level and the variant that a policy was trained on; raises TltlError if they are unknown."""
     path, name, variant = policy_place(named, None, _COMMAND)
     if name is None:
         check_known(begun.card.level, path, _COMMAND)
@@ -57,10 +57,10 @@ def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
 
 
 def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> Settings:
-    """The settings with the policy's network.
+    """Return the settings with the policy's network.
 
     Raises:
-        TltlError: TLT0941, the file ``config`` asks for another one.
+        TltlError: TLT0941, the file ``config`` sets another network.
         UsageError: the settings are for imitation.
     """
     if settings.imitates:
@@ -75,10 +75,11 @@ def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> 
 
 
 def check_beginning(begun: Beginning, level: Level, fspa: Fspa, asked: Mapping[str, Any]) -> Sensors:
-    """What the agent senses, which is what the policy does; ``asked`` is what options say of it.
+    """Check the initial policy and return its sensors, which the agent uses.  ``asked`` are the sensor options.
 
     Raises:
-        TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, other senses are asked for.
+        TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, the options ask for
+            other sensors.
     """
     check_policy(begun.card, level, fspa)
     titles = list(_other_senses(begun, level, asked))
@@ -89,7 +90,7 @@ def check_beginning(begun: Beginning, level: Level, fspa: Fspa, asked: Mapping[s
 
 
 def is_another(run: Run, named: Path) -> str | None:
-    """In what a training differs from one that ``--from`` such a policy would be, a sentence; None where in nothing."""
+    """A sentence if a training did not start with this policy; None if it did."""
     where = f"the training in `{run.folder}` begins with"
     if run.initial is None:
         return f"{where} weights that are drawn, not with the policy `{named}`"
@@ -98,7 +99,7 @@ def is_another(run: Run, named: Path) -> str | None:
 
 
 def moved(run: Run, named: Path) -> Run:
-    """The training with its policy where it is now."""
+    """Update the path of the initial policy."""
     assert run.initial is not None
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 

@@ -1,4 +1,4 @@
-"""Commands on several files: what is wrong with one keeps nobody from the next."""
+"""Read several files; errors of one do not stop the others."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ T = TypeVar("T")
 
 
 def read_each(files: Sequence[str], read: Callable[[str], T], report: Report) -> Iterator[tuple[str, T]]:
-    """Each file by its name, with what ``read`` makes of it; what is wrong with the others goes into the report."""
+    """Yield the name of each file and the result of ``read``.  Errors go into the report."""
     for name in files:
         try:
-            made = read(name)
+            content = read(name)
         except TltlError as error:
             report.add(error.diagnostics)
             continue
-        yield name, made
+        yield name, content

@@ -1,4 +1,4 @@
-"""What commands need that learn, or play what was learned, beyond the extra by which they were loaded."""
+"""Check that the packages of the extra ``rl``, which trained policies need, are installed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MODULES: Final = {"torch", "rsl_rl", "tensordict", "safetensors", "tensorboard"
 
 @contextmanager
 def learning_for(command: str) -> Iterator[None]:
-    """Within, TLT0730 with the way to install it where a part of the extra ``rl`` is missing."""
+    """Raise TltlError, TLT0730, with the command to install it, if a package of the extra ``rl`` is missing."""
     try:
         yield
     except ModuleNotFoundError as error:

@@ -1,4 +1,4 @@
-"""Levels that are named where something else could be, and levels whose file is gone."""
+"""Interpret arguments that may name levels, and report levels whose files are missing."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tltlc.io.spec_file import split
 
 
 def names_level(text: str) -> bool:
-    """Whether a text that could be a path is ``LEVEL`` or ``LEVEL:VARIANT`` of a level that comes with the package."""
+    """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level of the package, and not an existing path."""
     return not exists(text) and level_place(text)[0] in level_names()
 
 
 def check_spelling(text: str) -> None:
-    """Raise TltlError, TLT0001, where a name without a folder or a suffix is no path, and nearly that of a level."""
+    """Raise TltlError, TLT0001, if a plain name is not an existing path and resembles the name of a level."""
     name = level_place(text)[0]
     close = get_close_matches(name, level_names(), n=1)
     if close and re.fullmatch(r"[\w-]+", name) and not exists(text):
@@ -32,8 +32,10 @@ def check_spelling(text: str) -> None:
 
 
 def check_named(policy: Path | None, level: str | None) -> None:
-    """Raise the TltlError that is raised where a policy or a level is read which is not there, before torch is loaded,
-    which takes seconds.
+    """Check early that the policy and the level exist, before torch is imported, which takes seconds.
+
+    Raises:
+        TltlError: the same error as reading the policy or the level would raise.
     """
     if policy is not None and not names_level(str(policy)) and not exists(policy):
         check_spelling(str(policy))
@@ -44,27 +46,34 @@ def check_named(policy: Path | None, level: str | None) -> None:
 
 
 def check_no_toml(spec: str | None, settings: str = "") -> None:
-    """Raise UsageError where a ``.toml`` stands for a spec: it is a level, or what the option ``settings`` takes."""
+    """Raise UsageError if a ``.toml`` file is given as a spec.
+
+    It is probably a level, or a file for the option ``settings``.
+    """
     path = split(spec)[0] if spec else ""
     if path.endswith(".toml"):
-        ways = [f"where it holds settings, write `{settings} {quote(path)}`"] if settings else []
-        ways.append(f"where it is a level, `--level {quote(spec or path)}`")
-        raise click.UsageError(f"`{path}` is no spec; {', '.join(ways)}", click.get_current_context())
+        suggestions = [f"where it holds settings, write `{settings} {quote(path)}`"] if settings else []
+        suggestions.append(f"where it is a level, `--level {quote(spec or path)}`")
+        raise click.UsageError(f"`{path}` is no spec; {', '.join(suggestions)}", click.get_current_context())
 
 
 def check_there(level: str, variant: str, command: str) -> None:
-    """Raise TltlError, TLT0001, where a level's file is gone: ``command`` takes it from elsewhere with --level."""
+    """Raise TltlError, TLT0001, if a level's file is missing.  The help suggests ``command`` with --level."""
     if level.endswith(".toml") and not exists(level):
-        other = "" if variant == "v0" else f":{variant}"
+        suffix = "" if variant == "v0" else f":{variant}"
         title = f"the level's file `{level}` is not there any more"
-        help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{other}`"
+        help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{suffix}`"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)])
 
 
 def own_level(spec: str, how: str = "with --level") -> str:
-    """The level that a spec is about by its own word: a file beside it, or one that comes with the package.
+    """Return the level that a spec names: a file beside it, or a level of the package.
 
-    ``how`` to name one goes into messages.  Raises UsageError where the spec names none, TltlError where there is none.
+    ``how`` says in messages how to name a level.
+
+    Raises:
+        UsageError: the spec names no level.
+        TltlError: TLT0800, the level does not exist.
     """
     fspa, _ = read_spec(spec)
     if fspa.level is None:

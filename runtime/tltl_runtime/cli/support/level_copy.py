@@ -1,4 +1,4 @@
-"""What ``tltlc new --level`` writes: a level with all that it is made of, for a designer to change."""
+"""``tltlc new --level``: copy a level with all of its files, for a designer to change."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.files import read_source
 
 _STARTER: Final = Path(__file__).parents[2] / "starter" / "vault.toml"
-"""A small level to begin with, that of docs/levels.md."""
+"""A small level to start with, the example of docs/levels.md."""
 
 NAMES: Final = (_STARTER.stem, *level_names())
-"""What can be copied."""
+"""The names of the levels that can be copied."""
 
 
 def files(name: str) -> dict[str, str]:
-    """The texts of a level, its assets, overlays and spec, by the names that they have beside it, and a README.
+    """Return the texts of a level, its assets, overlays and spec, and of a README, by name.
 
-    The level's own file is the first.  ``name`` is one of :data:`NAMES` or a ``.toml`` file.  Errors: those of
-    :func:`load_level`.
+    Names are relative to the level's folder.  The level's own file is the first.  ``name`` is one of
+    :data:`NAMES` or a ``.toml`` file.
+
+    Raises:
+        TltlError: TLT0800, there is no such level; the errors of :func:`load_level`.
     """
     if name not in NAMES and not name.endswith(".toml"):
         title = f"there is no level `{name}` to copy"
@@ -30,11 +33,11 @@ def files(name: str) -> dict[str, str]:
     path = _STARTER if name == _STARTER.stem else level_path(name)
     levels = [load_level(str(path), variant) for variant in variants(str(path))]
     names = dict.fromkeys(name for level in levels for name, _ in level.files)
-    found = {name: next(place / name for place in (path.parent, LEVELS) if (place / name).is_file()) for name in names}
+    paths = {name: next(place / name for place in (path.parent, LEVELS) if (place / name).is_file()) for name in names}
     spec = Path(levels[0].spec.rpartition(":")[0])
     if spec.name:
-        found[spec.name] = spec
-    texts = {name: read_source(file, name).text for name, file in found.items()}
+        paths[spec.name] = spec
+    texts = {name: read_source(file, name).text for name, file in paths.items()}
     return {**texts, "README.md": _README.format(level=path.name, spec=spec.name or "SPEC.tltl")}
 
 

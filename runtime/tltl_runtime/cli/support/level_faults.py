@@ -1,4 +1,4 @@
-"""What a level does to its player in the physics, told as a fault of the level."""
+"""Report a player who leaves the level as an error of the level."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def level_faults() -> Iterator[None]:
-    """TLT0806 where a player has left the level; other errors of the physics pass, since they are ours."""
+    """Raise TltlError, TLT0806, if a player leaves the level.  Other errors of the physics are bugs: they propagate."""
     try:
         yield
     except RuntimeError as error:

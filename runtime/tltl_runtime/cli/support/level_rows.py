@@ -1,4 +1,4 @@
-"""What ``tltlc list levels`` lists."""
+"""The rows of ``tltlc list levels``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tltl_runtime.stealth.levels.file import changes, level_names, load_level, v
 
 
 def rows() -> Iterator[dict[str, str]]:
-    """The variants of the levels that come with the package: what a level is, and what the others change in it."""
+    """Yield a row for each variant of each level of the package: its changes, or the level's description."""
     for name in level_names():
         for variant in variants(name):
             doc = " ".join(changes(name, variant)) or load_level(name, variant).doc

@@ -1,4 +1,4 @@
-"""What ``tltlc check --level`` says: of each level and variant, whether it has what the specs speak of."""
+"""``tltlc check --level``: check whether levels supply what specs need."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def command(
     for path, variant in map(level_place, levels):
         for name in level_names() if path == "all" else (path,):
             try:
-                seen += [check(name, each) for each in ((variant,) if variant else variants(name))]
+                seen += [check(name, variant_name) for variant_name in ((variant,) if variant else variants(name))]
             except TltlError as error:
                 report.add(error.diagnostics)
     if plan is not None and seen:
@@ -61,38 +61,38 @@ def command(
 
 
 class _Check:
-    """What there is to be said of levels; what holds of several variants is said once."""
+    """Checks levels and reports each remark only once, even if it applies to several variants."""
 
     def __init__(self, inputs: Sequence[Input], settings: Settings, report: Report, sensors: Mapping[str, Any]) -> None:
         self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
         self._said: set[object] = set()
 
     def __call__(self, path: str, variant: str) -> tuple[Level, Reach]:
-        """Report all that is to be said of one variant of a level."""
+        """Check one variant of a level and report the remarks."""
         level, remarks = read_level(path, variant)
         senses, reach = Senses(level, self._sensors), reachable(level)
         warnings = [*remarks, *check_height(level, reach)]
         self._add(warnings)
         inputs = self._inputs or self._own(level)
-        several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
+        has_several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
         for opened in inputs:
             for fspa, places in _specs(opened):
-                found = check_supply(level, fspa, places)
-                if status_of(found) == CLEAN:
-                    found += check_reach(level, reach, fspa, places)
-                self._add(found)
-                if not found:
-                    receiver = f" to `{fspa.name}`" if several else ""
+                diagnostics = check_supply(level, fspa, places)
+                if status_of(diagnostics) == CLEAN:
+                    diagnostics += check_reach(level, reach, fspa, places)
+                self._add(diagnostics)
+                if not diagnostics:
+                    receiver = f" to `{fspa.name}`" if has_several else ""
                     remark = "" if warnings or opened.diagnostics else " (nothing to report)"
                     self._say(f"{level.name}:{variant} supplies {_supplied(level, fspa)}{receiver}{remark}")
         self._say(f"{level.name}: the agent senses {_sensed(senses)}")
         return level, reach
 
     def _own(self, level: Level) -> list[Input]:
-        """The spec that a level is made for, compiled."""
+        """Compile the spec that a level is made for."""
         if not level.spec:
-            way_out = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
-            self._say(f"{level.name}: made for no spec; {way_out}")
+            advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
+            self._say(f"{level.name}: made for no spec; {advice}")
             return []
         opened = open_input(shown(Path(level.spec)), self._settings)
         self._add(opened.diagnostics)
@@ -126,7 +126,7 @@ def _specs(opened: Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
 
 
 def _supplied(level: Level, fspa: Fspa) -> str:
-    """The entities, the signals that are of none, and the params that a spec gets from a level."""
+    """The entities, other signals and parameters that a level supplies to a spec, as text."""
     names = list(used_entities(level, fspa))
     names += [signal.name for signal in fspa.signals if "(" not in signal.name]
     names += [f"{name} = {value:.4g} m" for name, value in given_params(level, fspa).items()]
@@ -134,7 +134,7 @@ def _supplied(level: Level, fspa: Fspa) -> str:
 
 
 def _sensed(senses: Senses) -> str:
-    """The parts of the observation that are of the level, with their sizes."""
+    """The parts of the observation that depend on the level, with their sizes, as text."""
     own = senses.sensors
     names = {"entities": own.entities, "variables": own.variables, "map": own.map.types if own.map else ()}
     shown = [

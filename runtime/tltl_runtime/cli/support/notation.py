@@ -1,4 +1,4 @@
-"""The option that says how formulas are written for people."""
+"""The option for the notation of formulas."""
 
 from __future__ import annotations
 

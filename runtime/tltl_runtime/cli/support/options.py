@@ -1,4 +1,4 @@
-"""Options that several commands have alike, but for what they say of them."""
+"""Options that several commands share, except for their help texts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _OUTPUT: Final = ("--output", "--out", "-o")
 
 
 def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
-    """``-o DIR``, which the command takes as ``folder``."""
+    """The option ``-o DIR``, passed to the command as ``folder``."""
     return click.option(
         *_OUTPUT,
         "folder",
@@ -30,12 +30,12 @@ def output_folder(about: str, default: Path | None = None) -> Callable[[Function
 
 
 def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
-    """``-o FILE``, which the command takes as ``path``."""
+    """The option ``-o FILE``, passed to the command as ``path``."""
     return click.option(*_OUTPUT, "path", metavar=metavar, type=OutputPath("file", checked=True), help=about)
 
 
 def seed_option(about: str) -> Callable[[Function], Function]:
-    """``--seed N``, by default 0."""
+    """The option ``--seed N``, by default 0."""
     kind = WholeRange(min=0)
     return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=about)
 

@@ -1,4 +1,4 @@
-"""The policy that a command is to take: a file, that of the training in a folder, or that which comes with a level."""
+"""Find the policy that a command names: a file, the folder of a training, or the policy that comes with a level."""
 
 from __future__ import annotations
 
@@ -16,37 +16,42 @@ from tltlc.io.files import exists, is_dir, is_file
 
 
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
-    """The file of a policy, and the level and the variant that it is taken for; None: as its card says.
+    """Return the file of a policy, and the level and the variant to play; None means as in the policy's card.
 
-    ``policy`` is a path, or ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with it, as that of ``level`` is
-    where there is none.  One of the two is given.  ``command`` takes a policy as its argument, for messages.
+    ``policy`` is a path, or ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.
+    Without ``policy``, the policy that comes with ``level`` is used.  At least one of the two is given.
+    ``command`` is the command for messages; it takes a policy as its argument.
 
     Raises:
-        TltlError: TLT0853, no policy comes with the level; TLT0800, there is no such level; TLT0001, the file of its
-            level is gone; and as :func:`policy_path`.
+        TltlError: TLT0853, no policy comes with the level; TLT0800, the level does not exist; TLT0001,
+            the file of the policy's level is missing; and the errors of :func:`policy_path`.
     """
     name, variant = (None, None) if level is None else level_place(level)
     if policy is not None and names_level(str(policy)):
-        named, its = level_place(str(policy))
-        return policy_file(policy), name or named, variant if name else its
+        policy_level, policy_variant = level_place(str(policy))
+        return policy_file(policy), name or policy_level, variant if name else policy_variant
     if policy is None:
         assert name is not None
         return _shipped(name), name, variant
     path = policy_path(policy)
     if name is None and is_file(policy / RUN):
-        # The card has the level's name alone, and here is the path of its file.
+        # The card has only the level's name; the folder of the training has the path of its file.
         name, variant = read_place(policy)
         check_there(name, variant, f"{command} {quote(str(policy))}")
     return path, name, variant
 
 
 def policy_file(policy: Path) -> Path:
-    """The file of a policy as :func:`policy_place` takes one, wherever its level is; errors as there, of the policy."""
+    """Return the file of a policy, named as for :func:`policy_place`; its level is not checked.
+
+    Raises:
+        TltlError: TLT0853, no policy comes with the level; and the errors of :func:`policy_path`.
+    """
     return _shipped(level_place(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
 
 
 def check_known(level: str, policy: Path, command: str) -> None:
-    """TLT0800 where a policy, of whose training there is its file alone, was trained on a level of one's own."""
+    """Raise TltlError, TLT0800, if a policy was trained on a user's level, whose path its file does not contain."""
     if level not in level_names():
         title = f"there is no level `{level}`: the policy was trained on a level of your own"
         help_ = f"name its file: `{command} {quote(str(policy))} --level {level}.toml`"
@@ -54,11 +59,12 @@ def check_known(level: str, policy: Path, command: str) -> None:
 
 
 def policy_path(path: Path) -> Path:
-    """The file of a policy: ``path``, or the one in this folder, which is there.
+    """Return the file of a policy: ``path`` itself, or the existing policy in that folder.
 
     Raises:
-        TltlError: TLT0840, it is an ONNX model or a level; TLT0872, there is no policy in the folder; TLT0001, what a
-            training there measured cannot be read, or it is not there, and a level's name is like it.
+        TltlError: TLT0840, the file is an ONNX model or a TOML file; TLT0872, the folder contains no
+            policy; TLT0001, the metrics of the training cannot be read, or the path does not exist and
+            resembles a level's name.
     """
     check_spelling(str(path))
     if path.suffix.lower() == ".onnx" and is_file(path):
@@ -75,8 +81,8 @@ def policy_path(path: Path) -> Path:
     if exists(path / RUN):
         title = f"the training in `{path}` has no policy yet: {progress(path)}"
         help_ = f"`{resume_command(path)}` goes on until it has one; one that is going on has it soon"
-    elif named := named_trainings(path):
-        title, help_ = f"`{path}` holds trainings, and is none itself", named
+    elif suggestion := named_trainings(path):
+        title, help_ = f"`{path}` holds trainings, and is none itself", suggestion
     else:
         title = f"there is neither a training nor a policy in `{path}`"
         help_ = "name a .safetensors file, or the folder that `tltlc train` named when it ended"
@@ -84,19 +90,19 @@ def policy_path(path: Path) -> Path:
 
 
 def progress(folder: Path) -> str:
-    """How far the training in a folder is, in words; raises TltlError, TLT0001, where its file cannot be read."""
+    """Describe the progress of the training in a folder; raises TltlError, TLT0001, if its metrics cannot be read."""
     measured = read_metrics(folder / METRICS)
     if not measured:
         return "its first iteration is not over"
-    episodes = sum(each["episodes"] for each in measured)
+    episodes = sum(iteration["episodes"] for iteration in measured)
     return f"after {measured[-1]['steps']:,} steps, {episodes or 'no'} episode{'s' * (episodes != 1)} ended"
 
 
 def _shipped(level: str) -> Path:
-    """The policy that comes with a level."""
-    found = shipped_policy(level)
-    if found is None:
+    """The policy that comes with a level; raises TltlError, TLT0853, if there is none."""
+    path = shipped_policy(level)
+    if path is None:
         load_level(level)
         help_ = f"name one that was trained, e.g. after `tltlc train --level {level}`"
         raise TltlError([Diagnostic("TLT0853", f"no policy comes with the level `{level}`", help=help_)])
-    return found
+    return path

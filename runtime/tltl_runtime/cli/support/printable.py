@@ -1,4 +1,4 @@
-"""Names and sentences out of files, printed so that neither a terminal nor a log takes them for commands."""
+"""Make names and sentences from files safe to print on terminals and in logs."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _OLD_COMMAND: Final = "##["
 
 
 def plain(text: str) -> str:
-    """The text in one line, without control characters, such as those of colours.
+    """Return the text in one line, without control characters and without workflow commands.
 
-    Nothing in it is a workflow command of GitHub Actions, which are told by ``::`` at the beginning of a line, blanks
-    before it or not, and by ``##[`` anywhere: there is a blank within these.
+    GitHub Actions takes ``::`` at the start of a line, possibly after blanks, and ``##[`` anywhere for
+    commands.  A blank is inserted into both.
     """
-    line = "".join(" " if sign.isspace() else sign if sign.isprintable() else "\ufffd" for sign in text)
+    line = "".join(" " if char.isspace() else char if char.isprintable() else "\ufffd" for char in text)
     return _BEGINS_COMMAND.sub(r"\1: ", line).replace(_OLD_COMMAND, "## [")

@@ -1,4 +1,4 @@
-"""Where a person's recordings are written, so that none is lost and none takes the place of another."""
+"""Write a person's recordings, so that none is lost or overwritten."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ from tltlc.io.files import reason
 
 
 class RecordingFiles:
-    """New files for episodes: ``out`` is a folder for files called ``name``, or ``NAME.episode.npz``, or nothing said.
+    """Writes each episode to a new file.
+
+    ``out`` is a folder for files called ``name``, or a path ``NAME.episode.npz``, or None for the working
+    directory.
 
     Raises:
-        UsageError: ``out`` is of another form.
-        TltlError: TLT0005, nothing can be written there; of ``save`` too.
+        UsageError: ``out`` has another form.
+        TltlError: TLT0005, the folder cannot be written; also from ``save``.
     """
 
     def __init__(self, out: Path | None, name: str) -> None:
@@ -42,14 +45,14 @@ class RecordingFiles:
             raise TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])
 
     def keep(self, episode: Episode) -> None:
-        """Write an episode that goes on, to be there if the process is killed; ``save`` takes it away again."""
+        """Write an unfinished episode, in case the process is killed; ``save`` removes the file."""
         if self._unfinished is None:
             self._unfinished = new_path(self._folder, f"{self._name}.unfinished")
         with suppress(TltlError):
             write_episode(self._unfinished, episode)
 
     def save(self, episode: Episode) -> str:
-        """Write an episode, where it must be to the folder for temporary files, and return its name."""
+        """Write an episode, if necessary to the folder for temporary files; return its path."""
         path = new_path(self._folder, self._name)
         try:
             write_episode(path, episode)
@@ -63,10 +66,10 @@ class RecordingFiles:
 
 
 def write_elsewhere(episode: Episode, name: str, refused: TltlError) -> Path:
-    """Write an episode to the folder for temporary files, since its own place has ``refused`` it, which is told.
+    """Print the error ``refused`` and write the episode to the folder for temporary files instead.
 
     Raises:
-        TltlError: TLT0005, this folder refuses it, too.
+        TltlError: TLT0005, this folder cannot be written, either.
     """
     click.echo(f"{refused}", err=True)
     path = new_path(Path(gettempdir()), name)
@@ -75,7 +78,7 @@ def write_elsewhere(episode: Episode, name: str, refused: TltlError) -> Path:
 
 
 def _refusal(folder: Path, make: bool) -> str:
-    """Why nothing can be written to a folder, which is made where that is asked for; empty where it can."""
+    """The reason why a folder cannot be written; empty if it can.  With ``make``, create it first."""
     try:
         if make:
             folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""How far a suite is while its cases are played: on standard error, a bar on a terminal, else a line now and then."""
+"""The progress display of a suite, on standard error: a bar on a terminal, else a line now and then."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.suite.suite import Case
 
 _EACH: Final = 25
-"""Episodes from one line to the next."""
+"""The number of episodes between two lines."""
 
 
 class RegressionDisplay:
-    """Is told of every episode, as runs of suites tell it; as a context, leaves nothing on a terminal.
+    """A callback for each played episode.  As a context manager, it clears the bar at the end.
 
-    ``most`` is put before the number of episodes, such as ``at most``.
+    ``most``, for example ``at most``, is printed before the number of episodes.
     """
 
     def __init__(self, most: str = "") -> None:
@@ -28,16 +28,16 @@ class RegressionDisplay:
         self._name = ""
 
     def __call__(self, case: Case, count: int, last: Account) -> None:
-        """Episode number ``count`` of a case, from 1 on, is over."""
+        """Show that ``count`` episodes of a case are finished; ``last`` is the account of the last one."""
         self._met = last.success + (self._met if count > 1 else 0)
         if sys.stderr.isatty():
             self._draw(case, count)
         elif count % _EACH == 0 or count == case.episodes:
-            said = f"{count} of {self._most}{case.episodes} episodes, {self._met} met the spec"
-            click.echo(f"{plain(case.name)}: {said}", err=True)
+            text = f"{count} of {self._most}{case.episodes} episodes, {self._met} met the spec"
+            click.echo(f"{plain(case.name)}: {text}", err=True)
 
     def over(self) -> None:
-        """The case is over: its bar makes room for other lines."""
+        """Remove the bar of a finished case, so that other lines can be printed."""
         if self._bar is not None:
             self._bar.stop()
             self._bar = None

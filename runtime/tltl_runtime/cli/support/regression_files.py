@@ -1,4 +1,4 @@
-"""What a run of a suite leaves beside its cases: the page, and the reports for programs."""
+"""The reports of a run of a suite: the HTML page, JSON and JUnit XML."""
 
 from __future__ import annotations
 
@@ -31,27 +31,28 @@ from tltlc.io.limits import REPORT
 from tltlc.io.writing import write_file, write_files
 
 PAGE: Final = "report.html"
-"""The page in the folder of a run."""
+"""The name of the page in the folder of a run."""
 
 _REPORT: Final = "case.json"
-"""In the folder of a case, what became of it."""
+"""The name of the report in the folder of a case."""
 
 _NOTE: Final = "Its variants v1 and v2 were changed on purpose: reviews and fails are what they are to show."
-"""On the page of the suite that comes with the package."""
+"""The note on the page of the suite that comes with the package."""
 
 _MOST_NAMED: Final = 8
-"""Of the files that were named, as many are told."""
+"""The most files given to --changed that the page names."""
 
 _NO_UTF8: Final = re.compile("[\ud800-\udfff]")
-"""What names of files have in place of bytes that are no UTF-8, and no text of UTF-8 can hold."""
+"""Surrogates, which stand for non-UTF-8 bytes in names of files and cannot be encoded as UTF-8."""
 
 
 @record
 class Outcome:
-    """What a run of a suite came to, in its ``folder``; ``left_out`` are the names of cases that depend on none of the
-    ``changed`` files, ``missing`` of those that were not judged before the run was stopped.
+    """The outcome of a run of a suite in its ``folder``.
 
-    ``complete`` says whether all cases were judged, and trained for, that this was asked for.
+    ``left_out`` are the names of the cases that depend on none of the ``changed`` files.  ``missing`` are
+    the names of the cases that were not judged because the run was stopped.  ``complete`` says whether
+    all requested cases were judged and retrained.
     """
 
     suite: Suite
@@ -64,10 +65,10 @@ class Outcome:
 
 
 def json_text(outcome: Outcome) -> str:
-    """The report for programs."""
+    """The JSON report."""
     reports = [done.report for done in outcome.cases]
-    found = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
-    return _encodable(json.dumps(found, indent=2, ensure_ascii=False)) + "\n"
+    data = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
+    return _encodable(json.dumps(data, indent=2, ensure_ascii=False)) + "\n"
 
 
 def _junit_text(outcome: Outcome) -> str:
@@ -75,7 +76,7 @@ def _junit_text(outcome: Outcome) -> str:
 
 
 def _page_text(outcome: Outcome) -> str:
-    """The page; raises what drawing it raises."""
+    """The HTML page."""
     suite = outcome.suite
     is_shipped = suite.path == SHIPPED
     contents = SuiteReport(
@@ -92,22 +93,22 @@ def _page_text(outcome: Outcome) -> str:
 
 
 def _not_run(outcome: Outcome) -> Iterator[NotRun]:
-    """The cases that were not judged, in the suite's order."""
-    depends = "--changed names no file"
+    """Yield the cases that were not judged, in the suite's order."""
+    unaffected = "--changed names no file"
     if outcome.changed:
-        names = listed([f"`{each}`" for each in outcome.changed], _MOST_NAMED)
-        depends = f"it depends on none of the files that --changed names: {names}"
-    why = {
+        names = listed([f"`{file}`" for file in outcome.changed], _MOST_NAMED)
+        unaffected = f"it depends on none of the files that --changed names: {names}"
+    reasons = {
         **dict.fromkeys(outcome.missing, "the run was stopped before; the same command goes on"),
-        **dict.fromkeys(outcome.left_out, depends),
+        **dict.fromkeys(outcome.left_out, unaffected),
     }
     for case in outcome.suite.cases:
-        if case.name in why:
-            yield NotRun(case.name, why[case.name], _earlier(outcome, case.name))
+        if case.name in reasons:
+            yield NotRun(case.name, reasons[case.name], _earlier(outcome, case.name))
 
 
 def _earlier(outcome: Outcome, name: str) -> Verdict | None:
-    """What an earlier run in the folder said of a case, if that is there."""
+    """The verdict of an earlier run in the folder on a case, or None."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = load(path, REPORT)["content"]["verdict"]
@@ -125,16 +126,17 @@ REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {
     "--junit": _junit_text,
     "--html": _page_text,
 }
-"""What the files are that can be asked for, by their options; the page, which takes longest, at the end."""
+"""The functions that make the reports, by option.  The page takes longest and comes last."""
 
 
 def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
-    """Write the reports that are asked for, whose ``files`` are named by their options, and the page into the folder of
-    the run, unless the run was stopped before any case and none is asked for.  Where there is a page to look at, or
-    None.
+    """Write the requested reports, and the page into the folder of the run.  Return the path of a page, or None.
+
+    The keys of ``files`` are options.  The folder gets no page if the run was stopped before its first
+    case and no page was requested.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; what drawing the page raises.
+        TltlError: TLT0005, a file cannot be written; errors from drawing the page.
     """
     texts: dict[str, str] = {}
     for option, text_of in REPORTS.items():
@@ -149,7 +151,7 @@ def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
 
 
 def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
-    """A case with what the page draws of it."""
+    """Return a case with the data that the page draws."""
     if done.ready is None or done.reference is None:
         return ReportedCase(done.report)
     episodes = _episodes(done, case_folder(suite, done.report.name, folder / CASES))
@@ -165,12 +167,12 @@ def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
 
 
 def _designed(ready: Ready, reference: Reference) -> Level | None:
-    """The level that the baseline was recorded on, which is made again where it is another one than that of now."""
+    """The level that the baseline was recorded on.  If it has changed, it is loaded from the baseline's texts."""
     return ready.level if ready.played.files == reference.played.files else designed(reference)
 
 
 def _curve(done: Done, folder: Path) -> bytes:
-    """The picture of the case's training, empty where there is none, or it was removed since."""
+    """The plot of the case's training, as PNG bytes; empty if there is none or it was removed."""
     if done.report.retrained is None:
         return b""
     with suppress(OSError):
@@ -179,9 +181,9 @@ def _curve(done: Done, folder: Path) -> bytes:
 
 
 def _episodes(done: Done, folder: Path) -> dict[int, Episode]:
-    """The recorded episodes by their index; one that was damaged since is left out."""
-    found: dict[int, Episode] = {}
+    """The recorded episodes by index.  Damaged recordings are left out."""
+    episodes: dict[int, Episode] = {}
     for index, name in done.report.recordings:
         with suppress(TltlError):
-            found[index] = read_episode(folder / name)
-    return found
+            episodes[index] = read_episode(folder / name)
+    return episodes

@@ -1,4 +1,4 @@
-"""What ``tltlc regress`` does: cases are played, trained for where this is asked for, and reported on."""
+"""``tltlc regress``: play cases, retrain policies if requested, and report."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from tltlc.diagnostics.formats.github import workflow_command
 from tltlc.interfaces.cli import exits
 
 _MOST_NAMED: Final = 8
-"""Of the files on which no case depends, as many are named."""
+"""The most files that are named of those on which no case depends."""
 _MEANT: Final = "v1 and v2 of the shipped levels are changed on purpose: see the page"
 
 
 @record
 class Wanted:
-    """What was asked for: the suite as it was named, where its files go, and how it is played.
+    """The options of ``tltlc regress``.
 
-    ``files`` are those of reports, by their options, ``folder`` is that of the run.  Of a training for each case that
-    does not pass, ``minutes`` are the most; None: none is trained.
+    ``files`` are the files of reports, by their options.  ``folder`` is the folder of the run.
+    ``minutes`` limits the retraining of each case that does not pass; None: no retraining.
     """
 
     suite: Path | None
@@ -56,70 +56,69 @@ class Wanted:
 
     @property
     def printed(self) -> str | None:
-        """The option of the report for which alone standard output is, in place of the text; None: it is for that."""
+        """The option of the report that is printed to standard output in place of the text, or None."""
         return next((option for option, path in self.files.items() if is_output(path)), None)
 
     @property
     def written(self) -> dict[str, Path]:
-        """The files of reports; standard output is none."""
+        """The files of reports, without standard output."""
         return {option: path for option, path in self.files.items() if not is_output(path)}
 
 
 def run(wanted: Wanted) -> int:
-    """Judge the cases that are asked for, and report on them; the exit status.
+    """Judge the requested cases, report on them, and return the exit status.
 
-    Where it is asked to end, or an error ends it, it reports on what there is, and KeyboardInterrupt or the error goes
-    on.
+    On KeyboardInterrupt or an error, report on the finished cases and raise the exception again.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; TLT0942, a policy lies where a training goes; what reading the
-            suite, playing and training raise.
+        TltlError: TLT0005, a file cannot be written; TLT0942, a policy lies in the folder of a training;
+            errors from reading the suite, playing and training.
     """
     check_no_training(wanted.folder)
     check_writable(wanted.written)
     suite = read_suite(wanted.suite or SHIPPED, wanted.baseline)
     check_apart(wanted.written, files_of(suite))
-    chosen = _chosen(suite, wanted)
-    cases, left_out = chosen.cases, tuple(case.name for case in chosen.left_out)
+    selection = _chosen(suite, wanted)
+    cases, left_out = selection.cases, tuple(case.name for case in selection.left_out)
     if wanted.minutes is not None:
         check_places(suite, cases, wanted.folder)
     references = _references(suite, cases)
-    _tell_unnamed(suite, chosen.left_out, references)
+    _tell_unnamed(suite, selection.left_out, references)
     check(suite, cases, references)
-    found: list[Done] = []
+    results: list[Done] = []
     with owned(wanted.folder):
         try:
-            _play(suite, cases, references, wanted, found)
-            _retrain(suite, wanted, found)
+            _play(suite, cases, references, wanted, results)
+            _retrain(suite, wanted, results)
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt):
-                _stopped(wanted, found, len(cases))
-            _tell_too(_outcome(suite, cases, left_out, wanted, found), wanted)
+                _stopped(wanted, results, len(cases))
+            _tell_too(_outcome(suite, cases, left_out, wanted, results), wanted)
             raise
-        _tell(_outcome(suite, cases, left_out, wanted, found), wanted)
-    return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
+        _tell(_outcome(suite, cases, left_out, wanted, results), wanted)
+    return exits.CLEAN if all(done.report.verdict == "pass" for done in results) else exits.FINDINGS
 
 
 def _chosen(suite: Suite, wanted: Wanted) -> Selection:
-    """The cases to be judged, and those that are left out, which standard error tells."""
+    """Select the cases to judge; print to standard error which are left out."""
     if wanted.changed is None:
         return Selection(suite.cases)
-    found = select(suite, wanted.changed)
-    if found.unknown:
-        click.echo(f"no case depends on {plain(listed(found.unknown, _MOST_NAMED))}", err=True)
-    for name, meant in found.slips:
-        said = plain(f"there is no file `{name}`: did you mean `{meant}`?")
-        click.echo(f"warning: {said}", err=True)
+    selection = select(suite, wanted.changed)
+    if selection.unknown:
+        click.echo(f"no case depends on {plain(listed(selection.unknown, _MOST_NAMED))}", err=True)
+    for name, suggestion in selection.slips:
+        message = plain(f"there is no file `{name}`: did you mean `{suggestion}`?")
+        click.echo(f"warning: {message}", err=True)
         if wanted.github:
-            click.echo(workflow_command("warning", said, {"title": "--changed"}))
-    if found.left_out:
-        names = plain(", ".join(case.name for case in found.left_out))
+            click.echo(workflow_command("warning", message, {"title": "--changed"}))
+    if selection.left_out:
+        names = plain(", ".join(case.name for case in selection.left_out))
         click.echo(f"left out, since none of the named files concerns them: {names}", err=True)
-    return found
+    return selection
 
 
 def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
-    """The baseline, without which nothing can be played."""
+    """Read the baseline; errors count only if there are cases to play."""
     try:
         return baseline_of(suite)
     except TltlError:
@@ -129,19 +128,20 @@ def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
 
 
 def _tell_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Reference, ...]) -> None:
-    """Warn of files that have changed, and of which nobody said so."""
+    """Warn about files that have changed but were not named as changed."""
     for name, cases in unnamed(suite, left_out, references).items():
-        of = plain(listed(cases, _MOST_NAMED))
-        said = (
-            f"`{plain(name)}` has changed since the baseline, and is not among the files that are named; left out: {of}"
+        names = plain(listed(cases, _MOST_NAMED))
+        message = (
+            f"`{plain(name)}` has changed since the baseline, and is not among the files that are named; "
+            f"left out: {names}"
         )
-        click.echo(f"warning: {said}", err=True)
+        click.echo(f"warning: {message}", err=True)
 
 
 def _play(
-    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], wanted: Wanted, found: list[Done]
+    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], wanted: Wanted, results: list[Done]
 ) -> None:
-    """Play the cases; each that is over is told at once, and added to ``found``."""
+    """Play the cases; print each finished case at once and add it to ``results``."""
     width = max((len(plain(case.name)) for case in cases), default=0)
     with (
         RegressionDisplay("at most") as display,
@@ -150,27 +150,27 @@ def _play(
         ) as running,
     ):
         for done in running:
-            found.append(done)
+            results.append(done)
             display.over()
             for line in case_lines(done.report, width, kept=done.kept):
                 click.echo(line, err=wanted.printed is not None)
 
 
-def _retrain(suite: Suite, wanted: Wanted, found: list[Done]) -> None:
-    """Train for the cases in ``found`` that do not pass, where this is asked for."""
+def _retrain(suite: Suite, wanted: Wanted, results: list[Done]) -> None:
+    """Retrain for the cases in ``results`` that do not pass, if requested."""
     if wanted.minutes is not None:
         again = join([*_again(wanted), "--retrain"])
-        asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again, wanted.fresh)
-        retrain_cases(asked, found, to_stderr=wanted.printed is not None)
+        options = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again, wanted.fresh)
+        retrain_cases(options, results, to_stderr=wanted.printed is not None)
 
 
-def _untrained(wanted: Wanted, found: list[Done]) -> int:
-    """For how many cases a training is asked for that is not over."""
-    return 0 if wanted.minutes is None else sum(done.to_train is not None for done in found)
+def _untrained(wanted: Wanted, results: list[Done]) -> int:
+    """The number of cases whose requested training is not finished."""
+    return 0 if wanted.minutes is None else sum(done.to_train is not None for done in results)
 
 
 def _again(wanted: Wanted) -> list[str]:
-    """The words of the command that goes on with a run, but for --retrain and its --minutes."""
+    """The words of the command that continues a run, without --retrain and --minutes."""
     options = {
         "--out": wanted.folder,
         "--baseline": wanted.baseline,
@@ -184,28 +184,28 @@ def _again(wanted: Wanted) -> list[str]:
     return words if wanted.changed is None else [*words, "--changed", *wanted.changed]
 
 
-def _stopped(wanted: Wanted, found: list[Done], cases: int) -> None:
-    """Say what is left of a run that was ended, and what goes on with it."""
+def _stopped(wanted: Wanted, results: list[Done], cases: int) -> None:
+    """Print the progress of a stopped run and the command that continues it."""
     words = _again(wanted)
     if wanted.minutes is not None:
         words += ["--retrain", "--minutes", f"{wanted.minutes:g}"]
-    done = f"{len(found)} of {cases} cases are judged, and kept"
-    if len(found) == cases and (left := _untrained(wanted, found)):
-        done = f"all cases are judged, and {left} {'are' if left > 1 else 'is'} still to be trained for"
-    click.echo(f"stopped: {done}; to go on: {join(words)}", err=True)
+    progress = f"{len(results)} of {cases} cases are judged, and kept"
+    if len(results) == cases and (untrained := _untrained(wanted, results)):
+        progress = f"all cases are judged, and {untrained} {'are' if untrained > 1 else 'is'} still to be trained for"
+    click.echo(f"stopped: {progress}; to go on: {join(words)}", err=True)
 
 
 def _outcome(
-    suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], wanted: Wanted, found: list[Done]
+    suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], wanted: Wanted, results: list[Done]
 ) -> Outcome:
-    """What the run has come to so far."""
-    missing = tuple(case.name for case in cases[len(found) :])
-    complete = not missing and not _untrained(wanted, found)
-    return Outcome(suite, wanted.folder, tuple(found), complete, left_out, missing, wanted.changed or ())
+    """The outcome of the run so far."""
+    missing = tuple(case.name for case in cases[len(results) :])
+    complete = not missing and not _untrained(wanted, results)
+    return Outcome(suite, wanted.folder, tuple(results), complete, left_out, missing, wanted.changed or ())
 
 
 def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
-    """Tell of a run that an error has ended, which is not to be hidden by what goes wrong now, too."""
+    """Report on a run that an error has ended.  A further error is printed, so that it does not hide the first."""
     try:
         _tell(outcome, wanted)
     except Exception as error:
@@ -213,19 +213,21 @@ def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
 
 
 def _are_meant(outcome: Outcome) -> bool:
-    """Whether there are findings, and all of variants that were changed."""
-    found = {done.report.name for done in outcome.cases if done.report.verdict != "pass"}
-    return bool(found) and all(case.variant != case.reference for case in outcome.suite.cases if case.name in found)
+    """Whether there are findings, and all of them concern changed variants."""
+    findings = {done.report.name for done in outcome.cases if done.report.verdict != "pass"}
+    return bool(findings) and all(
+        case.variant != case.reference for case in outcome.suite.cases if case.name in findings
+    )
 
 
 def _tell(outcome: Outcome, wanted: Wanted) -> None:
-    """Sum up, and write what was asked for."""
+    """Print the summary and write the requested reports."""
     reports = [done.report for done in outcome.cases]
     click.echo(sum_line(reports, outcome.missing), err=wanted.printed is not None)
     if outcome.suite.path == SHIPPED and _are_meant(outcome):
         click.echo(_MEANT, err=wanted.printed is not None)
     if wanted.printed is not None:
-        # The bytes of the file that it would be, whatever the letters of the terminal.
+        # Print the bytes that the file would have, whatever the encoding of the terminal is.
         click.echo(REPORTS[wanted.printed](outcome).encode(), nl=False)
     if wanted.github:
         for line in findings_as_commands(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):

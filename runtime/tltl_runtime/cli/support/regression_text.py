@@ -1,4 +1,4 @@
-"""What commands on suites print: a line for each case, why it has its verdict, and the sum."""
+"""The text that commands on suites print: the lines of each case and the summary."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 
 
 def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
-    """The lines on a case, whose name is given ``width`` columns."""
+    """The lines of a case.  Its name is padded to ``width`` columns."""
     verdict = click.style(report.verdict, fg=_COLORS[report.verdict], bold=True)
-    # Blanks stand outside of the colour, so that none is left at the end of a line.
+    # Keep the padding outside of the coloured text, so that `rstrip` can remove it at the end of a line.
     beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if kept else ''}"
     yield f"{plain(report.name):<{width}}  {verdict}{beside.rstrip()}"
     if report.verdict != "pass":
@@ -25,12 +25,12 @@ def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
 
 
 def sum_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
-    """How many cases have which verdict, and what their trainings came to; ``missing`` were not judged."""
+    """The counts of verdicts and of the outcomes of trainings; ``missing`` cases were not judged."""
     if not reports:
         return "no case was judged" if missing else "no case was to be played"
-    said = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([each.verdict for each in reports], _COLORS)}"
-    trained = [OUTCOMES[each.retrained.outcome] for each in reports if each.retrained]
-    return f"{said}; trained anew: {_counts(trained, OUTCOMES.values())}" if trained else said
+    text = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([report.verdict for report in reports], _COLORS)}"
+    trained = [OUTCOMES[report.retrained.outcome] for report in reports if report.retrained]
+    return f"{text}; trained anew: {_counts(trained, OUTCOMES.values())}" if trained else text
 
 
 def _counts(words: Sequence[str], order: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""``tltlc regress --retrain``: policies are trained on the levels that they do not play as designed any more."""
+"""``tltlc regress --retrain``: retrain policies on the levels that no longer play as designed."""
 
 from __future__ import annotations
 
@@ -30,14 +30,15 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.interfaces.cli.report import show
 
 _NOT_THE_CASE: Final = NOT_THE_CASE | {"TLT0005"}
-"""Codes of what is wrong with the workers, or with the folder."""
+"""Codes of errors of the workers or of the folder, which are no faults of a case."""
 
 
 @record
 class Retraining:
-    """How cases are trained anew: for so many ``minutes`` each at the most, below the ``folder`` of the run.
+    """The options of retraining: at most ``minutes`` for each case, below the ``folder`` of the run.
 
-    ``again`` is the command that goes on after a stop, but for its --minutes; ``fresh``: nothing that is kept counts.
+    ``again`` is the command that continues a stopped run, without --minutes.  With ``fresh``, stored
+    trainings are not reused.
     """
 
     suite: Suite
@@ -48,75 +49,76 @@ class Retraining:
     fresh: bool
 
 
-def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> None:
-    """Train for each case that needs it, one after the other; what it came to is told at once, and put into ``found``.
+def retrain_cases(asked: Retraining, results: list[Done], *, to_stderr: bool) -> None:
+    """Train for each case that needs it; print each result at once and store it in ``results``.
 
-    What is wrong with one case, such as a level that was edited meanwhile, is told on standard error, and the others go
-    on.
+    Errors of one case, for example a level that was edited meanwhile, are printed to standard error, and
+    the next case continues.
 
     Raises:
-        TltlError: TLT0942, a policy lies where a training goes; TLT0730, TLT0850 and TLT0852 of the workers; TLT0005.
+        TltlError: TLT0942, a policy lies in the folder of a training; TLT0730, TLT0850 and TLT0852,
+            errors of the workers; TLT0005, a file cannot be written.
     """
-    for done in found:
+    for done in results:
         if why := done.useless_training:
             click.echo(plain(f"{done.report.name}: its policy is not trained further, since {why}"), err=True)
     runs = {
         row: retraining(asked.suite, ready, asked.folder, asked.minutes, asked.pool)
-        for row, done in enumerate(found)
+        for row, done in enumerate(results)
         if (ready := done.to_train)
     }
     if asked.fresh:
-        # All at once, so that a run that is stopped goes on with fresh ones.
+        # Clear all folders first, so that a stopped run does not continue with old trainings.
         for row, run in runs.items():
-            with _one_case(found[row].report.name):
-                _make_room(asked, found[row].report.name, run)
+            with _one_case(results[row].report.name):
+                _make_room(asked, results[row].report.name, run)
     for row, run in runs.items():
-        done = found[row]
+        done = results[row]
         with _one_case(done.report.name):
             _train(asked, done.report.name, run)
             outcome = _played(asked, done, run)
-            found[row] = replace(done, report=replace(done.report, retrained=outcome))
+            results[row] = replace(done, report=replace(done.report, retrained=outcome))
             for line in _lines(asked, done.report.name, outcome):
                 click.echo(plain(line), err=to_stderr)
 
 
 @contextmanager
 def _one_case(name: str) -> Iterator[None]:
-    """Tell what is wrong with a case; raises TltlError for what would be wrong with the others, too."""
+    """Print errors of a case; raise TltlError for errors that affect all cases."""
     try:
         with level_faults():
             yield
     except TltlError as error:
-        if _NOT_THE_CASE & {each.code for each in error.diagnostics}:
+        if _NOT_THE_CASE & {diagnostic.code for diagnostic in error.diagnostics}:
             raise
         click.echo(f"{plain(name)}: nothing can be said of its training", err=True)
         show(error.diagnostics, "text", sys.stderr)
 
 
 def _train(asked: Retraining, name: str, run: Run) -> None:
-    """Train to the end, or go on, unless the training is over already."""
-    there = (run.folder / RUN).exists()
-    kept = there and is_kept(run)
+    """Start or continue the training to its end, unless it is already finished."""
+    exists = (run.folder / RUN).exists()
+    kept = exists and is_kept(run)
     if kept and ended_as(run):
         return
-    how = "goes on" if kept else "begins with its policy"
-    other = "what is kept is of another level, policy, spec, seed or settings, or cannot be read"
-    why = f", anew, since {other}" if there and not kept else ""
+    verb = "goes on" if kept else "begins with its policy"
+    cause = "what is kept is of another level, policy, spec, seed or settings, or cannot be read"
+    reason = f", anew, since {cause}" if exists and not kept else ""
     limit = said_minutes(asked.minutes)
-    click.echo(f"{plain(name)}: a training {how}{why}, for {limit} at the most, in {run.folder}", err=True)
-    if there and not kept:
+    click.echo(f"{plain(name)}: a training {verb}{reason}, for {limit} at the most, in {run.folder}", err=True)
+    if exists and not kept:
         _make_room(asked, name, run)
     write_record(run, train_shown(run, resume=kept, again=f"{asked.again} --minutes {asked.minutes:g}"))
 
 
 def _make_room(asked: Retraining, name: str, run: Run) -> None:
-    """Have the folder be free for a new training, and say where an earlier one is then."""
-    if run.folder.is_dir() and (aside := make_room(asked.suite, run.folder)):
-        click.echo(f"{plain(name)}: the training that was in {run.folder} is now in {aside}", err=True)
+    """Make room for a new training, and print where an earlier one was moved."""
+    if run.folder.is_dir() and (moved_to := make_room(asked.suite, run.folder)):
+        click.echo(f"{plain(name)}: the training that was in {run.folder} is now in {moved_to}", err=True)
 
 
 def _played(asked: Retraining, done: Done, run: Run) -> Retrained:
-    """What the training came to, with how far its episodes are on standard error."""
+    """Return the result of the training, showing the progress of its episodes on standard error."""
     assert done.ready is not None
     case = replace(done.ready.case, name=f"{done.report.name}, trained anew")
     with RegressionDisplay("at most") as display:
@@ -124,7 +126,7 @@ def _played(asked: Retraining, done: Done, run: Run) -> Retrained:
 
 
 def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
-    """What a training came to, and what to do now."""
+    """The result of a training and the next steps, as lines."""
     yield f"{name}, trained anew: {outcome.text}"
     policy = quote(str(asked.folder / outcome.policy))
     if outcome.outcome != "learned":

@@ -1,4 +1,4 @@
-"""The options that say what the agent senses, for every command that makes an environment of a level."""
+"""The options for the agent's sensors, for all commands that create an environment."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def senses_options(command: Function) -> Function:
-    """Add ``--entities --variables --map`` and their opposites; the command takes ``sensors``.
+    """Add the options ``--entities``, ``--variables``, ``--map`` and their ``--no-`` forms to a command.
 
-    ``sensors`` is a mapping as :func:`tltl_runtime.stealth.observation.sensors.chosen` takes it, empty where nothing is
-    said: the level's own senses.
+    The command gets ``sensors``, a mapping for
+    :func:`tltl_runtime.stealth.observation.sensors.chosen`.  Without options, it is empty: the level's
+    own sensors apply.
     """
 
     @wraps(command)
@@ -39,15 +40,15 @@ def senses_options(command: Function) -> Function:
         **rest: Any,
     ) -> Any:
         sensors: dict[str, Any] = {}
-        for key, given, none, nothing in (
+        for key, values, none, empty in (
             ("entities", entities, no_entities, []),
             ("variables", variables, no_variables, []),
             ("map", map_, no_map, None),
         ):
-            if none and given is not None:
+            if none and values is not None:
                 raise click.UsageError(f"--{key} and --no-{key} exclude each other", click.get_current_context())
-            if none or given is not None:
-                sensors[key] = nothing if none else given
+            if none or values is not None:
+                sensors[key] = empty if none else values
         return command(*args, sensors=sensors, **rest)
 
     for option in reversed(_OPTIONS):
@@ -56,16 +57,16 @@ def senses_options(command: Function) -> Function:
 
 
 def option_of(key: str, sensors: Sensors) -> str:
-    """The option, as a shell takes it, that says of ``entities``, ``variables`` or ``map`` what these sensors have."""
+    """The option, quoted for a shell, that selects ``entities``, ``variables`` or ``map`` as in these sensors."""
     if key == "map" and sensors.map is not None:
-        said = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
+        value = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
     else:
-        said = ",".join(getattr(sensors, key) or ())
-    return f"--{key} {quote(said)}" if said else f"--no-{key}"
+        value = ",".join(getattr(sensors, key) or ())
+    return f"--{key} {quote(value)}" if value else f"--no-{key}"
 
 
 class _Names(_Type):
-    """``a,b``: names, at least one."""
+    """A list ``a,b`` of one or more names."""
 
     name = "names"
 
@@ -79,32 +80,35 @@ class _Names(_Type):
 
 
 class _Map(_Type):
-    """``cell=0.5,extent=15,types=wall,low``: keys with values, in any order, ``types`` with several."""
+    """A map ``cell=0.5,extent=15,types=wall,low``: keys with values in any order; ``types`` can have several."""
 
     name = "map"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if isinstance(value, dict):
             return value
-        found: dict[str, list[str]] = {}
+        items_by_key: dict[str, list[str]] = {}
         for piece in value.split(","):
             key, equals, item = (part.strip() for part in piece.rpartition("="))
-            if equals and key in found:
+            if equals and key in items_by_key:
                 self.fail(f"`{key}` is given twice", param, ctx)
-            if not item or not (equals or found):
+            if not item or not (equals or items_by_key):
                 self.fail(f"`{value}` is not of the form cell=0.5,extent=15,types=wall,low", param, ctx)
-            found.setdefault(key if equals else list(found)[-1], []).append(item)
-        return {key: items if key == "types" else self._number(key, items, param, ctx) for key, items in found.items()}
+            items_by_key.setdefault(key if equals else list(items_by_key)[-1], []).append(item)
+        return {
+            key: items if key == "types" else self._number(key, items, param, ctx)
+            for key, items in items_by_key.items()
+        }
 
     def _number(self, key: str, items: list[str], param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """A number where it is one; a key that there is not is left to the level, which knows what there is."""
+        """Convert the value of a numeric key.  Unknown keys are reported later, with the level."""
         kind = {"cell": float, "extent": int}.get(key, str)
         try:
             (item,) = items
             return kind(item)
         except ValueError:
-            what = "a whole number" if kind is int else "a number"
-            self.fail(f"`{key}` is {what}, not `{','.join(items)}`", param, ctx)
+            expected = "a whole number" if kind is int else "a number"
+            self.fail(f"`{key}` is {expected}, not `{','.join(items)}`", param, ctx)
 
 
 _OPTIONS = (

@@ -1,4 +1,4 @@
-"""The file of a suite as an argument of commands."""
+"""Check the argument that names a suite."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from tltlc.io.files import exists, read_source
 
 
 def check_there(suite: Path | None) -> None:
-    """Raise the TltlError that is raised where a suite is read which is not there, before torch is loaded, which takes
-    seconds.
+    """Check early that the suite exists, before torch is imported, which takes seconds.
+
+    Raises:
+        TltlError: TLT0001, the same error as reading the suite would raise.
     """
     if suite is not None and not exists(suite):
         from tltl_runtime.stealth.levels.made_for import shown

@@ -1,4 +1,4 @@
-"""What ``tltlc train`` shows while it trains: on a terminal a picture that is kept up to date, elsewhere lines."""
+"""The progress display of ``tltlc train``: a live picture on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ _SECONDS_BETWEEN_LINES: Final = 10.0
 
 
 class Display(Protocol):
-    """What shows a training."""
+    """Shows the progress of a training."""
 
     def searched(self, searched: Searched) -> None:
-        """Show how far the search is that comes first."""
+        """Show the progress of the search that precedes the training."""
 
     def recorded(self, tried: Tried) -> None:
-        """Show how far the recording of demonstrations is that comes first."""
+        """Show the progress of recording the demonstrations that precede the training."""
 
     def trained(self, report: Report) -> None:
-        """Show how far the training is."""
+        """Show a report of the training."""
 
 
 @contextmanager
 def display(run: Run, again: str) -> Iterator[Display]:
-    """Within, all that is given to what this yields is shown on standard error; ``again`` goes on after a stop.
+    """Yield a display that writes to standard error.  ``again`` is the command that resumes the training.
 
-    Of the processes that torchrun started, the first one speaks.
+    If torchrun started several processes, only the first one writes.
     """
     if peers().rank > 0:
         yield _Nothing()
@@ -75,7 +75,7 @@ class _Nothing:
 
 
 class _Lines:
-    """A line at the first report, every ten seconds, and at the last."""
+    """Prints a line at the first report, then every ten seconds, and at the last report."""
 
     def __init__(self, run: Run, again: str) -> None:
         self._run, self._again = run, again
@@ -88,8 +88,8 @@ class _Lines:
         elif not self._has_searched:
             begins = self._run.initial and not (self._run.folder / CHECKPOINT).exists()
             how = "the policy plays, and then chance" if begins else "by chance"
-            ends = search_end(self._run.settings.exploration)
-            self._print(f"ways to meet the spec are searched first: {how}. {ends}", always=True)
+            end = search_end(self._run.settings.exploration)
+            self._print(f"ways to meet the spec are searched first: {how}. {end}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
         self._has_searched = True

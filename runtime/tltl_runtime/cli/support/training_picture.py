@@ -1,4 +1,4 @@
-"""The picture of a training that goes on, for which a terminal of 80 x 24 characters has room."""
+"""The live picture of a training, which fits into a terminal of 80 x 24 characters."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ from tltl_runtime.training.run.settings import Stop
 from tltlc.automaton.fspa import State
 
 _WIDTH: Final = 100
-"""Of the picture in characters, where there is so much room."""
+"""The greatest width of the picture, in characters."""
 _MARGIN: Final = 4
-"""Characters at its right that stay free: there the terminal writes its `^C`, and the next picture covers it."""
+"""The free columns at the right.  The terminal prints `^C` there, and the next picture covers it."""
 _MOST_STATES: Final = 8
 _SPACED: Final = 17
-"""Lines within the border from which on empty ones among them set the parts apart."""
+"""The least number of lines within the border at which empty lines separate the parts."""
 _NAME: Final = 12
 _BAR: Final = 24, 10
-"""Width of a bar in characters, and in a picture narrower than ``_WIDTH``."""
+"""The width of a bar, in characters, in a picture of full width and in a narrower one."""
 
 
 class Picture:
-    """The last report as a picture; its clock goes on between reports."""
+    """Draws the last report.  The clock advances between reports."""
 
     def __init__(self, run: Run, console: Console) -> None:
         self._run, self._console = run, console
@@ -57,15 +57,15 @@ class Picture:
         self._resumed = (run.folder / CHECKPOINT).exists()
 
     def searched(self, searched: Searched) -> None:
-        """Take up how far the search is."""
+        """Store the progress of the search."""
         self._searched = searched
 
     def recorded(self, tried: Tried) -> None:
-        """Take up how far the recording of demonstrations is."""
+        """Store the progress of recording demonstrations."""
         self._recorded = tried
 
     def trained(self, report: Report) -> None:
-        """Take up how far the training is."""
+        """Store a report of the training."""
         self._last, self._at, self._searched = report, time.monotonic(), None
         if report.confirmation:
             self._confirmation = confirmation_line(report.iteration.number, report.confirmation)
@@ -73,13 +73,13 @@ class Picture:
             self._checkpoint = self._at
 
     def drawn(self) -> RenderableType:
-        """The picture now, as wide and as high as the terminal is now."""
+        """Return the current picture, fitted to the current size of the terminal."""
         run, (columns, lines) = self._run, self._console.size
         width = min(_WIDTH, columns - _MARGIN)
         title = f"{run.fspa.name} on {Path(run.level).stem} {run.variant}, seed {run.seed}"
         bar = _BAR[width < _WIDTH]
         return Panel(
-            # The border is of two lines, and one below it stays free.
+            # Two lines are the border, and one line below it stays free.
             self._before(bar) if self._last is None else self._body(self._last, bar, lines - 3),
             title=Text(title, "bold", overflow="ellipsis"),
             subtitle=Text(_tail(str(run.folder), width - 6), "dim"),
@@ -88,39 +88,39 @@ class Picture:
         )
 
     def _before(self, bar: int) -> RenderableType:
-        """What there is to see before the first iteration."""
+        """The picture before the first iteration."""
         exploration, searched = self._run.settings.exploration, self._searched
-        if tried := self._recorded:
-            return Text(recording_line(tried, self._run.settings.imitation.demonstrations))
+        if attempt := self._recorded:
+            return Text(recording_line(attempt, self._run.settings.imitation.demonstrations))
         if searched is None:
             return Text("playing the first steps …")
-        found = len(searched.lengths)
+        count = len(searched.lengths)
         table = _grid(bar)
         wanted = f"of at least {exploration.ways}"
-        table.add_row("ways found", _bar(found / exploration.ways, "green", bar), f"{found:4}", wanted)
-        part = min(1.0, searched.steps / exploration.steps)
+        table.add_row("ways found", _bar(count / exploration.ways, "green", bar), f"{count:4}", wanted)
+        fraction = min(1.0, searched.steps / exploration.steps)
         most = f"of {exploration.steps:,} steps at the most"
-        table.add_row("searched", _bar(part, "blue", bar), f"{percent(part):>4}", most)
+        table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
         return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
     def _body(self, report: Report, bar: int, room: int) -> RenderableType:
-        """What there is to see after an iteration, in ``room`` lines: where there are few, of fewer states."""
+        """The picture after an iteration, in ``room`` lines.  With less room, it shows fewer states."""
         now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
         space = [Text()] if room >= _SPACED else []
         since = 0.0 if report.stop else now - self._at
-        said = [self._confirmation] if self._confirmation else []
-        said += [search_line(self._searched)] if self._searched else []
-        others = [*_figures(report, stop, since), *said, self._kept(now, report)]
-        # Of an episode that violated the spec it is told where it was before.
+        messages = [self._confirmation] if self._confirmation else []
+        messages += [search_line(self._searched)] if self._searched else []
+        lines = [*_figures(report, stop, since), *messages, self._kept(now, report)]
+        # Leave out violated states: an episode that violated the spec counts at the state before.
         states = tuple(state for state in run.fspa.states if state.verdict != "violated")
-        count = max(1, min(_MOST_STATES, room - len(others) - 2 * len(space) - 4))
+        count = max(1, min(_MOST_STATES, room - len(lines) - 2 * len(space) - 4))
         return Group(
             _success(report, stop, bar),
             *space,
             Text(_ended(window, count, len(states)), "dim", no_wrap=True, overflow="ellipsis"),
             _states(window, states, count, bar),
             *space,
-            *(Text(each, no_wrap=True, overflow="ellipsis") for each in others),
+            *(Text(line, no_wrap=True, overflow="ellipsis") for line in lines),
         )
 
     def _kept(self, now: float, report: Report) -> str:
@@ -132,7 +132,7 @@ class Picture:
 
 
 def _success(report: Report, stop: Stop, bar: int) -> Table:
-    """How often the spec is met, and how much of the rule is fulfilled by which training stops."""
+    """The pass rate, and the progress towards the stopping rule."""
     window, row, wanted = report.window, report.unbroken, stop.windows * stop.episodes
     table = _grid(bar)
     rate_of = f"of {window.count} episodes"
@@ -151,7 +151,7 @@ def _ended(window: Window, shown: int, states: int) -> str:
 
 
 def _states(window: Window, states: tuple[State, ...], count: int, bar: int) -> Table:
-    """The ``count`` states in which most of the last episodes ended, and what remained to be satisfied there."""
+    """The ``count`` states in which most of the last episodes ended, with what remained to be satisfied there."""
     shown = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
     for state in sorted(shown, key=lambda state: state.id):
@@ -165,7 +165,7 @@ def _states(window: Window, states: tuple[State, ...], count: int, bar: int) -> 
 
 
 def _figures(report: Report, stop: Stop, since: float) -> list[str]:
-    """Lines of numbers, ``since`` seconds after the report."""
+    """The lines with figures, ``since`` seconds after the report."""
     window, iteration = report.window, report.iteration
     best = "" if report.best_pass_rate is None else f"; best so far: met in {percent(report.best_pass_rate)}"
     learning = iteration.learn_s / ((iteration.learn_s + iteration.collect_s) or 1.0)
@@ -194,5 +194,5 @@ def _bar(share: float, colour: str, width: int) -> ProgressBar:
 
 
 def _tail(text: str, width: int) -> str:
-    """The end of a text that is too long: of a path it says most."""
+    """Shorten a text at its start: the end of a path says most."""
     return text if len(text) <= width else f"…{text[1 - width :]}"

@@ -1,4 +1,4 @@
-"""A training to its end, with how it goes on standard error."""
+"""Run a training to its end and show its progress on standard error."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def train_shown(run: Run, *, resume: bool, again: str) -> Report:
-    """Train to the end, showing how it goes; the last report.  ``again`` is the command that goes on after a stop.
+    """Train to the end, show the progress, and return the last report.
+
+    ``again`` is the command that resumes a stopped training.
 
     Raises:
-        TltlError: TLT0871, a worker was lost; what training raises.
+        TltlError: TLT0871, a worker was lost; errors from training.
     """
     with _broken_off(again), display(run, again) as shown:
         training = train(run, resume=resume, searching=shown.searched, recording=shown.recorded)
@@ -28,7 +30,7 @@ def train_shown(run: Run, *, resume: bool, again: str) -> Report:
 
 
 def stopped_line(run: Run, again: str) -> str | None:
-    """What is told of a training that Ctrl-C has stopped; None where it had not begun."""
+    """Describe a training that Ctrl-C has stopped; None if it had not started."""
     if not (run.folder / RUN).exists():
         return None
     before = "in the search, which then begins anew" if run.settings.searches else "before the first iteration"
@@ -37,12 +39,12 @@ def stopped_line(run: Run, again: str) -> str | None:
 
 @contextmanager
 def _broken_off(again: str) -> Iterator[None]:
-    """TLT0871 where a worker is lost."""
+    """Raise TltlError, TLT0871, if a worker is lost."""
     try:
         yield
     except WorkerError as error:
-        why = [str(error.loss), *error.loss.traceback.splitlines()[-1:]]
-        played = [f"it played {each}" for each in error.playing if each.busy]
-        title = f"the training broke off: {': '.join(why)}"
+        causes = [str(error.loss), *error.loss.traceback.splitlines()[-1:]]
+        played = [f"it played {playing}" for playing in error.playing if playing.busy]
+        title = f"the training broke off: {': '.join(causes)}"
         help_ = "; ".join([*played, f"to go on from the last checkpoint: {again}"])
         raise TltlError([Diagnostic("TLT0871", title, help=help_)]) from error

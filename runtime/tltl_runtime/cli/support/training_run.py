@@ -1,4 +1,4 @@
-"""What ``tltlc train`` is to train: a new training by its options, or one that is resumed and agrees with them."""
+"""Set up the run of ``tltlc train``: a new training from its options, or a resumed one that agrees with them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ T = TypeVar("T")
 
 @record
 class Asked:
-    """What the options of ``tltlc train`` say; None, or nothing sensed, where one says nothing."""
+    """The options of ``tltlc train``; None, or an empty mapping of sensors, if an option is not given."""
 
     spec: str | None
     level: str | None
@@ -78,10 +78,11 @@ class Asked:
 
 
 def new_run(asked: Asked, folder: Path | None) -> Run:
-    """A new training, by default in a folder that is called like it.
+    """Set up a new training, by default in a folder that is named after it.
 
-    Raises TltlError for all that is wrong with its spec, level, senses and settings, and for a policy to begin with
-    that does not fit these, TLT0873 for a folder that has files of something else.
+    Raises:
+        TltlError: the spec, the level, the sensors or the settings are invalid, or the initial policy
+            does not fit them; TLT0873, the folder contains other files.
     """
     if asked.spec is not None and names_level(asked.spec):
         if asked.level is not None:
@@ -96,7 +97,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     level = load_level(path, variant)
     offered = params(level)
     spec: str | Fspa = asked.spec or (begun.card.fspa if begun else spec_of(level))
-    # The policy's own spec has its params, but for those that the level offers.
+    # If the policy's spec is used, keep the policy's parameters, except for those that the level supplies.
     known = begun.card.params if begun and asked.spec is None else {}
     own = {name: value for name, value in known.items() if name not in offered}
     task = load_task(spec, own, offered=offered)
@@ -126,30 +127,33 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
 
 
 def begins_with(asked: Asked) -> Beginning | None:
-    """The policy that a new training is to begin with, None where there is none; errors as of :func:`beginning`."""
+    """The initial policy of a new training, or None; raises the errors of :func:`beginning`."""
     return None if asked.policy is None else beginning(asked.policy)
 
 
 def new_settings(asked: Asked, begun: Beginning | None) -> Settings:
-    """The settings that a new training would have; errors as of :func:`read_settings` and :func:`as_its_policy`."""
+    """The settings of a new training; raises the errors of :func:`read_settings` and :func:`as_its_policy`."""
     settings = _with_limits(read_settings(asked.config), asked)
     settings = replace(settings, method=_or(asked.method, settings.method))
     return settings if begun is None else as_its_policy(settings, begun, asked.config)
 
 
 def resumed_run(asked: Asked, folder: Path) -> Run:
-    """The training in ``folder``, with those settings that are asked for and may change; all others stay, and so does
-    the level, the demonstrations and the policy to begin with, whose files may lie elsewhere now.
+    """Set up the training in ``folder`` to be resumed.
 
-    Raises TltlError for a folder that cannot be read, TLT0001 for a level that is not where it was, TLT0870 where
-    anything else is asked for than it was begun with.
+    Only some settings may change.  Level, demonstrations and initial policy must be the same, but their
+    files may have moved.
+
+    Raises:
+        TltlError: the folder cannot be read; TLT0001, the level's file is missing; TLT0870, the options
+            disagree with the training.
     """
     run = _at_its_level(read_run(folder), asked)
     settings = run.settings if asked.config is None else _with_file(run.settings, asked.config)
-    different = list(_differences(run, asked, settings))
-    if different:
+    titles = list(_differences(run, asked, settings))
+    if titles:
         help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
-        raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in different])
+        raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in titles])
     if asked.demonstrations is not None:
         _check_demonstrations(asked.demonstrations, settings)
         run = replace(run, demonstrations=str(asked.demonstrations))
@@ -159,7 +163,7 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
 
 
 def check_limits(run: Run) -> None:
-    """TLT0862 where a training that is resumed gets a limit that it has passed: it would end at once."""
+    """Raise TltlError, TLT0862, if a resumed training gets a limit that it has already passed."""
     stop, before = run.settings.stop, read_run(run.folder).settings.stop
     checkpoint = None if stop == before else read_checkpoint(run.folder / CHECKPOINT)
     if checkpoint is None:
@@ -176,7 +180,7 @@ def check_limits(run: Run) -> None:
 
 
 def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
-    """Level and variant of a new training: what is asked for, else that of the spec, else that of the policy."""
+    """The level and the variant of a new training: from ``--level``, else from the spec, else from the policy."""
     if asked.level is not None:
         path, variant = level_place(asked.level)
         return path, variant or "v0"
@@ -188,7 +192,7 @@ def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
 
 
 def _at_its_level(run: Run, asked: Asked) -> Run:
-    """The training with the file of its level where it is now."""
+    """Update the path of the level's file if ``--level`` names the same level; check that the file exists."""
     if asked.level is None:
         check_there(run.level, run.variant, resume_command(run.folder))
         return run
@@ -199,7 +203,10 @@ def _at_its_level(run: Run, asked: Asked) -> Run:
 
 
 def _check_folder(folder: Path) -> None:
-    """TLT0873 where there are files of something else: whoever cleans up after a training would lose them."""
+    """Raise TltlError, TLT0873, if the folder contains other files.
+
+    They could be lost when the training is deleted.
+    """
     if peers().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
         return
     try:
@@ -213,7 +220,12 @@ def _check_folder(folder: Path) -> None:
 
 
 def _check_demonstrations(folder: Path | None, settings: Settings) -> None:
-    """UsageError where demonstrations are named that nobody would imitate; TLT0921 where there are none."""
+    """Check the folder of demonstrations.
+
+    Raises:
+        UsageError: the method does not use demonstrations.
+        TltlError: TLT0921, the folder contains no recordings.
+    """
     if folder is None:
         return
     if not settings.imitates:
@@ -227,7 +239,7 @@ def _usage(message: str) -> click.UsageError:
 
 
 def _with_file(settings: Settings, path: Path) -> Settings:
-    """The settings with what a file says; errors as of :func:`read_settings`."""
+    """Update settings from a file; raises the errors of :func:`read_settings`."""
     for table, values in read_values(read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
         settings = replace(settings, **changed)
@@ -235,7 +247,7 @@ def _with_file(settings: Settings, path: Path) -> Settings:
 
 
 def _with_limits(settings: Settings, asked: Asked) -> Settings:
-    """The settings with what the options say of when to stop and of the machine."""
+    """Update settings with the options for limits, workers and device."""
     stop, rollout = settings.stop, settings.rollout
     if asked.workers == "ray":
         rollout = replace(rollout, pool="ray")
@@ -254,7 +266,7 @@ def _or(asked: T | None, known: T) -> T:
 
 
 def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
-    """In what a training differs from what is asked for, a sentence each."""
+    """Yield a sentence for each difference between a training and the options."""
     where = f"the training in `{run.folder}`"
     if asked.level is not None:
         path, variant = level_place(asked.level)
@@ -264,18 +276,18 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
     if asked.spec is not None:
         fspa, _ = read_spec(asked.spec)
         if spec_hash(fspa) != spec_hash(run.fspa) and fspa.name == run.fspa.name:
-            what = differences(run.fspa, fspa)
-            yield f"{where} is for another spec `{fspa.name}` than that of `{asked.spec}`: {what}"
+            details = differences(run.fspa, fspa)
+            yield f"{where} is for another spec `{fspa.name}` than that of `{asked.spec}`: {details}"
         elif spec_hash(fspa) != spec_hash(run.fspa):
             yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
     if asked.seed is not None and asked.seed != run.seed:
         yield f"{where} has the seed {run.seed}, not {asked.seed}"
     if asked.method is not None and asked.method != run.settings.method:
         yield f"{where} is by the method `{run.settings.method}`, not by `{asked.method}`"
-    if asked.policy is not None and (other := is_another(run, asked.policy)):
-        yield other
+    if asked.policy is not None and (difference := is_another(run, asked.policy)):
+        yield difference
     sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
-    # What no option speaks of stays the training's own, whatever the level senses.
+    # Sensors without an option stay as they are in the training, whatever the level's own sensors are.
     for key in asked.sensors:
         if getattr(sensors, key) != getattr(run.sensors, key):
             yield f"{where} senses as `{option_of(key, run.sensors)}` says, not as `{option_of(key, sensors)}`"

@@ -1,4 +1,4 @@
-"""A training in words, a line each."""
+"""Lines that describe a training."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SEARCHED_AGAIN: Final = "the pass rate rises no more: ways are searched by chanc
 
 
 def line(report: Report, stop: Stop) -> str:
-    """A report in a line."""
+    """Describe a report in one line."""
     window = report.window
     parts = [f"iteration {report.iteration.number}: {report.steps:,} steps in {duration(report.seconds)}"]
     if window.count:
@@ -35,23 +35,23 @@ def line(report: Report, stop: Stop) -> str:
 
 
 def recording_line(tried: Tried, wanted: int) -> str:
-    """How far the recording of the expert's demonstrations is, in a line."""
+    """Describe the progress of recording the expert's demonstrations in one line."""
     seed, fate = tried.episode.seed, "is kept" if tried.path else "fails, and is not kept"
     return f"recording the expert: {tried.kept} of {wanted} demonstrations, the episode of seed {seed} {fate}"
 
 
 def imitated_line(imitated: Imitated) -> str:
-    """What is imitated, in a line."""
-    many = f"{imitated.episodes} demonstration{'s' * (imitated.episodes != 1)}"
-    said = f"imitating {many} of {imitated.decisions:,} decisions, by {' and '.join(imitated.players)}"
+    """Describe the imitated demonstrations in one line."""
+    count = f"{imitated.episodes} demonstration{'s' * (imitated.episodes != 1)}"
+    text = f"imitating {count} of {imitated.decisions:,} decisions, by {' and '.join(imitated.players)}"
     left = len(imitated.left_out)
-    return f"{said}; {left} recording{'s' * (left > 1)} left out: {imitated.left_out[0]}" if left else said
+    return f"{text}; {left} recording{'s' * (left > 1)} left out: {imitated.left_out[0]}" if left else text
 
 
 def search_line(searched: Searched) -> str:
-    """How far the search is, in a line."""
-    if found := len(searched.lengths):
-        ways = f"{found} way{'s' * (found > 1)} to meet the spec, the shortest of {min(searched.lengths)} steps"
+    """Describe the progress of the search in one line."""
+    if count := len(searched.lengths):
+        ways = f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(searched.lengths)} steps"
     else:
         ways = "no way to meet the spec yet"
     took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
@@ -59,38 +59,38 @@ def search_line(searched: Searched) -> str:
 
 
 def search_end(exploration: Exploration) -> str:
-    """When a search ends, in a sentence."""
+    """Say in a sentence when the search ends."""
     ways = f"{exploration.ways} way{'s' * (exploration.ways != 1)}"
     return f"The search ends when {ways} are found, at the latest after {exploration.steps:,} steps."
 
 
 def found_line(searched: Searched) -> str:
-    """What the search found, in a line of 72 characters at the most."""
-    took, found = duration(searched.seconds), len(searched.lengths)
-    if not found:
+    """Describe the result of the search in one line of at most 72 characters."""
+    took, count = duration(searched.seconds), len(searched.lengths)
+    if not count:
         return f"search: no way found in {took}; episodes begin at the level's start"
-    return f"search: {found} way{'s' * (found > 1)} found in {took}, the shortest of {min(searched.lengths)} steps"
+    return f"search: {count} way{'s' * (count > 1)} found in {took}, the shortest of {min(searched.lengths)} steps"
 
 
 def confirmation_line(number: int, confirmation: Confirmation) -> str:
-    """What a confirmation after iteration ``number`` came to, in a line of 72 characters at the most."""
+    """Describe the result of a confirmation after iteration ``number`` in one line of at most 72 characters."""
     if confirmation.passed:
         return f"confirmed: the policy met it in {confirmation.of} fresh episodes, too"
     return f"not confirmed after iteration {number}: fresh episode {confirmation.met + 1} of {confirmation.of} failed"
 
 
 def seconds_left(report: Report, stop: Stop) -> float:
-    """Seconds until a limit ends the training, at the speed that it had after the search."""
+    """The estimated seconds until a limit ends the training, at its speed since the search."""
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
 
 
 def minutes(number: float) -> str:
-    """A limit of minutes."""
+    """Format a number of minutes."""
     return f"{number:g} minute{'s' * (number != 1)}"
 
 
 def rate(report: Report) -> float:
-    """Steps a second of the last iteration; 0 where a training that is over had none."""
+    """Steps per second of the last iteration; 0 if a finished training had no iteration."""
     return report.iteration.steps / ((report.iteration.collect_s + report.iteration.learn_s) or 1.0)

@@ -1,4 +1,4 @@
-"""The options that say who plays: processes, or a Ray cluster."""
+"""The option ``--workers``: processes or a Ray cluster."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ else:
 
 
 class WorkersType(_Type):
-    """How many processes play, 0 for as many as there are cores, or ``ray``."""
+    """The number of processes, 0 for the number of cores, or ``ray``."""
 
     name = "workers"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number, or ``ray``."""
+        """Convert the value to a number or ``ray``."""
         if value == "ray" or isinstance(value, int):
             return value
         from tltl_runtime.training.run.settings_file import KINDS

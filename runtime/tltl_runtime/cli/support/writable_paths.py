@@ -1,4 +1,4 @@
-"""Whether files can be written that a command is to write at its end."""
+"""Check early whether a command can write the files that it writes at its end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _OUTPUT: Final = ("-", "/dev/stdout")
 
 
 def check_writable(files: Mapping[str, Path | None]) -> None:
-    """Check, before minutes of play, that files can be written; ``files`` are named by their options.
+    """Check, before minutes of play, that files can be written.  The keys of ``files`` are options.
 
     Raises:
         TltlError: TLT0005 if one cannot be written, TLT0700 if one is an input of the command.
@@ -26,10 +26,10 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
             continue
         check_not_read(path, f"name another place with {option}")
         try:
-            # Its name may be one that the system does not allow.
+            # This fails if the system does not allow the name.
             with suppress(FileNotFoundError):
                 path.stat()
-            # What a link leads to is what is written.
+            # If the path is a link, its target is written.
             with TemporaryFile(dir=path.resolve().parent):
                 pass
         except OSError as error:
@@ -39,8 +39,9 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
 
 
 def check_apart(files: Mapping[str, Path | None], read: Iterable[Path]) -> None:
-    """Raise TltlError, TLT0005, where a file would take the place of one that is ``read``, or of another of them;
-    ``files`` are named by their options.
+    """Raise TltlError, TLT0005, if a file would overwrite one in ``read`` or another output file.
+
+    The keys of ``files`` are options.
     """
     taken = {path.resolve(): "the suite reads it" for path in read}
     for option, path in files.items():
@@ -54,7 +55,7 @@ def check_apart(files: Mapping[str, Path | None], read: Iterable[Path]) -> None:
 
 
 def check_no_training(folder: Path) -> None:
-    """Raise TltlError, TLT0005, where a folder is that of a training, which is to have its own files alone."""
+    """Raise TltlError, TLT0005, if a folder contains a training: other files must not go there."""
     from tltl_runtime.training.run.run import RUN
 
     if exists(folder / RUN):
@@ -63,12 +64,10 @@ def check_no_training(folder: Path) -> None:
 
 
 def is_output(path: Path) -> bool:
-    """Whether a file that is asked for is standard output: by `-`, by its name among the devices, or by the name of
-    the file that standard output goes to.
-    """
+    """Whether a path is standard output: `-`, its device, or the file that standard output is redirected to."""
     return str(path) in _OUTPUT or descriptor_of(path) == 1
 
 
 def _takes_a_place(path: Path) -> bool:
-    """Whether what is written replaces a file or makes one; what is no file, such as a pipe, is written to directly."""
+    """Whether writing creates or replaces a file.  Pipes and devices are written directly."""
     return not exists(path) or is_file(path)
