@@ -200,8 +200,8 @@ class _Kept:
 def _line(attempt: Tried, wanted: int) -> str:
     from tltl_runtime.cli.support.episode_text import episode_line
 
-    kept = f"{attempt.kept} of {wanted}"
-    return episode_line(attempt.episode, f"{attempt.path} ({kept})" if attempt.path else f"not kept ({kept})")
+    count = f"{attempt.kept} of {wanted}"
+    return episode_line(attempt.episode, f"{attempt.path} ({count})" if attempt.path else f"not kept ({count})")
 
 
 def _count_text(demonstrations: Demonstrations, wanted: int) -> str:

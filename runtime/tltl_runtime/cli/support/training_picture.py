@@ -125,10 +125,10 @@ class Picture:
 
     def _kept(self, now: float, report: Report) -> str:
         if self._checkpoint is not None:
-            kept = f"last checkpoint {duration(now - self._checkpoint)} ago"
+            text = f"last checkpoint {duration(now - self._checkpoint)} ago"
         else:
-            kept = "resumed from its checkpoint" if self._resumed else "no checkpoint yet"
-        return kept if report.stop else f"{kept}; Ctrl-C writes one to go on from"
+            text = "resumed from its checkpoint" if self._resumed else "no checkpoint yet"
+        return text if report.stop else f"{text}; Ctrl-C writes one to go on from"
 
 
 def _success(report: Report, stop: Stop, bar: int) -> Table:

@@ -99,10 +99,10 @@ def _distances(fspa: Fspa, account: Account) -> list[int]:
 
 def ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     """Describe how failed episodes end, most frequent first.  All sentences are distinct."""
-    left = [end_of(level, fspa, account) for account in before if not account.success]
+    ends_before = [end_of(level, fspa, account) for account in before if not account.success]
     for group in failures(level, fspa, now):
-        matches = [group.alike(end) for end in left]
-        left = [end for end, is_alike in zip(left, matches, strict=True) if not is_alike]
+        matches = [group.alike(end) for end in ends_before]
+        ends_before = [end for end, is_alike in zip(ends_before, matches, strict=True) if not is_alike]
         text = f"{group.text} in {_of(len(group.accounts), now)}; before: in {_of(sum(matches), before)}{group.more}"
         yield Finding(text, tuple(sorted(account.index for account in group.accounts)))
 

@@ -72,8 +72,8 @@ def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[
         # If the same end occurs in several stages, the texts must differ.
         stage = f" before it {end.undone}" if stages[replace(end, undone="")] > 1 else ""
         group = groups[end]
-        more = f"{approach(level, fspa, end.undone, group)}; {remained(fspa, group)}"
-        yield Failures(_end_text(level, end, group) + stage, tuple(group), end.__eq__, more)
+        details = f"{approach(level, fspa, end.undone, group)}; {remained(fspa, group)}"
+        yield Failures(_end_text(level, end, group) + stage, tuple(group), end.__eq__, details)
     few = {end: group for end, group in groups.items() if end not in frequent}
     yield from _few(level, few, frequent, len(accounts))
 
@@ -92,18 +92,18 @@ def _few(
     for end, accounts in groups.items():
         causes.setdefault(end.what, []).extend(accounts)
     frequent_causes = _often(causes, episodes)
-    left = [cause for cause in causes if cause not in frequent_causes]
-    if len(left) == 1:
-        frequent_causes += left
-        left = []
+    rare_causes = [cause for cause in causes if cause not in frequent_causes]
+    if len(rare_causes) == 1:
+        frequent_causes += rare_causes
+        rare_causes = []
     for cause in frequent_causes:
-        same = [end for end in groups if end.what == cause]
-        text, alike = _one_cause(level, same, causes[cause], frequent)
+        same_cause = [end for end in groups if end.what == cause]
+        text, alike = _one_cause(level, same_cause, causes[cause], frequent)
         yield Failures(text, tuple(causes[cause]), alike)
-    if left:
+    if rare_causes:
         otherwise = " otherwise" if frequent or frequent_causes else ""
         yield Failures(
-            f"fails{otherwise}", tuple(account for cause in left for account in causes[cause]), lambda _: True
+            f"fails{otherwise}", tuple(account for cause in rare_causes for account in causes[cause]), lambda _: True
         )
 
 
@@ -127,8 +127,8 @@ def _one_cause(
         stage = " at other stages"
 
     def alike(end: End) -> bool:
-        there = end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in apart
-        return end.what == cause and there and (not stage.startswith(" before") or end.undone in stages)
+        same_place = end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in apart
+        return end.what == cause and same_place and (not stage.startswith(" before") or end.undone in stages)
 
     return _end_text(level, replace(ends[0], where=where), accounts) + stage, alike
 

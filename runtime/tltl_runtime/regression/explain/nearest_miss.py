@@ -21,8 +21,8 @@ def approach(level: Level, fspa: Fspa, undone: str, accounts: Sequence[Account])
     text = ""
     if arrived := sum(account.arrived for account in accounts):
         was = "was" if arrived == 1 else "were"
-        there = f"{was} at {undone.removeprefix(REACHES)}" if undone.startswith(REACHES) else "lacked nothing else"
-        text = f"; {arrived} of them {there} when it broke"
+        position = f"{was} at {undone.removeprefix(REACHES)}" if undone.startswith(REACHES) else "lacked nothing else"
+        text = f"; {arrived} of them {position} when it broke"
     misses = [account.nearest for account in accounts if account.nearest and not account.arrived]
     if 2 * len(misses) <= len(accounts):
         return text
@@ -61,6 +61,6 @@ def _metres(came: float, enough: float | None) -> tuple[str, str]:
     if enough is None:
         return f"{came:.1f} m", ""
     for places in (1, 2):
-        if (there := f"{came:.{places}f} m") != (below := f"{enough:.{places}f} m"):
-            return there, f", below {below} would do"
-    return there, ", less would do"
+        if (nearest := f"{came:.{places}f} m") != (sufficient := f"{enough:.{places}f} m"):
+            return nearest, f", below {sufficient} would do"
+    return nearest, ", less would do"

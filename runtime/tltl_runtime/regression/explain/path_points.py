@@ -29,12 +29,12 @@ def way_of(episode: Episode) -> Way:
     times = np.array([shot.time for shot in episode.snapshots])
     places = np.array([shot.player.position[:2] for shot in episode.snapshots])
     changes = (np.flatnonzero(np.diff(episode.states)) + 1).tolist()
-    kept = {0, *changes, len(times) - 1}
-    for first, last in pairwise(sorted(kept)):
-        kept.update(_needed(times, places, first, last))
+    rows = {0, *changes, len(times) - 1}
+    for first, last in pairwise(sorted(rows)):
+        rows.update(_needed(times, places, first, last))
     return tuple(
         (round(float(x), 2), round(float(y), 2), int(episode.states[row]), round(float(times[row]), 2))
-        for row in sorted(kept)
+        for row in sorted(rows)
         for x, y in (places[row],)
     )
 

@@ -106,8 +106,8 @@ def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
 
     This is so if every edge that does not lead to a trap requires it.
     """
-    kept = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
-    return all((atom, truth) in prime for edge in kept for prime in edge.guard.primes)
+    useful_edges = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
+    return all((atom, truth) in prime for edge in useful_edges for prime in edge.guard.primes)
 
 
 def together(deeds: Sequence[str]) -> str:

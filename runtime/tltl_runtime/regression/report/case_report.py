@@ -105,11 +105,11 @@ def _edits(result: Result) -> Iterator[str]:
     return edits(ready.played, before.played, ready.changes, texts, before.texts)
 
 
-def _headline(judgement: Judgement, thresholds: Thresholds, said: Sequence[str], failed: Finding | None) -> str:
+def _headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], failed: Finding | None) -> str:
     """The headline: how the case fails if its pass rate may be too low; else a changed figure; else the pass rate."""
     if failed and judgement.rate_interval[0] < thresholds.pass_rate:
         return failed.text.partition("; ")[0]
-    return said[1] if len(said) > 1 else said[0]
+    return statistics[1] if len(statistics) > 1 else statistics[0]
 
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:

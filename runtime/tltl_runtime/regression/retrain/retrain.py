@@ -150,12 +150,12 @@ def _free_beside(suite: Suite, folder: Path) -> Path:
     return next(path for path in candidates if path not in taken and not path.exists())
 
 
-def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[int, Account], None]) -> Retrained:
+def retrained(suite: Suite, done: Done, run: Run, pool: Pool, on_episode: Callable[[int, Account], None]) -> Retrained:
     """Return the result of the finished training in ``run.folder``.
 
     The retrained policy plays fresh episodes, unless the result is cached.  It stops as soon as it is
-    certain whether the pass rate reaches the case's threshold.  After each episode, ``told`` is
-    called with the number of episodes so far and the last account.
+    certain whether the pass rate reaches the case's threshold.  After each episode, ``on_episode``
+    gets the number of episodes so far and the last account.
 
     Raises:
         TltlError: the policy's file cannot be read; errors from playing; TLT0005, a file cannot be
@@ -168,9 +168,9 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
     setup = replace(done.ready.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
     ready = replace(done.ready, setup=setup, case=replace(done.ready.case, policy=run.folder))
     inputs = _inputs(ready, weights_hash(policy), trained, error, done.report.accounts)
-    if kept := _kept(run.folder, inputs):
-        return kept
-    accounts, recording, interval = _played(ready, error, pool, told)
+    if cached := _kept(run.folder, inputs):
+        return cached
+    accounts, recording, interval = _played(ready, error, pool, on_episode)
     thresholds = ready.case.thresholds
     met = sum(account.success for account in (*accounts, *done.report.accounts))
     outcome = outcome_of(trained, interval[0], thresholds, met)
@@ -216,7 +216,7 @@ def trained_of(run: Run) -> Trained:
 
 
 def _played(
-    ready: Ready, error: float, pool: Pool, told: Callable[[int, Account], None]
+    ready: Ready, error: float, pool: Pool, on_episode: Callable[[int, Account], None]
 ) -> tuple[list[Account], bytes, tuple[float, float]]:
     """Play episodes until it is certain whether the pass rate reaches the case's threshold.
 
@@ -227,7 +227,7 @@ def _played(
     with closing(episodes(ready, pool)) as playing:
         for episode in playing:
             accounts.append(episode.account)
-            told(len(accounts), episode.account)
+            on_episode(len(accounts), episode.account)
             recording = recording or (episode.recording if episode.account.success else b"")
             passed = sum(account.success for account in accounts)
             interval = rate_interval(passed, len(accounts) - passed, error)

@@ -38,8 +38,12 @@ class Compared:
     outdated: str | None = None
 
 
-def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference, ...] = ()) -> Generator[Compared]:
+def record_baseline(
+    suite: Suite, pool: Pool, on_episode: Told, kept: tuple[Reference, ...] = ()
+) -> Generator[Compared]:
     """Play all episodes of each combination of level, variant, spec and policy in the suite.
+
+    ``on_episode`` is called after each episode.
 
     Cases that are compared with the same reference share its episodes.  The case with the most
     episodes sets their number.  A reference in ``kept``, from an earlier recording, is not played
@@ -49,11 +53,11 @@ def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference,
         TltlError: a case cannot be set up (raised before anything is played); TLT0905, a level was
             edited meanwhile; errors from playing.
     """
-    yield from _recorded(_groups(suite), pool, told, kept)
+    yield from _recorded(_groups(suite), pool, on_episode, kept)
 
 
 def write_recorded(
-    suite: Suite, path: Path, pool: Pool, told: Told, older: tuple[Reference, ...] = (), *, fresh: bool = False
+    suite: Suite, path: Path, pool: Pool, on_episode: Told, older: tuple[Reference, ...] = (), *, fresh: bool = False
 ) -> Generator[Compared]:
     """Record the baseline of a suite with :func:`record_baseline` and write it to ``path`` at the end.
 
@@ -71,7 +75,7 @@ def write_recorded(
     # Check that the file can be written before minutes of play.
     _keep(partial, inputs, kept)
     reusable = () if fresh else tuple(reference for reference in older if reference.sources == sources_hash())
-    for compared in _recorded(groups, pool, told, (*kept, *reusable)):
+    for compared in _recorded(groups, pool, on_episode, (*kept, *reusable)):
         recorded.append(compared.reference)
         # References of the older baseline stay in that file.
         new = tuple(reference for reference in recorded if reference not in reusable)
@@ -131,7 +135,7 @@ def _ready(case: Case, seed: int) -> Ready:
 
 
 def _recorded(
-    groups: Sequence[Sequence[Ready]], pool: Pool, told: Told, kept: tuple[Reference, ...]
+    groups: Sequence[Sequence[Ready]], pool: Pool, on_episode: Told, kept: tuple[Reference, ...]
 ) -> Generator[Compared]:
     for group in groups:
         longest = max(group, key=lambda prepared: prepared.case.episodes)
@@ -140,18 +144,18 @@ def _recorded(
             for reference in kept
             if reference.played == longest.played and len(reference.accounts) == longest.case.episodes
         ]
-        reference = matches[0] if matches else _played(longest, pool, told)
+        reference = matches[0] if matches else _played(longest, pool, on_episode)
         outdated = next((prepared.outdated for prepared in group if prepared.outdated), None)
         yield Compared(reference, tuple(prepared.case for prepared in group), outdated)
 
 
-def _played(prepared: Ready, pool: Pool, told: Told) -> Reference:
+def _played(prepared: Ready, pool: Pool, on_episode: Told) -> Reference:
     accounts: list[Account] = []
     # Read the texts first: an edit during play raises an error, so these are the texts that are played.
     texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
     for episode in episodes(prepared, pool):
         accounts.append(episode.account)
-        told(prepared.case, len(accounts), episode.account)
+        on_episode(prepared.case, len(accounts), episode.account)
     return Reference(prepared.played, tuple(accounts), texts, sources_hash())
 
 

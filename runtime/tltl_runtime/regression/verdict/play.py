@@ -97,15 +97,15 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
     return Ready(case, setup, played, level, changes, _outdated(case, setup, level))
 
 
-def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
+def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
     """Play the episodes of a case and yield each.  Closing the iterator ends the workers.
 
     Raises:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
             errors from playing.
     """
-    tasks = [Task(index) for index in range(made.case.episodes)]
-    with closing(results(made.setup, tasks, pool, alone=partial(_alone, made))) as playing:
+    tasks = [Task(index) for index in range(prepared.case.episodes)]
+    with closing(results(prepared.setup, tasks, pool, alone=partial(_alone, prepared))) as playing:
         for count, result in enumerate(playing):
             # Before it raises an error, `results` yields all finished episodes.  Skip those after a gap:
             # counting them would favour fast episodes.
@@ -113,52 +113,54 @@ def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
                 continue
             episode = episode_from_bytes(result.recording, _PLAYER)
             # Each worker loads the level itself, so check the level of the recording.
-            _check_unedited(made, episode.level)
+            _check_unedited(prepared, episode.level)
             yield Recorded(account(result.played, episode), result.recording)
-    check_unedited(made)
+    check_unedited(prepared)
 
 
-def _alone(made: Ready, task: Task) -> str:
+def _alone(prepared: Ready, task: Task) -> str:
     """The command that plays a single episode of the case."""
-    place = ["--level", f"{made.setup.level}:{made.setup.variant}"]
-    spec = [] if made.case.spec is None else ["--spec", made.case.spec]
-    episode = ["--seed", str(made.setup.seed), "--first", str(task.index), "--episodes", "1"]
-    return join(["tltlc", "evaluate", str(made.case.policy), *place, *spec, *episode])
+    place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant}"]
+    spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]
+    episode = ["--seed", str(prepared.setup.seed), "--first", str(task.index), "--episodes", "1"]
+    return join(["tltlc", "evaluate", str(prepared.case.policy), *place, *spec, *episode])
 
 
-def check_unedited(made: Ready) -> None:
+def check_unedited(prepared: Ready) -> None:
     """Check that the level was not edited since the setup.  Workers that had loaded it do not notice.
 
     Raises:
         TltlError: TLT0905, the level was edited; or the errors of the edited level.
     """
-    _check_unedited(made, load_level(made.setup.level, made.setup.variant))
+    _check_unedited(prepared, load_level(prepared.setup.level, prepared.setup.variant))
 
 
-def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Callable[[int, Account], None]) -> Result:
+def judged(
+    prepared: Ready, reference: Reference, error: float, pool: Pool, on_episode: Callable[[int, Account], None]
+) -> Result:
     """Play a case until its verdict is settled.
 
-    After each episode, ``told`` is called with the number of episodes so far and the last account.
+    After each episode, ``on_episode`` gets the number of episodes so far and the last account.
     """
     played: list[Recorded] = []
-    with closing(episodes(made, pool)) as playing:
+    with closing(episodes(prepared, pool)) as playing:
         for episode in playing:
             played.append(episode)
-            told(len(played), episode.account)
+            on_episode(len(played), episode.account)
             now = [recorded.account for recorded in played]
-            judgement = judge(now, reference.accounts, made.case.episodes, made.case.thresholds, error)
+            judgement = judge(now, reference.accounts, prepared.case.episodes, prepared.case.thresholds, error)
             if judgement:
-                check_unedited(made)
-                return Result(made, reference, judgement, tuple(played))
+                check_unedited(prepared)
+                return Result(prepared, reference, judgement, tuple(played))
     raise AssertionError("the last episode settles every verdict")
 
 
-def _check_unedited(made: Ready, level: Level) -> None:
-    before, now = made.level.files, level.files
+def _check_unedited(prepared: Ready, level: Level) -> None:
+    before, now = prepared.level.files, level.files
     if before != now:
         # Names can repeat: overlays of the same name may come from several folders.
         names = dict.fromkeys(f"`{file[0]}`" for file in (*before, *now) if (file in before) != (file in now))
-        title = f"{', '.join(names)} changed while `{made.case.name}` was played"
+        title = f"{', '.join(names)} changed while `{prepared.case.name}` was played"
         raise TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
 
 
@@ -174,6 +176,6 @@ def _outdated(case: Case, setup: Setup, level: Level) -> str | None:
     now = read_spec(level.spec)[0]
     if spec_hash(now) == spec_hash(setup.fspa):
         return None
-    how = f"({differences(setup.fspa, now)})"
+    changes = f"({differences(setup.fspa, now)})"
     help_ = "train it again, or name the new one as the case's `spec`"
-    return f"the spec `{name}` has changed since the policy was trained {how}, and its old one judges: {help_}"
+    return f"the spec `{name}` has changed since the policy was trained {changes}, and its old one judges: {help_}"

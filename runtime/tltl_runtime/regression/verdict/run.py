@@ -102,7 +102,7 @@ def regress(
     references: tuple[Reference, ...],
     folder: Path,
     pool: Pool,
-    told: Told,
+    on_episode: Told,
     *,
     fresh: bool = False,
 ) -> Generator[Done]:
@@ -125,7 +125,7 @@ def regress(
         if isinstance(prepared, TltlError):
             yield Done(report_on_broken(case, prepared), kept=False)
         else:
-            yield _done(suite, *prepared, folder, pool, told)
+            yield _done(suite, *prepared, folder, pool, on_episode)
 
 
 def _forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
@@ -157,7 +157,7 @@ def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tu
     return prepared, reference
 
 
-def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:
+def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, pool: Pool, on_episode: Told) -> Done:
     """Return the cached result of a case, or play it now.
 
     Raises:
@@ -165,11 +165,11 @@ def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, poo
     """
     case, error = prepared.case, suite.error / len(suite.cases)
     own_folder, inputs = case_folder(suite, case.name, folder / CASES), _inputs(prepared, reference, error)
-    kept = _kept(own_folder, inputs)
-    if kept:
-        return Done(kept, kept=True, ready=prepared, reference=reference)
+    cached = _kept(own_folder, inputs)
+    if cached:
+        return Done(cached, kept=True, ready=prepared, reference=reference)
     try:
-        result = judged(prepared, reference, error, pool, lambda count, last: told(case, count, last))
+        result = judged(prepared, reference, error, pool, lambda count, last: on_episode(case, count, last))
     except TltlError as fault:
         codes = {diagnostic.code for diagnostic in fault.diagnostics}
         if codes & NOT_THE_CASE:

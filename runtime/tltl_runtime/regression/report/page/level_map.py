@@ -38,21 +38,21 @@ _SIGNS: Final = {
 """The legend: the class of each sign on a map, and its meaning."""
 
 
-def level_map(level: Level, said: str = "") -> Markup:
+def level_map(level: Level, sentences: str = "") -> Markup:
     """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
 
-    Things that the sentences ``said`` mention are highlighted.
+    Things that the report's ``sentences`` mention are highlighted.
     """
     plan = Plan(level.bounds)
     width, height = plan.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
-    below = [*_ground(level, plan, said), element("g", class_="heat"), *_entities(level, plan)]
+    below = [*_ground(level, plan, sentences), element("g", class_="heat"), *_entities(level, plan)]
     above = [element("g", class_=layer) for layer in _LAYERS[1:]]
     return element(
         "svg",
         *below,
         *above[:-1],
-        element("g", *map(_name, names(level, plan, said)), class_="names"),
+        element("g", *map(_name, names(level, plan, sentences)), class_="names"),
         above[-1],
         class_="plan map",
         viewBox=view,
@@ -61,7 +61,7 @@ def level_map(level: Level, said: str = "") -> Markup:
     )
 
 
-def map_key(level: Level, said: str = "") -> Markup:
+def map_key(level: Level, sentences: str = "") -> Markup:
     """The legend of a map, with the signs that occur in it."""
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
     present = {
@@ -71,7 +71,7 @@ def map_key(level: Level, said: str = "") -> Markup:
         "mover-way": level.movers,
         **{f"barrier {kind}": kind in barriers for kind in ("solid", "laser")},
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
-        "solid spoken": any(is_spoken_of(solid.name, said) for solid in level.solids),
+        "solid spoken": any(is_spoken_of(solid.name, sentences) for solid in level.solids),
     }
     rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if present.get(kind, True)]
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
@@ -122,9 +122,9 @@ def _sign(kind: str) -> Markup:
     return element("svg", inside, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
-def _ground(level: Level, plan: Plan, said: str) -> Iterable[Markup]:
-    for solid in sorted(level.solids, key=lambda item: (is_spoken_of(item.name, said), item.box.high[2])):
-        kind = f"solid {solid.kind}{' spoken' * is_spoken_of(solid.name, said)}"
+def _ground(level: Level, plan: Plan, sentences: str) -> Iterable[Markup]:
+    for solid in sorted(level.solids, key=lambda item: (is_spoken_of(item.name, sentences), item.box.high[2])):
+        kind = f"solid {solid.kind}{' spoken' * is_spoken_of(solid.name, sentences)}"
         yield element("rect", element("title", solid.name), class_=kind, **plan.sides(solid.box))
     for region in level.regions:
         yield element("rect", class_="region", **plan.sides(region.box))

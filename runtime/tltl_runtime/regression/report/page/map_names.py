@@ -47,40 +47,40 @@ class Name:
     spoken: bool = False
 
 
-def names(level: Level, plan: Plan, said: str) -> Iterator[Name]:
+def names(level: Level, plan: Plan, sentences: str) -> Iterator[Name]:
     """Place the names of a level.
 
     Switches, exits, barriers, enemies and regions always have names.  Solids and movers have names only
-    if the sentences ``said`` mention them.
+    if the report's ``sentences`` mention them.
     """
     taken: list[Rect] = []
-    for thing in _things(level, plan, said):
+    for thing in _things(level, plan, sentences):
         name = _apart(thing, taken, plan.size)
         taken.append(_around(name))
         yield name
     taken += [plan.rect(solid.box) for solid in level.solids if solid.kind in ("wall", "low")]
     taken += [plan.rect(barrier.box) for barrier in level.barriers]
-    spoken = _regions_spoken_of(level, said)
+    spoken = _regions_spoken_of(level, sentences)
     for row, region in enumerate(level.regions):
         # Where regions overlap, the first one gives the place its name.
-        others = [plan.rect(other.box) for other in level.regions[:row]]
-        name = _of_region(region, plan.rect(region.box), others, taken, spoken=region.name in spoken)
+        earlier_regions = [plan.rect(other.box) for other in level.regions[:row]]
+        name = _of_region(region, plan.rect(region.box), earlier_regions, taken, spoken=region.name in spoken)
         taken.append(_around(name))
         yield name
 
 
-def is_spoken_of(name: str, said: str) -> bool:
+def is_spoken_of(name: str, sentences: str) -> bool:
     """Whether sentences mention a thing of that name, or its keys, for example ``wall.NAME.at``."""
-    return re.search(rf"[`.]{re.escape(name)}[`.]", said) is not None
+    return re.search(rf"[`.]{re.escape(name)}[`.]", sentences) is not None
 
 
-def _things(level: Level, plan: Plan, said: str) -> Iterator[Name]:
+def _things(level: Level, plan: Plan, sentences: str) -> Iterator[Name]:
     """The names of things at their default positions."""
     small = [(switch.name, plan.at(switch.position)) for switch in level.switches]
     small += [(exit_.name, plan.at(exit_.position)) for exit_ in level.exits]
     wide = [(barrier.name, plan.middle(barrier.box)) for barrier in level.barriers]
-    wide += [(solid.name, plan.middle(solid.box)) for solid in level.solids if is_spoken_of(solid.name, said)]
-    wide += [(mover.name, plan.at(mover.path[0])) for mover in level.movers if is_spoken_of(mover.name, said)]
+    wide += [(solid.name, plan.middle(solid.box)) for solid in level.solids if is_spoken_of(solid.name, sentences)]
+    wide += [(mover.name, plan.at(mover.path[0])) for mover in level.movers if is_spoken_of(mover.name, sentences)]
     enemies = [(enemy.name, plan.at(enemy.route[0])) for enemy in level.enemies]
     for things, kind, above in (
         (small, "thing-name", _ABOVE),
@@ -90,7 +90,7 @@ def _things(level: Level, plan: Plan, said: str) -> Iterator[Name]:
         for name, (x, y) in things:
             half = _LETTER * len(name) // 2
             middle = min(max(x, half), max(half, plan.size[0] - half))
-            yield Name((name,), kind, middle, y - above, is_spoken_of(name, said))
+            yield Name((name,), kind, middle, y - above, is_spoken_of(name, sentences))
 
 
 def _apart(name: Name, taken: Sequence[Rect], size: tuple[int, int]) -> Name:
@@ -112,11 +112,11 @@ def _apart(name: Name, taken: Sequence[Rect], size: tuple[int, int]) -> Name:
     return min(candidates, key=lambda candidate: sum(_overlap(_around(candidate), other) for other in taken))
 
 
-def _regions_spoken_of(level: Level, said: str) -> set[str]:
+def _regions_spoken_of(level: Level, sentences: str) -> set[str]:
     """The names of regions that sentences mention.  The longest name wins: *the left part* is not *the left*."""
     called = {region.name.replace("_", " "): region.name for region in level.regions}
     words = "|".join(map(re.escape, sorted(called, key=len, reverse=True)))
-    return {called[match] for match in re.findall(rf"\bthe ({words})(?![-\w])", said)} if called else set()
+    return {called[match] for match in re.findall(rf"\bthe ({words})(?![-\w])", sentences)} if called else set()
 
 
 def _of_region(region: Region, inside: Rect, others: Sequence[Rect], taken: Sequence[Rect], *, spoken: bool) -> Name:
