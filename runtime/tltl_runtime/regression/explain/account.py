@@ -30,7 +30,7 @@ class Arrival:
 
 @record
 class Nearest:
-    """The nearest miss: how near a failed episode came to leaving its last state towards acceptance.
+    """The nearest miss: how near an episode came to leaving the state in which it failed, towards acceptance.
 
     ``robustness``, in [-1, 1], is the guard's greatest robustness, and ``place`` is where the player
     was then.  ``atom`` is the atom that limited it: it had to hold, or had to be false if ``wanted`` is

@@ -36,7 +36,7 @@ class End:
 
     @property
     def what(self) -> _What:
-        """The cause and the culprits, without place and stage."""
+        """The cause and the names in ``by``, without place and stage."""
         return self.cause, self.by
 
 

@@ -56,7 +56,7 @@ def in_the_way(level: Level, ends: Sequence[tuple[Point, Sequence[str]]]) -> lis
 
 
 def _beside(feet: Point, box: Box) -> float:
-    """The horizontal distance from a player to a box; infinite for a box below the feet, on which the player stands."""
+    """The horizontal distance from a player to a box; infinite for a box below the feet, such as one to stand on."""
     body = (*feet[:2], max(feet[2], box.low[2]))
     return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
 

@@ -1,1 +1,1 @@
-"""The report on a suite as a page: one HTML file that loads nothing."""
+"""The report on a suite as a page: one self-contained HTML file."""

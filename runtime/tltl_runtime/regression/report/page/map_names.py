@@ -19,7 +19,7 @@ On the screen, text keeps its size whatever the size of the map.
 """
 
 _ABOVE: Final = 35
-"""Centimetres from the centre of a switch, an exit or an enemy to the baseline of its name."""
+"""Centimetres from the centre of a switch, an exit or an enemy to the foot of its name."""
 
 _MARGIN: Final = 12
 """Centimetres between the western side of a region and its name."""
@@ -35,7 +35,7 @@ _STEP: Final = 50
 class Name:
     """A name on the map.
 
-    The baseline of its first line is at ``x`` and ``y``, in centimetres.  ``kind`` is a CSS class: a
+    The foot of its first line is at ``x`` and ``y``, in centimetres.  ``kind`` is a CSS class: a
     ``region-name`` starts at ``x``, a ``thing-name`` or ``enemy-name`` is centred there.  ``spoken`` says
     that the report mentions the name.
     """
