@@ -44,8 +44,8 @@ class Case:
     def check(self, printed: str) -> None:
         """Assert that this was printed; with ``UPDATE_GOLDEN=1`` in the environment, write it into the case."""
         if os.environ.get("UPDATE_GOLDEN") == "1" and printed != self.expected:
-            head = self.path.read_text(encoding="utf-8", newline="").rpartition(f"-- {_STDERR} --\n")[0]
-            self.path.write_text(f"{head}-- {_STDERR} --\n{printed}", encoding="utf-8", newline="")
+            head = self.path.read_bytes().decode().rpartition(f"-- {_STDERR} --\n")[0]
+            self.path.write_bytes(f"{head}-- {_STDERR} --\n{printed}".encode())
             return
         assert printed == self.expected
 
@@ -57,7 +57,7 @@ def cases(kind: str) -> list[Case]:
 
 def read(path: Path) -> Case:
     """The case in a file."""
-    text = path.read_text(encoding="utf-8", newline="")
+    text = path.read_bytes().decode()
     headers = [*_HEADER.finditer(text)]
     ends = [*(header.start() for header in headers[1:]), len(text)]
     sections = {header["name"]: text[header.end() : end] for header, end in zip(headers, ends, strict=True)}
