@@ -26,7 +26,7 @@ def test_cover_and_hide() -> None:
     assert str(spec.formula) == "F(near(s1) & X F(near(s2) & X F near(exit))) & G alive"
     assert [atom.name for atom in spec.atoms] == ["near(s1)", "near(s2)", "near(exit)", "alive"]
     assert spec.signals[0] == Signal(
-        "distance(s1)", "length", 0.0, None, "Distance in a straight line from the character to `target`."
+        "distance", "length", 0.0, None, "Distance in a straight line from the character to `target`.", ("s1",)
     )
     assert [signal.name for signal in spec.signals] == ["distance(s1)", "distance(s2)", "distance(exit)", "health"]
     assert [(param.name, param.value, param.low, param.high) for param in spec.params] == [
