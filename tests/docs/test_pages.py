@@ -102,7 +102,7 @@ def keys(value: Any) -> Iterator[str]:
 
 
 def test_every_field_of_the_artefact_is_there() -> None:
-    schema = json.loads((ROOT / "tltlc/backends/artefact/fspa.schema.json").read_text())
+    schema = json.loads((ROOT / "tltlc/artefact/fspa.schema.json").read_text())
     expression = schema["definitions"]["expression"]["properties"]
     operators = {*expression["op"]["enum"], *schema["definitions"]["condition"]["properties"]["op"]["enum"]}
     (fspa,) = tltlc.compile_text(SPEC)

@@ -80,5 +80,5 @@ def test_page(code: str) -> None:
     text = page(code)
     assert text.startswith(f"# {code}: {title(code)}\n")
     assert "\n## Example\n" in text
-    assert "\n## How to mend it\n" in text
+    assert "\n## How to fix it\n" in text
     assert code >= "TLT0500" or "\n```tltl\n" in text

@@ -40,7 +40,7 @@ def test_what_to_prefer_causes_nothing(code: str) -> None:
 def test_the_form_of_a_page(code: str) -> None:
     text = codes.page(code)
     headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
-    assert headings == ["Example", "How to mend it", "Why"]
+    assert headings == ["Example", "How to fix it", "Why"]
     assert re.findall(r"(\w+):\n\n```tltl\n", text) == ["Avoid", "Prefer"]
 
 
