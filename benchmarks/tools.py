@@ -74,8 +74,8 @@ def _commands(name: str) -> Record:
 
 def _keystrokes() -> Record:
     """Wall times from a change to the answer of a server in a process of its own, and CPU times of a bare parse."""
-    from tests.lsp.client import Client
-    from tests.lsp.test_speed import TEXT
+    from tests.interfaces.lsp.client import Client
+    from tests.interfaces.lsp.test_speed import TEXT
     from tltlc.core.source import SourceFile
     from tltlc.grammar.parser import parse
 

@@ -9,8 +9,8 @@ from itertools import product
 import pytest
 from hypothesis import given, settings
 
+from tests.automaton.infinite.runs import compiled
 from tests.logic.strategies import formulas
-from tests.rabin.runs import compiled
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
 from tltlc.automaton.compare import Trace, are_equivalent, is_included, less_is_left, separating

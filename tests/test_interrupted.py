@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.diff.test_breaking import needs_git, repository  # noqa: F401
+from tests.tools.diff.test_breaking import needs_git, repository  # noqa: F401
 from tests.waiting import HANG_S
 from tltlc.io.child_interrupts import raise_if_interrupted
 

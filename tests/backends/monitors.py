@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, Phase, settings
 
-from tests.conformance.runner import Outcome, Runner, built
+from tests.tools.conformance.runner import Outcome, Runner, built
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace

@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 
 from tests.backends.monitors import Programs, Sample, batches, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
-from tests.conformance.runners.c import CPP, RUNNERS, SANITIZED, C, linked
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
+from tests.tools.conformance.runners.c import CPP, RUNNERS, SANITIZED, C, linked
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa

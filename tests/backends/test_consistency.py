@@ -42,8 +42,8 @@ def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
 @pytest.mark.parametrize(
     ("fspa", "expected"),
     [
-        (changed("signals", 1, name="health"), "two signals are named `health`"),
-        (changed("atoms", 1, name="alive"), "two atoms are named `alive`"),
+        (changed("signals", 1, base="health", arguments=()), "two signals are named `health`"),
+        (changed("atoms", 1, base="alive", arguments=()), "two atoms are named `alive`"),
         (changed("atoms", 3, expression=Signal("mana")), "there is no signal `mana`"),
         (changed("atoms", 3, expression=Param("mana")), "there is no param `mana`"),
         (changed("signals", 3, low=2.0), "the range of `health` is empty"),
@@ -258,7 +258,7 @@ def test_a_guard_that_covers_too_little_or_too_much_is_found(fspa: Fspa, data: s
 def test_a_large_group_of_exclusive_atoms_takes_little_memory() -> None:
     count = 3_000
     fspa = cover_and_hide()
-    more = tuple(replace(fspa.atoms[0], name=f"a{number}") for number in range(count))
+    more = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(count))
     fspa = replace(
         fspa, atoms=(*fspa.atoms, *more), exclusive=(tuple(range(len(fspa.atoms), len(fspa.atoms) + count)),)
     )
@@ -273,7 +273,7 @@ def test_a_large_group_of_exclusive_atoms_takes_little_memory() -> None:
 
 def test_guards_beside_many_exclusive_atoms_are_counted() -> None:
     fspa = cover_and_hide()
-    more = tuple(replace(fspa.atoms[0], name=f"a{number}") for number in range(200))
+    more = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(200))
     group = tuple(range(len(fspa.atoms), len(fspa.atoms) + 200))
     states = tuple(State(number, fspa.states[0].label, False, "pending", None) for number in range(2_000))
     edges = tuple(Edge(number, number, Guard("alive", (((3, True),),))) for number in range(2_000))

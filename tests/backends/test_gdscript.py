@@ -25,10 +25,10 @@ from hypothesis import strategies as st
 
 from tests.backends.monitors import Programs, Sample, batches, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
-from tests.conformance.runner import Outcome
-from tests.conformance.runners.gdscript3 import RUNNERS
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
+from tests.tools.conformance.runner import Outcome
+from tests.tools.conformance.runners.gdscript3 import RUNNERS
 from tests.waiting import HANG_S
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula

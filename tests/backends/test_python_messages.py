@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.waiting import HANG_S
 
 Run = Callable[..., Outcome]

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from tests.backends.monitors import Programs, batches, expected, one_atom, trace_of
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
-from tests.conformance.runner import Outcome
-from tests.conformance.runners.rust import RUNNERS, STRICT
 from tests.fixtures import cover_and_hide
+from tests.tools.conformance.runner import Outcome
+from tests.tools.conformance.runners.rust import RUNNERS, STRICT
 from tests.waiting import HANG_S
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa

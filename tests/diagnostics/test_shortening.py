@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.diagnostics.render import FORMATS, render

@@ -1,5 +1,5 @@
 from __future__ import annotations
 
-from tests.cli.conftest import inside, process, tltlc
+from tests.interfaces.cli.conftest import inside, process, tltlc
 
 __all__ = ["inside", "process", "tltlc"]

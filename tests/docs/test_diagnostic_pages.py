@@ -25,7 +25,7 @@ FROM_A_SOURCE_TOO = {"TLT0501", "TLT0503", *AT_RUN_TIME}
 
 
 OF_RULES = {*(rule.code for rule in rules()), ALLOWED_IN_VAIN}
-"""What a file causes that compiles; tests/lint/test_pages.py runs the examples."""
+"""What a file causes that compiles; tests/tools/lint/test_pages.py runs the examples."""
 
 
 @pytest.mark.parametrize("code", sorted(set(codes.codes()) - ABBREVIATED - OF_RULES))

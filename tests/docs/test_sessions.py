@@ -10,9 +10,9 @@ from shutil import which
 
 import pytest
 
-from tests.cli.test_readme import said
 from tests.docs.blocks import DOCS, blocks
 from tests.docs.sessions import Shell, run_page
+from tests.interfaces.cli.test_readme import said
 
 PAGE = DOCS / "tutorial.md"
 LEVEL = "## Played in a level\n"

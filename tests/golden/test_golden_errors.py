@@ -20,7 +20,7 @@ CASES = cases("error")
 LEVELS = cases("level")
 """Messages of the runtime, which `tests/runtime/stealth/levels/test_file.py` compares."""
 EPISODES = sorted((Path(__file__).parent / "episode").iterdir())
-"""Messages on recordings, which `tests/runtime/stealth/episodes/test_file.py` compares."""
+"""Messages on recordings, which `tests/runtime/stealth/recordings/test_file.py` compares."""
 POLICIES = sorted((Path(__file__).parent / "policy").iterdir())
 TRAININGS = sorted((Path(__file__).parent / "training").iterdir())
 """Messages on policies and trainings, which tests in `tests/runtime/policies` and `tests/runtime/training` compare."""

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pygments import token as pygments
 
-from tests.cli.conftest import ROOT
+from tests.interfaces.cli.conftest import ROOT
 from tltlc.grammar import keywords as words
 from tltlc.grammar.pygments_lexer import CLASSES, TltlLexer
 from tltlc.grammar.tables import load

@@ -1,6 +1,6 @@
 """`tltlc monitor` reads odd traces as ``docs/traces.md`` says; so does the program that the target ``python`` writes.
 
-Other languages, which read CSV alone, do so in ``tests/conformance``.
+Other languages, which read CSV alone, do so in ``tests/tools/conformance``.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import ROOT
+from tests.interfaces.cli.conftest import ROOT
 from tests.resolve.helpers import codes, resolved
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse

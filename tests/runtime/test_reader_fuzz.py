@@ -16,8 +16,8 @@ import pytest
 import torch
 from hypothesis import given
 
-from tests.cli.conftest import ROOT
 from tests.fuzzing import SEEDS, check, json_text, mutated_bytes, mutated_json, mutated_text, times
+from tests.interfaces.cli.conftest import ROOT
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import from_bytes as policy_from_bytes
 from tltl_runtime.policies.file import read_policy

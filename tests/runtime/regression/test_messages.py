@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.golden.cases import Case, cases
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 
 CASES = cases("suite")
 

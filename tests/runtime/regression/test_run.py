@@ -144,7 +144,7 @@ def test_names_that_reasons_speak_of_are_part_of_what_is_kept(game: Path) -> Non
     made, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
     fspa = made.setup.fspa
     for other in (
-        replace(fspa, atoms=tuple(replace(each, name=f"{each.name}_2") for each in fspa.atoms)),
+        replace(fspa, atoms=tuple(replace(each, base=f"{each.name}_2", arguments=()) for each in fspa.atoms)),
         replace(fspa, states=tuple(replace(each, label=replace(each.label, english="go")) for each in fspa.states)),
     ):
         assert spec_hash(other) == spec_hash(fspa)

@@ -1,0 +1,41 @@
+"""The formulas of the table: their automata are right on random lassos, and no larger than they were."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.automaton.infinite.lassos import accepts, some_lassos
+from tests.automaton.infinite.reference import Entry, entries, made, states
+from tltlc.automaton.infinite.lasso import holds_on_lasso
+
+ENTRIES = entries()
+QUICK = [entry for entry in ENTRIES if entry.steps <= 60_000]
+SLOW = [entry for entry in ENTRIES if entry.steps > 60_000]
+CHUNKS = 20
+
+
+def test_the_table_is_there() -> None:
+    assert sum(entry.source == "owl" for entry in ENTRIES) == 785
+    assert sum(entry.source == "families" for entry in ENTRIES) == 30
+    assert len(QUICK) > 700
+
+
+@pytest.mark.parametrize("chunk", range(CHUNKS))
+def test_small_formulas(chunk: int) -> None:
+    _right_and_no_larger(QUICK[chunk::CHUNKS])
+
+
+@pytest.mark.slow
+def test_large_formulas() -> None:
+    _right_and_no_larger(SLOW)
+
+
+def _right_and_no_larger(some: list[Entry]) -> None:
+    total = 0
+    for entry in some:
+        automaton = made(entry.formula)
+        atoms = entry.formula.atoms()
+        for word in some_lassos(atoms, 12, len(atoms)):
+            assert accepts(automaton, atoms, word) == holds_on_lasso(entry.formula, *word), (entry.formula, word)
+        total += states(automaton)
+    assert total <= sum(entry.states for entry in some)

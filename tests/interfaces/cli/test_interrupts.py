@@ -1,0 +1,135 @@
+"""Ctrl-C, at the moments at which Python itself makes something else of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.waiting import HANG_S
+
+ROOT = Path(__file__).parents[3]
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
+
+_SLOW = """
+import sys, time
+print("imports", flush=True)
+try:
+    time.sleep(0.3)
+except BaseException:
+    raise ImportError("a library that says something else") from None
+"""
+
+
+def _started(folder: Path, script: str) -> subprocess.Popen[str]:
+    script = f"from tltlc.interfaces.cli.interrupts import signals_end\n{script}"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
+    return subprocess.Popen([sys.executable, "-c", script], env=environment, stdout=-1, stderr=-1, text=True)
+
+
+def _run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
+    """What becomes of a process that nobody interrupts but itself."""
+    with _started(folder, script) as running:
+        out, err = running.communicate(timeout=HANG_S)
+    return subprocess.CompletedProcess(running.args, running.returncode, out, err)
+
+
+def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
+    """What becomes of a process that is interrupted as soon as it prints ``told``: status, output, messages."""
+    (folder / "slow.py").write_text(_SLOW, encoding="utf-8")
+    with _started(folder, script) as running:
+        assert running.stdout is not None
+        assert running.stdout.readline() == told
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=HANG_S)
+    return running.returncode, out, err
+
+
+def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
+    script = "import time\nwith signals_end():\n    import slow\n    print('imported')\n    time.sleep(60)"
+    status, out, err = _ended(tmp_path, script, "imports\n")
+    assert (status, err) == (130, "")
+    # Where the machine is slow, the interrupt may come right behind the import.
+    assert out in ("", "imported\n")
+
+
+def test_an_import_that_does_not_end_ends_with_the_process(tmp_path: Path) -> None:
+    (tmp_path / "endless.py").write_text("import slow, time\nwhile True:\n    time.sleep(0.01)\n", encoding="utf-8")
+    script = "with signals_end():\n    print('begins', flush=True)\n    import endless"
+    status, _, err = _ended(tmp_path, script, "begins\n")
+    assert (status, err) == (130, "")
+
+
+def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:
+    script = (
+        "import atexit, sys, time\n"
+        "atexit.register(lambda: (print('ends', flush=True), time.sleep(0.5)))\n"
+        "with signals_end():\n    sys.exit(1)"
+    )
+    assert _ended(tmp_path, script, "ends\n") == (1, "", "")
+
+
+def test_what_is_ignored_stays_ignored(tmp_path: Path) -> None:
+    script = (
+        "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+        "with signals_end():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
+    )
+    assert _ended(tmp_path, script, "works\n") == (0, "over\n", "")
+
+
+def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
+    script = (
+        "import time\nfrom tltlc.interfaces.cli import command_line, main\n"
+        "def broken(*_):\n"
+        "    print('works', flush=True)\n"
+        "    try:\n        time.sleep(60)\n"
+        "    except KeyboardInterrupt:\n        raise SystemError('an exception is set') from None\n"
+        "command_line.CommandLine.get_command = broken\n"
+        "import sys; sys.argv = ['tltlc', 'check']\n"
+        "main.main()"
+    )
+    assert _ended(tmp_path, script, "works\n") == (130, "", "")
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_behind_the_command_gives_its_own_status(name: str, tmp_path: Path) -> None:
+    script = (
+        "import signal, sys\nfrom tltlc.interfaces.cli import interrupts, main\n"
+        "stop = interrupts._stop_listening\n"
+        "def stop_late():\n"
+        "    interrupts._stop_listening = stop\n"
+        # By then SIGINT is ignored; it comes a moment earlier.
+        "    signal.signal(signal.SIGINT, interrupts.interrupt)\n"
+        f"    signal.raise_signal(signal.{name})\n"
+        "interrupts._stop_listening = stop_late\n"
+        "sys.argv = ['tltlc', '--version']\n"
+        "main.main()"
+    )
+    done = _run(tmp_path, script)
+    assert (done.returncode, done.stderr) == (128 + getattr(signal, name), "")
+
+
+HANDLERS = """
+import signal
+for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+    print(getattr(signal.getsignal(getattr(signal, name)), "__name__", "default"), flush=True)
+"""
+
+
+def test_a_program_that_is_started_has_the_defaults(tmp_path: Path) -> None:
+    start = f"with signals_end():\n    import subprocess, sys\n    subprocess.run([sys.executable, '-c', {HANDLERS!r}])"
+    # That of SIGINT is Python's own.
+    assert _run(tmp_path, start).stdout.split() == ["default_int_handler", "default", "default"]
+
+
+def test_a_forked_copy_is_interrupted_and_has_the_other_defaults(tmp_path: Path) -> None:
+    fork = (
+        "import os\nwith signals_end():\n    child = os.fork()\n    if not child:\n"
+        f"        exec({HANDLERS!r})\n        os._exit(0)\n    os.waitpid(child, 0)"
+    )
+    assert _run(tmp_path, fork).stdout.split() == ["interrupt", "default", "default"]

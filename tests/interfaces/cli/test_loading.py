@@ -1,0 +1,121 @@
+"""What a command loads, and what it must not: the start of the process is a cost that everybody feels."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import EXAMPLE, ROOT
+from tests.waiting import HANG_S
+
+HEAVY = {
+    "sympy", "networkx", "graphviz", "pygraphviz", "rich", "lark", "jsonschema", "fastjsonschema", "numpy", "torch",
+    "importlib.metadata", "asyncio", "http", "xml", "multiprocessing", "unittest",
+}  # fmt: skip
+
+
+def loaded(*arguments: str | Path, folder: Path) -> set[str]:
+    """The modules in a process at the end of a command."""
+    program = (
+        "import sys, atexit\n"
+        "atexit.register(lambda: sys.stdout.write('\\nMODULES ' + ' '.join(sys.modules)))\n"
+        f"sys.path.insert(0, {str(ROOT)!r})\n"
+        "from tltlc.interfaces.cli.main import main\n"
+        "main(sys.argv[1:])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True,
+        cwd=folder,
+        timeout=HANG_S,
+        check=True,
+        # The cache of predicate checks is filled by the first run.
+        env={**os.environ, "XDG_CACHE_HOME": str(folder / "cache")},
+    )
+    return set(done.stdout.decode().rpartition("\nMODULES ")[2].split())
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("compile", EXAMPLE),
+        ("check", EXAMPLE),
+        ("lint", EXAMPLE),
+        ("--help",),
+        ("--version",),
+        ("list", "codes"),
+        ("explain", "TLT0001"),
+        ("explain", EXAMPLE),
+        ("witness", EXAMPLE),
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
+    loaded("check", EXAMPLE, folder=tmp_path)
+    # The target `dot` is one of the default ones, and graphviz writes it.
+    written = {"graphviz"} if arguments[0] == "compile" else set()
+    assert not loaded(*arguments, folder=tmp_path) & HEAVY - written
+
+
+def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
+    def rabin(*arguments: str | Path) -> set[str]:
+        return {name for name in loaded(*arguments, folder=tmp_path) if name.startswith("tltlc.automaton.infinite")}
+
+    assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
+    assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
+    assert rabin("explain", EXAMPLE) == {"tltlc.automaton.infinite", "tltlc.automaton.infinite.work"}
+    # Strongly connected components are the same for every graph.
+    assert rabin("witness", EXAMPLE) == {
+        "tltlc.automaton.infinite",
+        "tltlc.automaton.infinite.work",
+        "tltlc.automaton.infinite.graphs",
+    }
+    endless = tmp_path / "again.tltl"
+    endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
+    assert "tltlc.automaton.infinite.construct" in rabin("compile", endless, "-t", "json")
+    # What an artefact says is checked, and nothing constructed.
+    assert "tltlc.automaton.infinite.cycles" in rabin("compile", "again.fspa.json", "-t", "mermaid")
+    assert "tltlc.automaton.infinite.construct" not in rabin("compile", "again.fspa.json", "-t", "mermaid")
+
+
+def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
+    modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
+    line = {
+        "tltlc",
+        "tltlc.interfaces.cli",
+        "tltlc.interfaces.cli.main",
+        "tltlc.interfaces.cli.command_line",
+        "tltlc.interfaces.cli.exits",
+        "tltlc.interfaces.cli.interrupts",
+        "tltlc.interfaces.cli.numbers",
+        "tltlc.interfaces.cli.plugins",
+    }
+    shared = {
+        "tltlc.io.limits",
+        "tltlc.io.resources",
+        "tltlc.diagnostics",
+        "tltlc.diagnostics.diagnostic",
+        "tltlc.core.record",
+        "tltlc.core.source",
+    }
+    assert modules <= line | shared
+
+
+def test_the_facade_loads_nothing(tmp_path: Path) -> None:
+    program = "import sys; sys.path.insert(0, sys.argv[1]); import tltlc; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program, str(ROOT)], capture_output=True, check=True, text=True)
+    assert {name for name in done.stdout.split() if name.startswith("tltlc")} == {"tltlc"}
+
+
+def test_the_facade_offers_what_it_says() -> None:
+    import tltlc
+
+    for name in tltlc.__all__:
+        assert getattr(tltlc, name) is not None
+        assert name in dir(tltlc)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        tltlc.nonsense  # type: ignore[attr-defined] # noqa: B018

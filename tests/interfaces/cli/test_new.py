@@ -1,0 +1,32 @@
+"""The starter project: what its README says is what there is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome
+
+_COMMAND = re.compile(r"^    tltlc (.+?)(?:  +.*)?$", re.MULTILINE)
+
+
+def test_each_command_of_its_readme_succeeds(
+    tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert tltlc("new", "game").status == 0
+    monkeypatch.chdir(tmp_path / "game")
+    commands = _COMMAND.findall(Path("README.md").read_text())
+    assert len(commands) >= 7
+    assert {command: tltlc(*command.split()).status for command in commands} == dict.fromkeys(commands, 0)
+
+
+def test_a_folder_that_is_not_empty_is_not_to_be_removed(
+    tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = tltlc("new", "..")
+    assert (done.status, done.err.splitlines()[1]) == (2, "  help: choose another name, or an empty folder")

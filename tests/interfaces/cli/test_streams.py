@@ -1,0 +1,239 @@
+"""Commands whose standard input, output or error is closed: no bug, no message in a file, no result lost in silence."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
+
+import pytest
+
+from tests.interfaces.cli.conftest import ROOT
+from tests.waiting import HANG_S
+from tltlc.interfaces.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descriptors that a shell closes")
+
+OFTEN: Final = ("<&- >&-", "<&- >&- 2>&-")
+SELDOM: Final = (">&-", "<&-", "2>&-", ">&- 2>&-")
+"""Which streams are closed, as a shell writes it; the second row takes longer, and finds little more."""
+SPEC: Final = (
+    'signal seen: bool\nspec hide = G !seen\ntest "caught" for hide {\n    step seen\n    expect violated\n}\n'
+)
+HOA: Final = 'HOA: v1\nStates: 1\nStart: 0\nAP: 1 "seen"\nAcceptance: 0 t\n--BODY--\nState: 0\n[t] 0\n--END--\n'
+RECORDING: Final = "demo/cover_and_hide-v0-0.episode.npz"
+NOWHERE: Final = ("nowhere.toml",)
+"""A level or a suite that is not there, for commands that would take long or open a window."""
+
+QUICK: Final[dict[str, list[tuple[str, ...]]]] = {
+    "": [("--help",), ("--version",), ("bogus",), ()],
+    "breaking": [("hide.tltl", "--against", "before")],
+    "check": [("hide.tltl",), ("--format", "json", "hide.tltl"), ("-",), ("--help",)],
+    "compile": [("hide.tltl", "-o", "out", "-t", "json,dot,python,hoa")],
+    "completion": [("bash",)],
+    "conformance": [("-o", "hide.tltl/out")],
+    "diff": [("hide.tltl", "hide.tltl")],
+    "explain": [("hide.tltl",), ("TLT0001",)],
+    "fmt": [("hide.tltl",), ("--diff", "wide.tltl"), ("-",)],
+    "import": [("again.hoa", "--predicates", "hide.tltl", "-o", "out")],
+    "lint": [("hide.tltl",)],
+    "list": [("codes",), ("targets", "--json")],
+    "lsp": [()],
+    "mine": [("trace.csv", "--against", "bad.csv"), ("trace.csv", "--against", "bad.csv", "-o", "mined.tltl"), ("-",)],
+    "monitor": [("hide.tltl", "trace.csv"), ("hide.tltl", "trace.csv", "--json"), ("hide.tltl", "-")],
+    "new": [("game",)],
+    "render": [("hide.tltl", "-t", "dot"), ("hide.tltl", "-o", "hide.dot")],
+    "serve": [("--static", "site", "--pyodide", "nowhere")],
+    "test": [("hide.tltl",)],
+    "witness": [("hide.tltl",), ("hide.tltl", "-o", "out")],
+}
+"""Arguments of each command, for small inputs."""
+
+OF_GAMES: Final[dict[str, list[tuple[str, ...]]]] = {
+    "baseline": [NOWHERE],
+    "demonstrate": [NOWHERE],
+    "evaluate": [("--level", *NOWHERE)],
+    "inspect": [("cover_and_hide",)],
+    "play": [NOWHERE],
+    "record": [NOWHERE],
+    "regress": [NOWHERE],
+    "replay": [(RECORDING,), (RECORDING, "-o", "trace_of_episode.csv")],
+    "table1": [("-o", "hide.tltl/table")],
+    "train": [("--level", "cover_and_hide", "--print-config")],
+}
+
+SLOW: Final[dict[str, list[tuple[str, ...]]]] = {
+    "conformance": [("-o", "out")],
+    "demonstrate": [("cover_and_hide", "-o", "out")],
+    "evaluate": [("--level", "cover_and_hide", "--episodes", "1")],
+    "record": [("cover_and_hide", "--episodes", "1", "-o", "out")],
+}
+
+LASTING: Final = ("serve", "watch")
+"""Commands that stay until Ctrl-C."""
+
+
+def _cases(table: dict[str, list[tuple[str, ...]]]) -> list[tuple[str, ...]]:
+    return [(command, *arguments) if command else arguments for command, rows in table.items() for arguments in rows]
+
+
+def test_every_command_is_here() -> None:
+    known = cli.commands.keys() | set(BUILT_IN) | set(OF_THE_RUNTIME)
+    assert known == {*QUICK, *OF_GAMES, *LASTING} - {""}
+
+
+@dataclass(frozen=True)
+class Ended:
+    status: int
+    out: bytes
+    err: bytes
+    files: dict[str, bytes]
+
+
+@pytest.fixture(name="inputs", scope="module")
+def _inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("streams") / "inputs"
+    folder.mkdir()
+    texts = {
+        "hide.tltl": SPEC,
+        "wide.tltl": SPEC.replace("signal seen: bool", "signal   seen :  bool"),
+        "again.hoa": HOA,
+        "trace.csv": "seen\n0\n0\n",
+        "bad.csv": "seen\n0\n1\n",
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    (folder / "before").mkdir()
+    shutil.copy(folder / "hide.tltl", folder / "before")
+    return folder
+
+
+@pytest.fixture(name="recorded", scope="module")
+def _recorded(inputs: Path) -> Path:
+    """The inputs with a recording."""
+    if find_spec("pybullet") is None or find_spec("torch") is None:
+        pytest.skip("needs the extra rl")
+    ended = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
+    assert ended.status == 0, ended.err
+    return inputs
+
+
+def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Ended:
+    """Run a command line in a folder, with the streams closed that a piece of a shell's text closes."""
+    stdin = "" if "<" in closed else "</dev/null"
+    done = subprocess.run(
+        ["bash", "-c", f'exec "$@" {stdin} {closed}', "bash", sys.executable, "-m", "tltlc", *arguments],
+        cwd=folder,
+        capture_output=True,
+        timeout=600,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": "", "SDL_VIDEODRIVER": "dummy"},
+        check=False,
+    )
+    paths = [path for path in folder.rglob("*") if path.is_file()]
+    return Ended(
+        done.returncode,
+        done.stdout,
+        done.stderr,
+        {str(path.relative_to(folder)): path.read_bytes() for path in paths},
+    )
+
+
+def _check(
+    inputs: Path, arguments: tuple[str, ...], folder: Path, streams: Sequence[str], *, same_bytes: bool = True
+) -> None:
+    """Compare a run with open streams with those in which some are closed."""
+
+    def ended(closed: str) -> Ended:
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(inputs, folder)
+        return _run(folder, arguments, closed)
+
+    usual = ended("")
+    assert usual.status != 70 and b"Traceback" not in usual.err
+    reads = "-" in arguments
+    for closed in streams:
+        found = ended(closed)
+        says = found.err.decode()
+        wanted = usual.status
+        if "<" in closed and reads:
+            wanted = 3
+            assert "2>" in closed or "cannot read standard input: it is closed" in says
+        elif ">&-" in closed.replace("2>&-", "") and usual.out:
+            wanted = 3
+            assert "2>" in closed or "cannot write to standard output: it is closed" in says
+        elif same_bytes and "2>" not in closed:
+            assert found.err == usual.err, closed
+        assert found.status == wanted, (closed, says)
+        assert found.files.keys() == usual.files.keys(), closed
+        assert not same_bytes or found.files == usual.files, closed
+        assert b"Traceback" not in found.err and b"bug in tltlc" not in found.err, closed
+        if wanted == usual.status and found.out:
+            assert not same_bytes or found.out == usual.out, closed
+
+
+@pytest.mark.parametrize("arguments", _cases(QUICK), ids=" ".join)
+def test_closed_streams(arguments: tuple[str, ...], inputs: Path, tmp_path: Path) -> None:
+    if arguments[:1] == ("lsp",):
+        pytest.importorskip("pygls")
+    _check(inputs, arguments, tmp_path / "inputs", OFTEN)
+
+
+@pytest.mark.parametrize("arguments", _cases(OF_GAMES), ids=" ".join)
+def test_closed_streams_of_games(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
+    _check(recorded, arguments, tmp_path / "inputs", OFTEN[-1:])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arguments", _cases(QUICK) + _cases(OF_GAMES), ids=" ".join)
+def test_other_closed_streams(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
+    _check(recorded, arguments, tmp_path / "inputs", OFTEN[:-1] + SELDOM)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arguments", _cases(SLOW), ids=" ".join)
+def test_closed_streams_where_something_is_played(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
+    # Records hold times.
+    _check(recorded, arguments, tmp_path / "inputs", OFTEN + SELDOM, same_bytes=False)
+
+
+@pytest.mark.parametrize("closed", [">&-", "<&-", "<&- >&-"])
+@pytest.mark.parametrize("arguments", [("serve", "--port", "0"), ("watch", "hide.tltl")], ids=" ".join)
+def test_commands_that_stay_begin_and_end(
+    arguments: tuple[str, ...], closed: str, inputs: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(inputs, tmp_path / "inputs")
+    with subprocess.Popen(
+        ["bash", "-c", f'exec "$@" {closed}', "bash", sys.executable, "-m", "tltlc", *arguments],
+        cwd=tmp_path / "inputs",
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        text=True,
+    ) as running:
+        try:
+            assert running.stderr is not None
+            assert any("until Ctrl-C" in line for line in running.stderr)
+            running.send_signal(signal.SIGINT)
+            _, err = running.communicate(timeout=HANG_S)
+        finally:
+            running.kill()
+    assert (running.returncode, err) == (130, "")
+
+
+def test_messages_without_room_do_not_change_the_exit_status(inputs: Path) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("needs a device without room")
+    with Path("/dev/full").open("wb") as full:
+        command = [sys.executable, "-m", "tltlc", "check", "nowhere.tltl"]
+        done = subprocess.run(
+            command, stderr=full, cwd=inputs, env={**os.environ, "PYTHONPATH": str(ROOT)}, check=False
+        )
+    assert done.returncode == 3

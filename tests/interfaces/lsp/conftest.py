@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+if find_spec("pygls") is None:
+    # Without the extra `lsp` there is nothing to test; the extra `dev` has it.
+    collect_ignore_glob = ["test_*.py"]
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[object]:
+    from tests.interfaces.lsp.client import Client
+
+    started = Client(tmp_path)
+    yield started
+    if started.process.poll() is None:
+        started.kill()
+    # What nobody foresaw would be told here.
+    assert not started.errors, "".join(started.errors)

@@ -1,0 +1,98 @@
+"""Ways out that editors offer: those that the messages name, and the fixes of the linter's rules."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+
+from tests.golden.cases import Case, cases
+from tests.interfaces.lsp.texts import opened
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Edit
+from tltlc.grammar.parser import parse
+from tltlc.interfaces.lsp.actions import actions
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.diagnostics import label_in
+from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.positions import offset
+
+ERRORS = [case for case in cases("error") if re.match("TLT0[123]", case.name) and "input.tltl" in case.files]
+"""Errors of syntax, names and types."""
+URI = "file:///x.tltl"
+
+
+def offered(document: Document, span: Span) -> dict[str, str]:
+    """The text after each action, by its title."""
+    found = {}
+    for action in actions(document, span, (), "utf-16", lambda _: URI, types.WorkspaceEdit):
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        edits = [edit_of(document.source, edit) for edit in action.edit.changes[URI]]
+        found[action.title] = applied(document.source.text, edits)
+    return found
+
+
+def edit_of(source: SourceFile, edit: types.TextEdit) -> Edit:
+    return Edit(Span(offset(source, edit.range.start), offset(source, edit.range.end)), edit.new_text)
+
+
+@pytest.mark.parametrize(
+    ("text", "title", "after"),
+    [
+        ("import stealth\nspec a = G ali¦v", "Write `alive`", "import stealth\nspec a = G alive"),
+        ("entity s1\nspec a = F ne¦ar(s1)", "Add `import spatial`", "import spatial\nentity s1\nspec a = F near(s1)"),
+        (
+            "import core\nentity s1\nspec a = F ne¦ar(s1)",
+            "Add `import spatial`",
+            "import core\nimport spatial\nentity s1\nspec a = F near(s1)",
+        ),
+        (
+            "/// Words.\nspec a = G lo¦ud\r\n",
+            "Declare `signal loud: bool`",
+            "signal loud: bool\r\n/// Words.\nspec a = G loud\r\n",
+        ),
+        ("signal a: bool\nspc¦ s = G a", "Write `spec`", "signal a: bool\nspec s = G a"),
+        ("signal a: boool¦\nspec s = G a", "Write `bool`", "signal a: bool\nspec s = G a"),
+        ("signal a: bool\nspec s { kep¦ a }", "Write `keep`", "signal a: bool\nspec s { keep a }"),
+        (
+            'signal a: bool\nspec hide = F a\ntest "t" for hi¦ed { step a expect holding }',
+            "Write `hide`",
+            'signal a: bool\nspec hide = F a\ntest "t" for hide { step a expect holding }',
+        ),
+    ],
+)  # fmt: skip
+def test_a_way_out(text: str, title: str, after: str) -> None:
+    document, at, _ = opened(text)
+    found = offered(document, Span(at, at))
+    assert found.get(title) == after, found
+
+
+@pytest.mark.parametrize("case", ERRORS, ids=lambda case: case.name)
+def test_every_way_out_leaves_less_to_be_mended(case: Case, tmp_path: Path) -> None:
+    case.unpack(tmp_path)
+    document, _, _ = opened(case.files["input.tltl"].decode(), tmp_path)
+    for each in document.said:
+        label = label_in(each, document)
+        if label is not None and each.severity == "error":
+            for text in offered(document, label.span).values():
+                after = Document(SourceFile(document.source.name, text), document.project, {})
+                assert wrong(after) < wrong(document)
+
+
+def wrong(document: Document) -> tuple[int, int]:
+    """How many errors of syntax there are, behind which others hide, and how many in all."""
+    return len(parse(document.source)[1]), sum(each.severity == "error" for each in document.said)
+
+
+def test_many_errors_have_a_fix(tmp_path: Path) -> None:
+    fixed = 0
+    for case in ERRORS:
+        folder = tmp_path / case.name
+        case.unpack(folder)
+        document, _, _ = opened(case.files["input.tltl"].decode(), folder)
+        labels = [label_in(diagnostic, document) for diagnostic in document.said]
+        fixed += any(offered(document, label.span) for label in labels if label is not None)
+    assert fixed >= len(ERRORS) // 5

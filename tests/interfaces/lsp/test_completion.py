@@ -1,0 +1,103 @@
+"""What is offered where: each text has a mark at the cursor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.lsp.texts import opened
+from tltlc.interfaces.lsp.completion import completions
+from tltlc.interfaces.lsp.edits import applied
+
+BEFORE = """\
+import stealth
+entity s1, chest
+clock 10 Hz
+signal fuel: ratio
+param most: length in [1 m, 9 m] = 2 m
+let calm(worst: ratio) = fuel > worst
+spec leave { tag smoke  reach near(s1) }
+"""
+
+
+def offered(text: str, folder: Path | None = None, before: str = BEFORE, **others: str) -> list[str]:
+    document, at, _ = opened(before + text, folder, **others)
+    return [item.label for item in completions(document, at, "utf-16")]
+
+
+@pytest.mark.parametrize(
+    ("text", "among", "absent"),
+    [
+        ("¦", ["import", "signal", "spec", "test"], ["reach", "near", "eventually", "step"]),
+        ("sp¦", ["spec"], ["keep"]),
+        ("spec a {\n    ¦\n}", ["reach", "keep", "avoid", "limit", "judge", "semantics"], ["spec", "step", "near"]),
+        ("spec a {\n    reach near(s1)\n    ¦", ["then", "and", "until", "keep"], ["near", "spec", "within"]),
+        ("spec a {\n    reach ¦\n    keep alive\n}", ["near", "alive", "calm", "fuel", "not"], ["s1", "reach"]),
+        ("spec a { reach near(¦", ["s1", "chest"], ["alive", "fuel", "near"]),
+        ("spec a { reach near(s1, ¦", ["close = ", "far = ", "most"], ["target = "]),
+        ("spec a { reach near(s1, close = 3 ¦", ["m", "km", "s", "%"], ["steps", "near"]),
+        ("spec a { limit 3 ¦", ["steps", "s", "min"], ["m", "%"]),
+        ("clock 20 ¦", ["Hz", "s", "ms"], ["m", "%", "steps"]),
+        ("spec a { require eventually within 3 ¦", ["steps", "s"], ["m"]),
+        ("spec a { judge ¦", ["at"], ["goal"]),
+        ("spec a { judge at ¦", ["goal", "limit"], ["near"]),
+        ("spec a { semantics ¦", ["finite", "infinite"], ["near"]),
+        ("spec a { tag ¦", ["smoke"], ["near"]),
+        ("spec a = all x in (¦", ["s1", "chest"], ["near"]),
+        ("spec a = all x in (s1): near(¦", ["x", "s1"], ["near"]),
+        ("import ¦", ["core", "spatial", "stealth"], ["near"]),
+        ("import spatial (¦", ["near", "facing"], ["alive", "s1"]),
+        ("signal speed: ¦", ["speed", "length", "bool"], ["near", "formula"]),
+        ("let p(q: ¦", ["formula", "entity", "time"], ["near"]),
+        ("let p(first, second) = ¦", ["first", "second", "near", "not"], ["s1"]),
+        ("predicate p(x: entity) = ¦", ["x", "fuel", "clamp", "when"], []),
+        ('test "t" for ¦', ["leave"], ["near", "calm"]),
+        ('test "t" for leave {\n    ¦', ["step", "expect"], ["keep"]),
+        ('test "t" for leave {\n    step ¦', ["near(s1)", "not"], []),
+        (
+            'test "t" for leave {\n    step near(s1)\n    expect ¦',
+            ["satisfied", "holding", "pending", "violated", "progress", "state"],
+            ["near"],
+        ),
+        ("exclusive ¦", ["near", "alive"], []),
+        ("spec ¦", [], ["near", "leave"]),
+        ("// near ¦", [], ["near", "spec"]),
+        ("let p = ) ( near(¦", ["s1"], []),
+    ],
+    ids=lambda value: value.replace("\n", " ") if isinstance(value, str) else "",
+)  # fmt: skip
+def test_what_is_offered(text: str, among: list[str], absent: list[str]) -> None:
+    found = offered(text)
+    assert [each for each in among if each not in found] == []
+    assert [each for each in absent if each in found] == []
+
+
+def test_nothing_is_offered_twice() -> None:
+    found = offered("spec a { reach ¦")
+    assert len(found) == len(set(found))
+
+
+def test_a_choice_replaces_what_is_written_of_the_word() -> None:
+    document, at, _ = opened("import core as c\nsignal n: ratio\nspec a = c.ab¦")
+    item = next(each for each in completions(document, at, "utf-16") if each.label == "c.above")
+    assert item.text_edit is not None
+    assert item.text_edit.range.start.character == len("spec a = ")
+    assert item.text_edit.new_text == "c.above"
+
+
+def test_files_and_libraries_are_offered_also_where_they_are_not_saved(tmp_path: Path) -> None:
+    (tmp_path / "saved.tltl").write_text("entity s1\n", encoding="utf-8")
+    assert {"saved", "fresh"} <= set(offered("import ¦", tmp_path, "", fresh="entity s2"))
+    assert {"saved.tltl", "fresh.tltl"} <= set(offered('import "¦', tmp_path, "", fresh="entity s2"))
+    assert offered('test "¦', tmp_path, "", fresh="entity s2") == []
+
+
+def test_a_chosen_keyword_can_be_read_on() -> None:
+    """Every keyword that is offered at the start of a clause begins one."""
+    document, at, _ = opened(BEFORE + "spec a {\n    keep alive\n    ¦\n}")
+    for item in completions(document, at, "utf-16"):
+        text = document.source.text[:at] + item.label + " (" + document.source.text[at:]
+        assert applied(text, []) == text
+        again, _, _ = opened(text)
+        assert not any(f"found `{item.label}`" in each.title for each in again.said)

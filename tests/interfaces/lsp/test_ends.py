@@ -1,0 +1,134 @@
+"""How a session ends: in order, or in any other way, also while an automaton is built."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.interfaces.lsp.client import Client
+from tests.interfaces.lsp.texts import ENDLESS
+from tests.waiting import HANG_S, until
+
+
+def shut_down(client: Client) -> None:
+    client.ask("shutdown", None)
+    client.tell("exit", None)
+
+
+def leave(client: Client) -> None:
+    client.tell("exit", None)
+
+
+def hang_up(client: Client) -> None:
+    assert client.process.stdin
+    client.process.stdin.close()
+
+
+def interrupt(client: Client) -> None:
+    client.process.send_signal(signal.SIGINT)
+
+
+def terminate(client: Client) -> None:
+    client.process.send_signal(signal.SIGTERM)
+
+
+def kill(client: Client) -> None:
+    client.process.kill()
+
+
+ENDS = [(shut_down, 0), (leave, 1), (hang_up, 1)]
+if os.name == "posix":
+    ENDS += [(interrupt, 130), (terminate, 128 + signal.SIGTERM), (kill, -signal.SIGKILL)]
+
+
+@pytest.mark.parametrize("busy", [False, True], ids=["idle", "busy"])
+@pytest.mark.parametrize(("end", "status"), ENDS, ids=lambda each: getattr(each, "__name__", None))
+def test_an_end(end: Callable[[Client], None], status: int, busy: bool, client: Client, tmp_path: Path) -> None:
+    if busy:
+        uri = client.open(tmp_path / "slow.tltl", ENDLESS)
+        assert client.diagnostics(uri) == []
+        client.until_it_analyses()
+    end(client)
+    assert client.process.wait(HANG_S) == status
+    client.until_nobody_is_left()
+
+
+def test_nobody_reads_any_more(client: Client, tmp_path: Path) -> None:
+    uri = client.open(tmp_path / "a.tltl", "signal a: bool\n")
+    client.diagnostics(uri)
+    client.stop_reading()
+    versions = count(2)
+
+    def ends_while_a_text_changes() -> bool:
+        version = next(versions)
+        # It may end in between.
+        with suppress(BrokenPipeError):
+            client.change(uri, f"signal a{version}: bool\n", version)
+        return client.process.poll() is not None
+
+    until(ends_while_a_text_changes, "the end of the server")
+    assert client.process.wait(HANG_S) == 141
+
+
+def test_what_nobody_asked_for_is_passed_over_in_silence(client: Client, tmp_path: Path) -> None:
+    """The fixture looks at standard error, which editors show as errors."""
+    client.tell("$/cancelRequest", {"id": 1})
+    client.tell("workspace/didChangeConfiguration", {"settings": {}})
+    client.tell("$/setTrace", {"value": "off"})
+    client.tell("textDocument/didSave", {"textDocument": {"uri": "file:///nowhere/a.tltl"}})
+    assert (
+        client.ask(
+            "textDocument/hover",
+            {"textDocument": {"uri": "file:///nowhere/a.tltl"}, "position": {"line": 0, "character": 0}},
+        )
+        is None
+    )
+    assert client.close() == 0
+
+
+def test_a_document_that_is_closed_keeps_nobody_waiting(client: Client, tmp_path: Path) -> None:
+    slow = client.open(tmp_path / "slow.tltl", ENDLESS)
+    assert client.diagnostics(slow) == []
+    client.until_it_analyses()
+    other = client.open(tmp_path / "other.tltl", "signal a: bool\nspec s = G (a or not a)\n")
+    assert client.diagnostics(other) == []
+    client.tell("textDocument/didClose", {"textDocument": {"uri": slow}})
+    assert [each["code"] for each in client.diagnostics(other, bool)] == ["TLT0411"]
+
+
+def test_a_text_that_does_not_fit_into_a_pipe_stops_nobody(client: Client, tmp_path: Path) -> None:
+    """It waits for the process that is to read it, and that has yet to start; the editor does not."""
+    uri = client.open(tmp_path / "long.tltl", "signal a: bool\nspec s = G (a or not a)\n" + f"// {'a' * 900_000}\n")
+    assert client.diagnostics(uri) == []
+    assert [each["code"] for each in client.diagnostics(uri, bool)] == ["TLT0411"]
+
+
+def test_what_is_still_asked_at_the_end_is_dropped_without_a_word(tmp_path: Path) -> None:
+    uri = (tmp_path / "a.tltl").as_uri()
+    document = {"uri": uri, "languageId": "tltl", "version": 1, "text": "signal a: bool\nspec s = F a\n"}
+    asked = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 7}, "newName": "b"}
+    messages: list[dict[str, Any]] = [
+        {"id": 1, "method": "initialize", "params": {"processId": None, "rootUri": None, "capabilities": {}}},
+        {"method": "initialized", "params": {}},
+        {"method": "textDocument/didOpen", "params": {"textDocument": document}},
+        {"id": 2, "method": "textDocument/rename", "params": asked},
+        {"id": 3, "method": "workspace/symbol", "params": {"query": ""}},
+        {"id": 4, "method": "shutdown"},
+        {"method": "exit"},
+    ]
+    bodies = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in messages]
+    said = b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(body), body) for body in bodies)
+    done = subprocess.run(
+        [sys.executable, "-m", "tltlc", "lsp"], input=said, capture_output=True, timeout=HANG_S, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, b"")

@@ -1,0 +1,158 @@
+"""Any text, at any moment: the server answers all that an editor may ask, by the text that the editor has."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+
+from tests.interfaces.lsp.texts import EXAMPLES, opened
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Edit, TltlError
+from tltlc.interfaces.lsp import (
+    actions,
+    completion,
+    folding,
+    formatting,
+    hover,
+    imports,
+    lenses,
+    references,
+    symbols,
+    tokens,
+)
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.analysis import Analysis, Figures
+from tltlc.interfaces.lsp.cursor import cursor, quoted
+from tltlc.interfaces.lsp.diagnostics import label_in, remark
+from tltlc.interfaces.lsp.edits import applied
+from tltlc.interfaces.lsp.paths import uri_of
+from tltlc.interfaces.lsp.positions import offset, position, range_of
+from tltlc.interfaces.lsp.workspace import Workspace
+
+PIECES = (
+    "(", ")", "{", "}", "[", "]", ",", ":", "=", '"', "//", "///", "\r\n", "\n", "\t", ".", "-",
+    "𝒰", "é", "\ud800", "\x0c", "\u2028", "\0", "1e999", "0.5.5", "x.y.z", "F[2,3]", "spec", "test", "entity",
+    " then ", " all x in (s1, s2): ", " 3 m ", " within 3 s ", "import ", 'import "', "let p(q) = q ", 'expect state "',
+    " limit limit ", " judge at ", " step 3x ", "when a: b otherwise: c",
+)  # fmt: skip
+NOTHING = Analysis((), (), (Figures("branching", 6, 4, 1, 0),))
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_random_edits(path: Path) -> None:
+    generator = random.Random(path.stem)
+    whole = path.read_text(encoding="utf-8")
+    for _ in range(8):
+        document, _, workspace = opened(whole, path.parent)
+        uri, text = uri_of(document.source.name), whole
+        for version in range(2, 2 + generator.randint(1, 5)):
+            text = edited(text, generator)
+            workspace.put(uri, version, text)
+            changed = workspace.document(uri)
+            assert changed is not None
+            assert (changed.source.text, workspace.version(uri)) == (text, version)
+            ask_everything(changed, workspace, generator)
+        anew, _, _ = opened(text, path.parent)
+        assert (changed.said, changed.names, changed.module) == (anew.said, anew.names, anew.module)
+
+
+def edited(text: str, generator: random.Random) -> str:
+    """A text after something that a hand on a keyboard may do."""
+    start = generator.randint(0, len(text))
+    end = min(len(text), start + generator.choice((0, 0, 1, 3, 20, 300)))
+    words = text.split()
+    new = generator.choice((*PIECES, "", "", generator.choice(words) if words else "", text[start : start + 80]))
+    return text[:start] + new + text[end:]
+
+
+def ask_everything(document: Document, workspace: Workspace, generator: random.Random) -> None:
+    source = document.source
+    encoding = generator.choice(("utf-8", "utf-16", "utf-32"))
+    check_remarks(document, encoding)
+    check_symbols(document, encoding)
+    links = imports.links(document, encoding, uri_of)
+    targets = [source.slice(span) for span, _ in imports.targets(document)]
+    assert [written(document, link.range, encoding) for link in links] == targets
+    check_folds(document)
+    check_tokens(document, encoding)
+    lenses.lenses(document, "file:///x", NOTHING, encoding)
+    formatting.formatting(document, encoding)
+    for occurrence in document.names:
+        assert source.slice(occurrence.span) == occurrence.symbol.name
+    for _ in range(8):
+        at = generator.randint(0, len(source.text))
+        back = offset(source, position(source, at, encoding), encoding)
+        assert back == at or source.text[at - 1 : at + 1] == "\r\n"
+        cursor(source, at)
+        quoted(source, at)
+        completion.completions(document, at, encoding)
+        hover.hover(document, at, NOTHING, encoding)
+        found = document.name_at(at)
+        if found is not None and generator.random() < 0.2:
+            references.references(found.symbol, workspace)
+            try:
+                changed = references.rename(found.symbol, "brand_new", workspace)
+            except TltlError as error:
+                assert error.diagnostics[0].code in ("TLT0770", "TLT0771")
+            else:
+                check_rename(document, changed)
+    if generator.random() < 0.3:
+        at = generator.randint(0, len(source.text))
+        actions.actions(document, Span(at, at), (), encoding, uri_of, types.WorkspaceEdit)
+    range_of(source, Span(0, len(source.text) + 5), encoding)
+
+
+def written(document: Document, where: types.Range, encoding: str) -> str:
+    """The text that an editor sees at a range."""
+    start, end = (offset(document.source, each, encoding) for each in (where.start, where.end))
+    assert start <= end
+    return document.source.text[start:end]
+
+
+def check_remarks(document: Document, encoding: str) -> None:
+    """They stand where the compiler's diagnostics do, in the editor's columns."""
+    for each in document.said:
+        shown, label = remark(each, document, encoding, uri_of), label_in(each, document)
+        assert shown.message.startswith(each.title)
+        if label is not None:
+            source, span = document.source, label.span
+            assert written(document, shown.range, encoding) == written(document, range_of(source, span), "utf-16")
+
+
+def check_symbols(document: Document, encoding: str) -> None:
+    """The name of a declaration stands inside of it, and a search finds it."""
+    shown = symbols.symbols(document, encoding)
+    for each in shown:
+        own = written(document, each.selection_range, encoding)
+        assert own in written(document, each.range, encoding)
+        assert own == each.name or each.kind in (types.SymbolKind.Module, types.SymbolKind.Event)
+    found = {each.name for each in symbols.found(document, "", encoding, "file:///x")}
+    assert found == {each.name for each in shown if each.kind != types.SymbolKind.Module}
+
+
+def check_rename(document: Document, changed: list[tuple[Document, list[Edit]]]) -> None:
+    for other, edits in changed:
+        text = applied(other.source.text, edits)
+        assert text.count("brand_new") >= len(edits)
+
+
+def check_folds(document: Document) -> None:
+    last, _ = document.source.position(len(document.source.text))
+    for each in folding.folds(document):
+        assert 0 <= each.start_line < each.end_line < last
+
+
+def check_tokens(document: Document, encoding: str) -> None:
+    """They stand in order and where the names stand."""
+    numbers = tokens.tokens(document, encoding)
+    line = column = 0
+    for at, name in zip(range(0, len(numbers), 5), document.names, strict=True):
+        down, right, length, kind, modifiers = numbers[at : at + 5]
+        line, column = line + down, (0 if down else column) + right
+        start = offset(document.source, types.Position(line, column), encoding)
+        assert document.source.text[start : start + length] == name.symbol.name
+        assert kind < len(tokens.LEGEND.token_types)
+        assert modifiers < 1 << len(tokens.LEGEND.token_modifiers)

@@ -1,0 +1,102 @@
+"""What is said of the word at the mark."""
+
+from __future__ import annotations
+
+import pytest
+from lsprotocol import types
+
+from tests.interfaces.lsp.texts import opened
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.analysis import Request, analyse
+from tltlc.interfaces.lsp.hover import hover
+
+TEXT = """\
+import stealth
+entity s1, exit
+/// What is left in the tank.
+signal fuel: ratio
+signal away(x: entity): length in [0 m, 200 m]
+param most: length in [1 m, 9 m] = 2 m
+let calm = always fuel > 10 %
+/// The switch, then the exit.
+spec leave {
+    limit 40 steps
+    reach near(s1) then near(exit)
+    keep fuel > 10 % or calm
+}
+"""
+
+
+def said(at: str, text: str = TEXT) -> str:
+    document, offset, _ = opened(text.replace(at, "¦" + at, 1))
+    found = hover(document, offset, None, "utf-16")
+    assert found is not None
+    assert isinstance(found.contents, types.MarkupContent)
+    return found.contents.value
+
+
+@pytest.mark.parametrize(
+    ("at", "parts"),
+    [
+        ("fuel: ratio", ("signal fuel: ratio", "What is left in the tank.", "[0, 1]")),
+        ("away(", ("length", "[0 m, 200 m]", "metres")),
+        ("most", ("2 m", "[1 m, 9 m]")),
+        ("calm =", ("let calm = always fuel > 10 %", "Keep fuel > 0.1 throughout.")),
+        (
+            "near(s1) then",
+            ("predicate near(target: entity", "Closeness to `target`", "[-1, 1]", "From `spatial.tltl`."),
+        ),
+        ("exit\n", ("entity exit",)),
+        ("leave {", ("The switch, then the exit.", "Reach near(s1), then near(exit); and whenever", "limit 40 steps")),
+        ("reach", ("`reach a then b`", "Reach near(s1), then near(exit).")),
+        ("then near", ("Reach near(s1), then near(exit).",)),
+        ("or calm", ("Either have fuel > 0.1 now or",)),
+        ("keep", ("`keep a`", "Whenever fuel <= 0.1, keep")),
+    ],
+)
+def test_hover(at: str, parts: tuple[str, ...]) -> None:
+    text = said(at)
+    for part in parts:
+        assert part in text
+
+
+def test_a_spec_with_its_automaton() -> None:
+    document, offset, _ = opened(TEXT.replace("leave {", "¦leave {"))
+    analysis = analyse(Request(document.source, (), {}, {}))
+    found = hover(document, offset, analysis, "utf-16")
+    assert found is not None
+    assert isinstance(found.contents, types.MarkupContent)
+    figures = analysis.figures[0]
+    assert f"{figures.states} states, distance 2." in found.contents.value
+
+
+def test_nothing_is_said_of_a_space() -> None:
+    document, _, _ = opened(TEXT)
+    assert hover(document, TEXT.index("= 2 m"), None, "utf-16") is None
+
+
+def test_operators_of_infinite_specs_are_said_in_their_words() -> None:
+    text = "signal a: bool\nspec again {\n    semantics infinite\n    require always eventually a\n}\n"
+    assert "again and again" in said("require", text)
+
+
+def test_a_name_that_covers_another_one_is_its_own() -> None:
+    document, offset, _ = opened("entity s1, s2\nsignal at(x: entity): bool\nspec a = all s in (s1, s2): F at(¦s)")
+    found = hover(document, offset, None, "utf-16")
+    assert found is not None
+    assert isinstance(document, Document)
+    assert isinstance(found.contents, types.MarkupContent)
+    assert "all s in (s1, s2)" in found.contents.value
+
+
+def test_times_are_said_in_steps() -> None:
+    text = "clock 20 Hz\n" + TEXT.replace("import stealth\n", "").replace("40 steps", "2 s")
+    assert said("2 s", text) == "40 steps of 0.05 s."
+    assert said("limit", text) == "`limit 400 steps` or `limit 20 s`"
+
+
+def test_no_range_is_said_where_there_is_none() -> None:
+    text = "param most: length = 2 m\nsignal far: length\nsignal most_of: length in [0 m, inf]\n"
+    assert said("most: l", text).endswith("A length constant, 2 m.")
+    assert said("far", text).endswith("supplied by the game as metres.")
+    assert said("most_of", text).endswith("supplied by the game as metres; its range is [0 m, inf].")

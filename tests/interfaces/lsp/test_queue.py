@@ -1,0 +1,180 @@
+"""The order in which documents are analysed, whatever the clock says."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+
+from tests.interfaces.lsp.client import Client
+from tests.interfaces.lsp.test_server import codes
+from tests.interfaces.lsp.texts import ENDLESS
+from tltlc.interfaces.lsp import queue
+from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.server import create
+
+FOUND = Analysis(())
+
+
+class Desk:
+    """A queue whose analyses go on until they are told to end, or given up; ``begun`` are all that there were."""
+
+    def __init__(self) -> None:
+        self.queue = queue.Queue(self._analyse, self._give_up)
+        self.begun: list[str] = []
+        self._now: asyncio.Future[Analysis | None] | None = None
+
+    async def open(self, *uris: str) -> None:
+        for uri in uris:
+            self.queue.looked_at(uri)
+            self.queue.put(uri)
+        await settled()
+
+    async def end(self, found: Analysis | None = FOUND) -> None:
+        assert self._now is not None
+        self._now.set_result(found)
+        await settled()
+
+    async def _analyse(self, uri: str, again: bool) -> Analysis | None:
+        self.begun.append(uri)
+        self._now = asyncio.get_running_loop().create_future()
+        return await self._now
+
+    def _give_up(self) -> None:
+        if self._now is not None and not self._now.done():
+            self._now.set_result(None)
+
+
+async def settled() -> None:
+    for _ in range(9):
+        await asyncio.sleep(0)
+
+
+def on_a_desk(long_s: float) -> Callable[[Callable[[Desk], Awaitable[None]]], Callable[[pytest.MonkeyPatch], None]]:
+    """A test of a desk where an analysis gives way after so many seconds."""
+
+    def decorated(test: Callable[[Desk], Awaitable[None]]) -> Callable[[pytest.MonkeyPatch], None]:
+        def run(monkeypatch: pytest.MonkeyPatch) -> None:
+            monkeypatch.setattr(queue, "LONG_S", long_s)
+
+            async def go() -> None:
+                await test(Desk())
+
+            asyncio.run(go())
+
+        return run
+
+    return decorated
+
+
+NEVER, AT_ONCE = 1e6, 0.0
+
+
+@on_a_desk(NEVER)
+async def test_what_was_looked_at_last_comes_first(desk: Desk) -> None:
+    await desk.open("a", "b", "c", "d")
+    assert desk.begun == ["d"]
+    desk.queue.looked_at("b")
+    for _ in range(4):
+        await desk.end()
+    assert desk.begun == ["d", "b", "c", "a"]
+
+
+@on_a_desk(AT_ONCE)
+async def test_what_takes_long_gives_way_and_begins_anew(desk: Desk) -> None:
+    await desk.open("large")
+    await desk.open("small")
+    assert desk.begun == ["large", "small"]
+    await desk.end()
+    assert desk.begun == ["large", "small", "large"]
+    # What nobody looked at since waits for its turn.
+    desk.queue.put("other", again=True)
+    await settled()
+    assert desk.begun[3:] == []
+    desk.queue.looked_at("other")
+    await settled()
+    assert desk.begun[3:] == ["other"]
+
+
+@on_a_desk(NEVER)
+async def test_it_gives_way_also_when_nothing_more_is_asked(desk: Desk) -> None:
+    await desk.open("large")
+    await desk.open("small")
+    assert desk.begun == ["large"]
+    loop = asyncio.get_running_loop()
+    later = loop.time() + 2 * NEVER
+    loop.time = lambda: later  # type: ignore[method-assign]
+    await settled()
+    assert desk.begun == ["large", "small"]
+
+
+@on_a_desk(AT_ONCE)
+async def test_answers_wait_until_an_analysis_ends_that_had_to_give_way(desk: Desk) -> None:
+    asked = asyncio.ensure_future(desk.queue.answer("large"))
+    await settled()
+    await desk.open("small")
+    await desk.end()
+    assert desk.begun == ["large", "small", "large"]
+    assert not asked.done()
+    await desk.end()
+    assert asked.result() is FOUND
+
+
+@on_a_desk(NEVER)
+async def test_what_is_dropped_is_answered_by_nothing(desk: Desk) -> None:
+    working, waiting = (asyncio.ensure_future(desk.queue.answer(uri)) for uri in ("a", "b"))
+    await settled()
+    (first,) = desk.begun
+    for uri in ("a", "b"):
+        desk.queue.drop(uri)
+    await settled()
+    assert (working.result(), waiting.result()) == (None, None)
+    assert desk.begun == [first]
+
+
+@on_a_desk(NEVER)
+async def test_an_analysis_that_fails_does_not_stop_the_next(desk: Desk) -> None:
+    asked = asyncio.ensure_future(desk.queue.answer("a"))
+    await settled()
+    assert desk._now is not None
+    desk._now.set_exception(OSError("no more processes"))
+    await settled()
+    assert asked.result() is None
+    await desk.open("b")
+    assert desk.begun == ["a", "b"]
+
+
+@on_a_desk(AT_ONCE)
+async def test_nothing_gives_way_to_what_is_closed(desk: Desk) -> None:
+    server = create()
+    server.queue = desk.queue
+    server.protocol.set_writer(io.BytesIO())
+    await desk.open("file:///small.tltl", "file:///large.tltl")
+    document = types.TextDocumentIdentifier("file:///small.tltl")
+    server.protocol.fm.features[types.TEXT_DOCUMENT_DID_CLOSE](types.DidCloseTextDocumentParams(document))
+    await settled()
+    assert desk.begun == ["file:///large.tltl"]
+
+
+def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Path) -> None:
+    """They are opened together; the analysis of the large one never ends."""
+    slow = client.open(tmp_path / "slow.tltl", ENDLESS)
+    small = client.open(tmp_path / "small.tltl", "signal a: bool\nspec s = G (a or not a)\n")
+    assert codes(client.diagnostics(small, bool)) == ["TLT0411"]
+    client.ask("textDocument/hover", {"textDocument": {"uri": slow}, "position": {"line": 0, "character": 0}})
+    other = client.open(tmp_path / "other.tltl", "signal b: bool\nspec t = G (b or not b)\n")
+    assert codes(client.diagnostics(other, bool)) == ["TLT0411"]
+
+
+def test_tests_are_run_on_demand_while_a_large_file_is_analysed(client: Client, tmp_path: Path) -> None:
+    client.open(tmp_path / "slow.tltl", ENDLESS)
+    small = client.open(
+        tmp_path / "small.tltl", 'signal a: bool\nspec s = F a\ntest "t" for s { step a  expect satisfied }\n'
+    )
+    for spec, text in (("s", "s: 1 test passes"), ("t", "there is no spec `t`, so there are no tests to run")):
+        client.ask("workspace/executeCommand", {"command": "tltlc.runTests", "arguments": [small, spec]})
+        assert client.message("window/showMessage")["message"] == text

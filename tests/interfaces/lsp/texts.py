@@ -1,0 +1,36 @@
+"""Documents without an editor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.interfaces.lsp.endless.sitecustomize import NEVER_ENDS
+from tltlc.interfaces.lsp.analysed_text import Document
+from tltlc.interfaces.lsp.workspace import Workspace
+
+MARK = "¦"
+"""Where the cursor is in a text."""
+
+ENDLESS = f"signal a: bool\nspec slow = F a\n{NEVER_ENDS}"
+"""In the servers of :mod:`tests.interfaces.lsp.client` its analysis never ends."""
+
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.tltl"))
+
+
+def opened(marked: str, folder: Path | None = None, **others: str) -> tuple[Document, int, Workspace]:
+    """A document, the place of the mark in it, and its workspace; other files by their names, open as well."""
+    text, at = marked.replace(MARK, ""), max(0, marked.find(MARK))
+    folder = folder or Path("/nowhere")
+    workspace = Workspace()
+    workspace.folders = [str(folder)]
+    for name, other in others.items():
+        workspace.put((folder / f"{name}.tltl").as_uri(), 1, other)
+    uri = (folder / "main.tltl").as_uri()
+    workspace.put(uri, 1, text)
+    document = workspace.document(uri)
+    assert document is not None
+    return document, at, workspace
+
+
+def span_text(document: Document, start: int, end: int) -> str:
+    return document.source.text[start:end]

@@ -1,0 +1,249 @@
+"""Many connections, slow ones, and a system without room for more: the server answers, and sleeps in between."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import selectors
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+from tests.interfaces.playground.raw import connected, read_to_end, statuses
+from tests.interfaces.playground.test_server import JSON, PATIENT, SLOW, ask, eventually, request, serving
+from tests.waiting import HANG_S, until
+from tltlc.core.record import replace
+from tltlc.interfaces.playground import children
+from tltlc.interfaces.playground.page_config import start
+from tltlc.interfaces.playground.server import Server
+from tltlc.io.limits import PLAYGROUND
+
+MANY = 300
+FEW = replace(PATIENT, most=4)
+NEVER_S = 1e6
+
+
+@pytest.fixture
+def room() -> Iterator[None]:
+    """Enough descriptors for both ends of many connections."""
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 4 * MANY) if hard > 0 else 4 * MANY, hard))
+    yield
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+@pytest.fixture
+def turns(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How often a server was woken: the length of the list."""
+    found: list[int] = []
+    select = selectors.DefaultSelector.select
+
+    def counted(selector: Any, timeout: float | None = None) -> Any:
+        found.append(0)
+        return select(selector, timeout)
+
+    monkeypatch.setattr(selectors.DefaultSelector, "select", counted)
+    return found
+
+
+@contextmanager
+def held(server: Server, number: int, data: bytes = b"") -> Iterator[list[socket.socket]]:
+    """Connections on which this is sent and then nothing more."""
+    made = [connected(server) for _ in range(number)]
+    try:
+        for each in made:
+            each.sendall(data)
+        yield made
+    finally:
+        for each in made:
+            each.close()
+
+
+def is_answered(server: Server) -> bool:
+    return json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()  # type: ignore[no-any-return]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="raises a limit that only POSIX has")
+@pytest.mark.parametrize("data", [b"", b"GET / HT", b"POST /api HTTP/1.1\r\nHost: localhost\r\nA"], ids=repr)
+@pytest.mark.usefixtures("room")
+def test_hundreds_of_connections_that_say_little_stop_nobody(data: bytes, turns: list[int]) -> None:
+    with serving(connections=replace(PATIENT, idle_s=NEVER_S, request_s=NEVER_S)) as server:
+        with held(server, MANY) as made:
+            for each in made[-PLAYGROUND.most // 2 :]:
+                each.sendall(data)
+            for _ in range(3):
+                assert is_answered(server)
+            assert len(server.open) <= PLAYGROUND.most
+            # It is woken a few times by each thing that happens, and by nothing else, however long all of this takes.
+            assert len(turns) < 20 * MANY
+        assert eventually(lambda: len(server.open) == 0)
+        assert is_answered(server)
+
+
+def test_the_one_that_was_idle_longest_gives_way() -> None:
+    with serving(connections=replace(FEW, idle_s=NEVER_S)) as server, held(server, FEW.most) as made:
+        assert eventually(lambda: len(server.open) == FEW.most)
+        # All but the second one have had an answer since.
+        for each in (made[0], *made[2:]):
+            each.sendall(b"GET /none HTTP/1.1\r\nHost: localhost\r\n\r\n" if each is made[3] else index(b""))
+            assert each.recv(1 << 16)
+        with connected(server) as another:
+            another.sendall(index(b"Connection: close\r\n"))
+            assert statuses(read_to_end(another)) == [200]
+        # The fourth one was refused and is to hang up: it matters less than one that may ask again.
+        assert read_to_end(made[3]) == b""
+        made[1].sendall(index(b"Connection: close\r\n"))
+        assert statuses(read_to_end(made[1])) == [200]
+
+
+def index(headers: bytes) -> bytes:
+    return b"HEAD / HTTP/1.1\r\nHost: localhost\r\n" + headers + b"\r\n"
+
+
+def test_an_idle_connection_is_closed_after_a_while() -> None:
+    with serving(connections=replace(PATIENT, idle_s=0.05)) as server, connected(server) as connection:
+        assert read_to_end(connection) == b""
+        assert eventually(lambda: len(server.open) == 0)
+
+
+@pytest.mark.parametrize(
+    "begun",
+    [b"G", b"GET / HTTP/1.1\r\nHost: local", b"\r\n\r\n"],
+    ids=repr,
+)
+def test_a_request_that_does_not_end_in_time_is_refused(begun: bytes) -> None:
+    with serving(connections=replace(PATIENT, request_s=0.05)) as server, connected(server) as connection:
+        connection.sendall(begun)
+        assert statuses(read_to_end(connection)) == [408]
+
+
+def test_a_body_that_comes_slowly_has_no_more_time_than_the_whole_request() -> None:
+    with serving(connections=replace(PATIENT, request_s=0.5)) as server, connected(server) as connection:
+        head = request(server, " " * 1_000_000).partition(b"\r\n\r\n")[0]
+        connection.sendall(head + b"\r\n\r\n")
+        connection.settimeout(0.02)
+
+        def answer() -> bytes:
+            try:
+                return connection.recv(1 << 16)
+            except TimeoutError:
+                # A byte now and then is no reason to wait for longer.
+                connection.sendall(b" ")
+                return b""
+
+        assert statuses(until(answer, "the answer")) == [408]
+
+
+def test_who_does_not_read_its_answer_is_left() -> None:
+    with serving(connections=replace(PATIENT, write_s=0.05)) as server:
+        server.page.files["main.js"] = b"a" * (64 << 20)
+        with connected(server) as connection:
+            assert eventually(lambda: len(server.open) == 1)
+            connection.sendall(b"GET /main.js HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            assert eventually(lambda: len(server.open) == 0)
+
+
+def test_more_bytes_than_the_next_request_can_have_end_the_connection() -> None:
+    with serving() as server, connected(server) as connection:
+        connection.sendall(request(server, json.dumps({"text": SLOW})))
+        with pytest.raises(OSError, match=r"(?i)reset|pipe|abort"):
+            for _ in range(100):
+                connection.sendall(b"\r\n" * (1 << 20))
+        assert eventually(lambda: not server.children._running)
+
+
+def test_while_every_connection_waits_for_its_answer_a_new_one_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(children, "MOST_AT_ONCE", FEW.most)
+    with serving(connections=FEW) as server:
+        with held(server, FEW.most, request(server, json.dumps({"text": SLOW}))):
+            assert eventually(lambda: len(server.children._running) == FEW.most)
+            with connected(server) as another:
+                assert statuses(read_to_end(another)) == [503]
+        assert is_answered(server)
+
+
+class Full:
+    """A listener whose system has no file descriptors left, until the test frees them."""
+
+    def __init__(self, listener: socket.socket) -> None:
+        self.listener = listener
+        self.is_full = True
+        self.looks = 0
+
+    def accept(self) -> tuple[socket.socket, Any]:
+        self.looks += 1
+        if self.is_full:
+            raise OSError(errno.EMFILE, "Too many open files")
+        return self.listener.accept()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.listener, name)
+
+
+def test_without_descriptors_it_looks_again_in_a_while_and_not_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltlc.interfaces.playground.server._AGAIN_S", NEVER_S)
+    with serving() as server, held(server, 3) as made:
+        assert eventually(lambda: len(server.open) == 3)
+        full = Full(server._listener)
+        server._loop.call_soon_threadsafe(setattr, server, "_listener", full)
+        with connected(server) as waiting:
+            # The three that are idle give way, one at each look; after that nothing is left to do but to wait.
+            assert [read_to_end(each) for each in made] == [b""] * 3
+            assert eventually(lambda: server._again is not None)
+            full.is_full = False
+            assert full.looks == 4
+            server._loop.call_soon_threadsafe(server._look)
+            waiting.sendall(index(b"Connection: close\r\n"))
+            assert statuses(read_to_end(waiting)) == [200]
+
+
+LOW = f"""
+import resource, selectors, sys, threading
+resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64))
+from tltlc.interfaces.playground.server import Server
+
+turns = []
+select = selectors.DefaultSelector.select
+selectors.DefaultSelector.select = lambda *given: turns.append(0) or select(*given)
+with Server(0, {HANG_S}) as server:
+    threading.Thread(target=server.serve_forever).start()
+    print(server.server_address[1], server.token, flush=True)
+    sys.stdin.readline()
+    print(len(turns), flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="lowers a limit that only POSIX has")
+@pytest.mark.usefixtures("room")
+def test_a_server_with_few_descriptors_answers_beside_hundreds_of_idle_connections() -> None:
+    program = f"import sys; sys.path[:] = {sys.path!r}\n{LOW}"
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as running:
+        assert running.stdin
+        assert running.stdout
+        port, token = running.stdout.readline().split()
+
+        class Other:
+            server_address = ("127.0.0.1", int(port))
+
+        Other.token = token  # type: ignore[attr-defined]
+        other: Any = Other()
+        with held(other, MANY):
+            for _ in range(3):
+                assert is_answered(other)
+            woken, errors = running.communicate("\n")
+        assert int(woken) < 20 * MANY
+        assert errors == ""

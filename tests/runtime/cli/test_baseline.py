@@ -1,0 +1,133 @@
+"""``tltlc baseline``: what it says, writes and refuses; the policies were never trained."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.regression.game import SUITE, edit
+from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.cli.baseline import _advice
+from tltl_runtime.regression.suite.suite import Case, Thresholds
+from tltl_runtime.regression.verdict.baseline import read_baseline
+from tltl_runtime.support.source_hash import sources_hash
+
+Run = Callable[..., Outcome]
+ONE = ("--workers", "1")
+
+
+def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
+    before = Path("game.baseline.json").read_bytes()
+    found = tltlc("baseline", "game.toml", "--output", "again.json", *ONE)
+    assert found.status == 0
+    assert found.out == "room:v0: easy met in 50 of 50 episodes\nroom:v0: soon met in 0 of 50 episodes\n"
+    told = found.err.splitlines()
+    assert "hopeless: 50 of 50 episodes, 0 met the spec" in told
+    assert told[-3:] == [
+        "    `hopeless` is `fail` even if nothing changes: train its policy further, or lower its `pass_rate`",
+        "wrote again.json",
+        "to judge by it: tltlc regress game.toml --baseline again.json",
+    ]
+    assert Path("again.json").read_bytes() == before
+    assert len(read_baseline(Path("again.json"))) == 2
+    # It is known before anything is played that it cannot be written.
+    found = tltlc("baseline", "game.toml", "--output", "nowhere/again.json", *ONE)
+    assert (found.status, found.out) == (3, "")
+    assert found.err == (
+        "error[TLT0005]: cannot write `nowhere/again.json`: there is no such folder\n"
+        "  help: name another place with --output\n"
+    )
+
+
+def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, game: Path) -> None:  # noqa: F811
+    before = Path("game.baseline.json").read_bytes()
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert found.out == "".join(
+        f"room:v0: {spec} met in {met} of 50 episodes  (as before)\n" for spec, met in (("easy", 50), ("soon", 0))
+    )
+    assert "of 50 episodes" not in found.err
+    assert Path("game.baseline.json").read_bytes() == before
+    edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nepisodes = 25')
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert found.out.splitlines() == [
+        "room:v0: easy met in 50 of 50 episodes  (as before)",
+        "room:v0: soon met in 0 of 25 episodes; before: 0 of 50",
+    ]
+    text = Path("game.baseline.json").read_text(encoding="utf-8")
+    Path("game.baseline.json").write_text(text.replace(sources_hash(), "0" * 64), encoding="utf-8")
+    assert "as before" not in tltlc("baseline", "game.toml", *ONE).out, "other code has played them"
+    edit("room.toml", "8.0, 8.0", "8.0, 8.5")
+    assert tltlc("baseline", "game.toml", *ONE).out.splitlines() == [
+        "room:v0: easy met in 50 of 50 episodes; before: 50 of 50",
+        "room:v0: soon met in 0 of 25 episodes; before: 0 of 25",
+    ]
+    found = tltlc("baseline", "game.toml", "--fresh", *ONE)
+    assert "room:v0: 50 of 50 episodes, 50 met the spec" in found.err.splitlines()
+    assert "as before" not in found.out
+    Path("game.baseline.json").write_text("{}", encoding="utf-8")
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert found.status == 0 and "before" not in found.out, "what is no baseline says nothing"
+
+
+def test_a_first_baseline_that_is_stopped_says_what_there_is(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tltl_runtime.regression.verdict.baseline_run._played", stopped)
+    Path("game.baseline.json").unlink()
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert (found.status, found.out) == (130, "")
+    assert found.err == (
+        "stopped: no `game.baseline.json` was written; what is over is kept in `game.baseline.json.partial`: the same "
+        "command goes on with it\n"
+    )
+    assert Path("game.baseline.json.partial").exists()
+
+
+def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
+    before = Path("game.baseline.json").read_bytes()
+    Path("game.toml").write_text(SUITE.replace("episodes = 50", "episodes = 10000"), encoding="utf-8")
+    command = [sys.executable, "-m", "tltlc", "baseline", "game.toml", *ONE]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
+        assert playing.stderr is not None
+        playing.stderr.readline()
+        playing.send_signal(signal.SIGINT)
+        _, err = playing.communicate(timeout=HANG_S)
+    assert playing.returncode == 130
+    assert "stopped: `game.baseline.json` is as it was; the same command goes on with what is over" in err
+    assert Path("game.baseline.json").read_bytes() == before
+    assert sorted(path.name for path in Path().glob(".*")) == []
+
+
+@pytest.mark.parametrize("name", ["game.toml", "easy.safetensors"])
+def test_nothing_that_the_suite_reads_is_overwritten(tltlc: Run, game: Path, name: str) -> None:  # noqa: F811
+    before = (game / name).read_bytes()
+    found = tltlc("baseline", "game.toml", "-o", name)
+    assert (found.status, found.out) == (3, "")
+    assert found.err.startswith(
+        f"error[TLT0005]: cannot write `{name}`: the suite reads it\n  help: name another place"
+    )
+    assert (game / name).read_bytes() == before
+
+
+def test_standard_output_is_no_place_for_a_baseline(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("baseline", "game.toml", "-o", "-")
+    assert (found.status, found.out) == (2, "") and "a file is needed, and `-` is none" in found.err
+    assert not Path("-").exists()
+
+
+def test_a_case_that_is_always_met_needs_more_episodes_alone() -> None:
+    case = Case("room:v0", "room", "v0", "v0", None, Path("bot"), 25, Thresholds(), "")
+    assert _advice(1.0, case, 0.05) == "25 `episodes` are too few to be certain, give it 29 at least"
+    assert _advice(0.9, case, 0.05) == "train its policy further, lower its `pass_rate`, or give it more `episodes`"

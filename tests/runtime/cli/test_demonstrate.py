@@ -1,0 +1,103 @@
+"""``tltlc demonstrate``: episodes of the scripted expert."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.stealth.recordings.check import check
+from tltl_runtime.stealth.recordings.file import read_episode
+
+
+def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    folder = tmp_path / "new" / "runs"
+    found: Outcome = tltlc("demonstrate", "cover_and_hide:v0", "--seed", "5", "--episodes", "2", "-o", str(folder))
+    assert (found.status, found.err) == (0, "")
+    assert found.out.splitlines()[-1] == "2 of 2 succeeded"
+    names = [f"cover_and_hide-v0-{seed}" for seed in (5, 6)]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(
+        name + ending for name in names for ending in (".episode.npz", ".png")
+    )
+    episode = read_episode(folder / f"{names[0]}.episode.npz")
+    assert (episode.player, episode.success, episode.end) == ("expert", True, "success")
+    assert not check(episode)
+    assert (folder / f"{names[0]}.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_it_writes_the_same_again_and_over_nothing_else(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    for options in ([], [], ["--careless"]):
+        tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path), *options)
+    names = ["cover_and_hide-v0-0", "cover_and_hide-v0-0-2"]
+    assert [read_episode(tmp_path / f"{name}.episode.npz").player for name in names] == ["expert", "careless expert"]
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == sorted(f"{name}.png" for name in names)
+
+
+def test_it_writes_over_no_picture_of_another(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    mine = tmp_path / "cover_and_hide-v0-0.png"
+    mine.write_text("mine")
+    tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path))
+    assert mine.read_text() == "mine"
+    stem = "cover_and_hide-v0-0-2"
+    assert {path.name for path in tmp_path.iterdir()} == {mine.name, f"{stem}.png", f"{stem}.episode.npz"}
+
+
+def test_failing_is_a_finding(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    (tmp_path / "never.tltl").write_text("import stealth\nspec never { limit 5 steps\n reach seen }")
+    spec = f"{tmp_path / 'never.tltl'}"
+    found: Outcome = tltlc("demonstrate", "cover_and_hide", "--careless", "--spec", spec, "-o", str(tmp_path))
+    assert found.status == 1
+    assert found.out.startswith("seed 0: limit after 5 steps, 0.75 s, progress ")
+    said = "  nowhere to go for the expert; limit after 5 steps, remaining: Reach seen"
+    assert found.out.splitlines()[1] == said
+
+
+def test_a_film_at_once(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    (tmp_path / "soon.tltl").write_text("import stealth\nspec soon { limit 3 steps\n keep alive }")
+    spec = f"{tmp_path / 'soon.tltl'}"
+    found: Outcome = tltlc("demonstrate", "cover_and_hide", "--spec", spec, "-o", str(tmp_path), "--film", "gif")
+    assert found.status == 0, found.err
+    with Image.open(tmp_path / "cover_and_hide-v0-0.gif") as film:
+        assert (film.size, film.n_frames) == ((640, 480), 4)
+
+
+@pytest.mark.parametrize(("name", "status"), [("SIGTERM", 143), ("SIGINT", 130)])
+def test_asked_to_end_it_says_what_there_is(tmp_path: Path, name: str, status: int) -> None:
+    command = [sys.executable, "-m", "tltlc", "demonstrate", "cover_and_hide", "--careless", "--episodes", "900"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as demonstrating:
+        assert demonstrating.stdout is not None
+        demonstrating.stdout.readline()
+        demonstrating.send_signal(getattr(signal, name))
+        _, err = demonstrating.communicate(timeout=HANG_S)
+    assert demonstrating.returncode == status
+    assert re.fullmatch(r"stopped: \d+ of 900 episodes were recorded\n", err)
+    count = int(err.split()[1])
+    assert len(list((tmp_path / "demonstrations").glob("*.episode.npz"))) >= count >= 1
+
+
+@pytest.mark.parametrize(("level", "status"), [("nowhere", 2), ("cover_and_hide:v9", 2)])
+def test_a_level_that_is_not_there(tltlc, tmp_path: Path, level: str, status: int) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("demonstrate", level, "-o", str(tmp_path))
+    assert (found.status, found.out) == (status, "")
+    assert "error[TLT08" in found.err
+
+
+def test_what_nobody_can_do_is_said_before_it_is_tried(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    (tmp_path / "far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
+    found: Outcome = tltlc(
+        "demonstrate", "navigation:v2", "--spec", str(tmp_path / "far.tltl"), "-o", str(tmp_path), "--careless"
+    )
+    assert found.status == 1
+    assert found.err == (
+        "warning[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `far` asks\n"
+        "  help: the way ends at `corridor_block_2`, which is 2.2 m high\n"
+    )

@@ -1,0 +1,325 @@
+"""``tltlc evaluate``: the report, the files, and what is refused."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+import tltl_runtime
+from tests import pipes
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.evaluation.untrained import SOON, untrained
+from tests.waiting import HANG_S
+from tltl_runtime.evaluation.evaluate import evaluate
+from tltl_runtime.evaluation.player import Player
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.recordings.file import read_episode, write_episode
+from tltl_runtime.training.run.run import Run as Training
+from tltl_runtime.training.run.run import write_run
+from tltl_runtime.training.run.settings import read_settings
+from tltlc.core.record import replace
+
+Run = Callable[..., Outcome]
+STARTER = Path(tltl_runtime.__file__).with_name("starter")
+LEVELS = ("navigation", "cover_and_hide", "branching")
+FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "ended", "episodes"]
+
+
+@pytest.fixture(scope="module")
+def policy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("trained") / "policy.safetensors"
+    write_policy(path, untrained())
+    return path
+
+
+def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    found = tltlc("evaluate", policy, "--episodes", "3", "--seed", "5")
+    assert found.status == 0
+    lines = found.out.splitlines()
+    assert lines[0] == f"cover_and_hide v0, spec soon, seed 5: {policy}"
+    assert lines[1] == "note: the level has changed since the policy was trained on it"
+    assert lines[5] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
+    assert "sampled: 3 of 3 failed" in lines
+    assert "  3 out of time in state 0, remaining: Reach near(exit), and keep alive" in lines
+    assert "    throughout." in lines
+    assert lines[-2:] == [
+        "To record one of them, for `tltlc replay`:",
+        f"  tltlc evaluate {policy} --seed 5 --first 0 --episodes 1 --out evaluation",
+    ]
+    told = found.err.splitlines()
+    assert told[2] == "50% played; passed: 0 of 3 sampled"
+    assert told[-1] == "100% played; passed: 0 of 3 sampled, 0 of 3 arg-max"
+
+
+def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    found = tltlc("evaluate", policy.parent, "--episodes", "4", "--seed", "5", "--json", "-")
+    assert found.status == 0
+    said = json.loads(found.out)
+    head = ["level", "variant", "level_hash", "spec", "seed", "first", "complete", "policy", "versions"]
+    assert list(said) == [*head, *FIGURES, "argmax"]
+    assert list(said["argmax"]) == FIGURES
+    assert (said["level"], said["variant"], said["spec"], said["seed"]) == ("cover_and_hide", "v0", "soon", 5)
+    assert said["level_hash"] == level_hash(load_level("cover_and_hide")) != said["policy"]["level_hash"]
+    assert [each["index"] for each in said["episodes"]] == [0, 1, 2, 3]
+    assert {each["seed"] for each in said["episodes"]} == {each["seed"] for each in said["argmax"]["episodes"]}
+    assert said["progress"].keys() == said["reward"].keys() == {"mean", "std"}
+    for each in (*said["episodes"], *said["argmax"]["episodes"]):
+        assert each["reward"] == pytest.approx(each["progress"] - 1.0)
+    assert re.fullmatch("[0-9a-f]{64}", said["policy"]["sha256"])
+    assert {"tltlc", "pybullet", "numpy", "torch"} < said["versions"].keys()
+
+    again = json.loads(tltlc("evaluate", policy, "--episodes", "2", "--first", "2", "--seed", "5", "--json", "-").out)
+    assert again["episodes"] == said["episodes"][2:]
+
+
+def test_the_report_takes_the_place_of_no_input(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
+    mine = tmp_path / "mine.safetensors"
+    shutil.copy(policy, mine)
+    found = tltlc("evaluate", mine, "--episodes", "1", "--json", mine)
+    assert found.status == 2
+    assert f"`{mine}` would be written over: it is an input" in found.err
+    assert "played" not in found.err
+    assert mine.read_bytes() == policy.read_bytes()
+
+
+def test_a_policy_that_is_replaced_meanwhile(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mine, play = tmp_path / "mine.safetensors", Player.play
+    shutil.copy(policy, mine)
+    monkeypatch.setattr(Player, "play", lambda self, task: mine.unlink(missing_ok=True) or play(self, task))
+    found = tltlc("evaluate", mine, "--episodes", "1", "--json", "-")
+    assert found.status == 0, found.err
+    assert json.loads(found.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()
+
+
+def test_recordings_and_pictures(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    folder, report = tmp_path / "new" / "runs", tmp_path / "new" / "report.json"
+    command = ("evaluate", policy, "--episodes", "2", "--seed", "5", "--out", folder, "--json", report)
+    found = tltlc(*command)
+    assert found.status == 0
+    stems = [f"cover_and_hide-v0-5-{index}-{chosen}" for index in (0, 1) for chosen in ("arg-max", "sampled")]
+    names = [f"{stem}{ending}" for stem in stems for ending in (".episode.npz", ".png")]
+    names += ["evaluation.json", "ways-arg-max.png", "ways-sampled.png"]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+    assert report.read_text() == (folder / "evaluation.json").read_text()
+    assert found.err.splitlines()[-1] == (
+        f"wrote {folder}: 4 recordings with plans, ways-sampled.png, ways-arg-max.png, evaluation.json; "
+        "look at ways-sampled.png first"
+    )
+    said = json.loads(report.read_text())
+    for each in said["episodes"]:
+        episode = read_episode(folder / f"cover_and_hide-v0-5-{each['index']}-sampled.episode.npz")
+        assert (episode.seed, episode.end) == (each["seed"], each["end"])
+        assert float(episode.rewards.sum()) == pytest.approx(each["reward"])
+        sha256 = said["policy"]["sha256"]
+        assert episode.player == f"policy cover_and_hide soon {sha256[:8]}, sampled, episode {each['index']}"
+    with Image.open(folder / "ways-sampled.png") as picture:
+        red = sum(count for count, colour in picture.convert("RGB").getcolors(1 << 20) if colour == (100, 116, 139))
+    assert red > 50, "there are marks where time was up"
+    assert "To record one of them" not in found.out
+
+    # Of the same policy, the recordings of other episodes stay; of another one, all would be taken for this one's.
+    kept = ["cover_and_hide-v0-5.png", "cover_and_hide-v1-5-0-sampled.png", "notes.txt", "ways-of-mine.png"]
+    for name in kept:
+        (folder / name).touch()
+    again = tltlc(*command, "--record", "none")
+    assert "removed" not in again.err
+    assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names])
+    pipe = "cover_and_hide-v0-5-9-sampled.episode.npz"
+    pipes.put_beside(folder / pipe)
+    pipes.forbid(monkeypatch)
+    kept += [pipe, f"a_{pipe}"]
+    mine, other = untrained(), tmp_path / "other.safetensors"
+    write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.weights()))
+    again = tltlc("evaluate", other, *command[2:], "--record", "none")
+    assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
+    assert again.err.splitlines()[-2:] == [
+        f"removed from {folder}, of an earlier evaluation: cover_and_hide-v0-5-0-arg-max.episode.npz, "
+        "cover_and_hide-v0-5-0-arg-max.png, cover_and_hide-v0-5-0-sampled.episode.npz, "
+        "cover_and_hide-v0-5-0-sampled.png, cover_and_hide-v0-5-1-arg-max.episode.npz, "
+        "cover_and_hide-v0-5-1-arg-max.png and 2 more",
+        f"wrote {folder}: no recordings, ways-sampled.png, ways-arg-max.png, evaluation.json; "
+        "look at ways-sampled.png first",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("evaluation.json", "of mine"),
+        ("evaluation.json", '{"level": 3}'),
+        ("evaluation.json", "[" * 1000),
+        ("ways-sampled.png", "mine"),
+        ("ways-arg-max.png", "mine"),
+    ],
+)
+def test_a_file_that_no_evaluation_wrote_is_in_the_way(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    name: str,
+    text: str,
+) -> None:
+    path = tmp_path / "runs" / name
+    path.parent.mkdir()
+    path.write_text(text)
+    found = tltlc("evaluate", policy, "--episodes", "1", "--out", path.parent)
+    assert (found.status, found.out) == (2, "")
+    assert f"error[TLT0722]: `{path}` is there already, and no evaluation wrote it" in found.err
+    assert (path.read_text(), len([*path.parent.iterdir()])) == (text, 1)
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+def test_the_report_for_programs_goes_into_a_pipe(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    there, here = os.pipe()
+    with os.fdopen(there, encoding="utf-8") as pipe:
+        found = tltlc("evaluate", policy, "--episodes", "1", "--json", f"/dev/fd/{here}")
+        os.close(here)
+        assert found.status == 0, found.err
+        assert len(json.load(pipe)["episodes"]) == 1
+
+
+def test_a_recording_names_its_player_once(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    folder = tmp_path / "runs"
+    found = tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "all")
+    assert found.status == 0, found.err
+    path = folder / "cover_and_hide-v0-0-0-sampled.episode.npz"
+    episode, sha256 = read_episode(path), json.loads((folder / "evaluation.json").read_text())["policy"]["sha256"]
+    assert episode.player == f"policy cover_and_hide {sha256[:8]}, sampled, episode 0"
+    # What this policy played stays, whatever its level is called.
+    write_episode(path, replace(episode, player=f"policy cover, and_hide {sha256[:8]}, sampled, episode 0"))
+    tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "none")
+    assert path.exists()
+
+
+def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    found = tltlc("evaluate", policy, "--record", "all")
+    assert (found.status, found.out) == (2, "")
+    assert "--record needs the folder for the recordings: --out DIR" in found.err
+
+
+def test_the_folder_of_a_training_knows_the_file_of_its_level(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shutil.copytree(STARTER, tmp_path / "mine")
+    level = str(tmp_path / "mine" / "vault.toml")
+    folder, trained = tmp_path / "trained", untrained(None, level)
+    card = trained.card
+    write_run(Training(folder, card.fspa, card.params, level, "v0", card.sensors, read_settings(None), 0))
+    # It is evaluated long after settings have come and gone.
+    run = json.loads((folder / "run.json").read_text())
+    del run["settings"]["ppo"]["entropy_schedule"]
+    (folder / "run.json").write_text(json.dumps(run))
+    write_policy(folder / "policy.safetensors", trained)
+    monkeypatch.chdir(folder)
+    found = tltlc("evaluate", folder, "--episodes", "1", "--json", "-")
+    assert (json.loads(found.out)["level"], found.status) == ("vault", 0)
+    alone = tltlc("evaluate", "policy.safetensors", "--episodes", "1")
+    assert (alone.status, alone.out) == (2, "")
+    assert alone.err == (
+        "error[TLT0800]: there is no level `vault`: the policy was trained on a level of your own\n"
+        "  help: name its file: `tltlc evaluate policy.safetensors --level vault.toml`\n"
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "status", "workers"), [("SIGINT", 130, "2"), ("SIGTERM", 143, "1")])
+def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status: int, workers: str) -> None:
+    command = [sys.executable, "-m", "tltlc", "evaluate", str(policy), "--episodes", "300", "--workers", workers]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as evaluating:
+        assert evaluating.stderr is not None
+        assert evaluating.stderr.readline() == "10% played; passed: 0 of 60 sampled\n"
+        evaluating.send_signal(getattr(signal, name))
+        out, err = evaluating.communicate(timeout=HANG_S)
+    assert evaluating.returncode == status
+    (stopped,) = re.findall(r"^stopped: (\d+) of 300 sampled and 0 of 300 arg-max episodes were played$", err, re.M)
+    (played,) = re.findall(r"^episodes +(\d+)", out, re.MULTILINE)
+    assert 60 <= int(played) == int(stopped) < 300
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "said"),
+    [
+        ((), 2, "error[TLT0700]: name a POLICY or a --level, or both"),
+        (("nowhere.safetensors",), 3, "error[TLT0001]"),
+        (("--level", "nowhere"), 2, "error[TLT0800]: there is no level `nowhere`"),
+        (("POLICY", "--level", "cover_and_hide:v9"), 2, "error[TLT0800]"),
+        (("POLICY", "--level", "navigation"), 1, "error[TLT0843]"),
+        (("POLICY", "--spec", "cover_and_hide.tltl"), 1, "error[TLT0843]"),
+        (("POLICY", "--workers", "many"), 2, "error[TLT0700]: invalid value for '--workers': `many` is neither"),
+        (("POLICY", "--workers", "10001"), 2, "error[TLT0700]: invalid value for '--workers': `10001` is neither"),
+        (("POLICY", "--episodes", "0"), 2, "error[TLT0700]"),
+        (
+            ("POLICY", "--spec", "s.toml:v1"),
+            2,
+            "error[TLT0700]: `s.toml` is no spec; where it is a level, `--level s.toml:v1`",
+        ),
+        (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
+        (("POLICY", "--json", "gone/report.json"), 3, "error[TLT0005]: cannot write `gone/report.json`: there is no"),
+        (("POLICY", "--out", "-"), 2, "error[TLT0700]: invalid value for '--output'"),
+        (("bot.onnx",), 1, "error[TLT0840]: `bot.onnx` is the model for other engines, which `tltlc inspect -o` wrote"),
+        (("POLICY", "--out", "file/runs"), 3, "error[TLT0005]"),
+    ],
+)
+def test_refused(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+    status: int,
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    (tmp_path / "bot.onnx").touch()
+    (tmp_path / "cover_and_hide.tltl").write_text(SOON.replace("20 steps", "25 steps"))
+    found = tltlc("evaluate", *(str(policy) if each == "POLICY" else each for each in arguments))
+    assert (found.status, found.out) == (status, "")
+    assert found.err.lower().startswith(said.lower())
+
+
+def test_the_policy_that_comes_with_a_level(tltlc: Run) -> None:  # noqa: F811
+    found = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "10", "--json", "-")
+    said = json.loads(found.out)
+    assert said["level_hash"] == said["policy"]["level_hash"]
+    named = json.loads(tltlc("evaluate", "cover_and_hide:v1", "--episodes", "1", "--json", "-").out)
+    assert (named["level"], named["variant"], named["policy"]) == ("cover_and_hide", "v1", said["policy"])
+    assert (said["level"], said["spec"]) == ("cover_and_hide", "cover_and_hide")
+    assert said["argmax"]["pass_rate"] >= 0.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", LEVELS)
+def test_the_policies_that_come_with_levels(level: str) -> None:
+    path = shipped_policy(level)
+    assert path is not None
+    for sampled in (True, False):
+        played = list(evaluate(path, episodes=100, seed=11, sampled=sampled))
+        assert sum(each.success for each in played) >= 95

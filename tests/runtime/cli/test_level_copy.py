@@ -1,0 +1,60 @@
+"""``tltlc new --level``: a level that a designer changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, inside, tltlc  # noqa: F401
+from tltl_runtime.cli.support.level_copy import NAMES
+from tltl_runtime.stealth.capabilities.reach import reachable
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.recordings.file import read_episode
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_copy_is_whole(tltlc, inside: Path, name: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    made: Outcome = tltlc("new", "mine", "--level", name)
+    assert made.status == 0
+    assert made.err.endswith(f"Next: tltlc check --level mine/{name}.toml\n")
+    level = load_level(f"mine/{name}.toml")
+    assert level.spec == f"mine/{name}.tltl:{'unseen' if name == 'vault' else name}"
+    assert all((Path("mine") / file).is_file() for file, _ in level.files)
+    assert tltlc("test", f"mine/{name}.tltl").status == 0
+    checked: Outcome = tltlc("check", "--level", f"mine/{name}.toml:v0")
+    assert checked.status == 0
+    assert "warning" not in checked.err
+    assert "(nothing to report)" in checked.err
+
+
+def test_what_there_is_to_copy(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("new", "mine", "--level", "valt")
+    assert (found.status, Path("mine").exists()) == (2, False)
+    assert found.err == "error[TLT0800]: there is no level `valt` to copy\n  help: did you mean `vault`?\n"
+
+
+def test_one_has_to_hide_and_to_open_the_door(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    tltlc("new", "mine", "--level", "vault")
+    level = Path("mine/vault.toml")
+    for variant in ("v0", "v1"):
+        assert tltlc("demonstrate", f"{level}:{variant}", "--episodes", "2").status == 0
+        assert tltlc("demonstrate", f"{level}:{variant}", "--careless", "-o", "careless").status == 1
+        episode = read_episode(Path(f"demonstrations/vault-{variant}-0.episode.npz"))
+        names = [signal.name for signal in episode.fspa.signals]
+        lever = np.asarray(episode.signals)[:, names.index("distance(lever)")]
+        assert lever.min() <= 1.0
+    level.write_text(level.read_text().replace("at = [10.5, 1.5, 0.0]", "at = [10.5, 9.2, 0.0]"))
+    assert not reachable(load_level(str(level))).reaches("exit")
+    said = "`door` stays shut: it is opened by `lever`, which lies behind it"
+    assert said in tltlc("check", "--level", level).err
+
+
+def test_a_shipped_spec_for_a_level_of_ones_own(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    tltlc("new", "mine", "--level", "navigation")
+    Path("mine/navigation.toml").rename("mine/second.toml")
+    Path("mine/navigation.tltl").unlink()
+    found: Outcome = tltlc("check", "--level", "mine/second.toml:v0")
+    assert found.status == 0
+    assert "help: this spec comes with tltlc: `tltlc new FOLDER --level navigation` copies it with its" in found.err

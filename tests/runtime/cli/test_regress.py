@@ -1,0 +1,465 @@
+"""``tltlc regress``: what it says, writes and refuses; the policies were never trained."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from tests import pipes
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.regression.game import SUITE, edit, write_game
+from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.run import CASES, case_folder
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interfaces.cli.main import main
+
+Run = Callable[..., Outcome]
+NAMES = ["room:v0", "room:v1", "hopeless"]
+ONE = ("--workers", "1")
+
+
+@pytest.fixture(name="recorded", scope="module")
+def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A game with its baseline and what a first run of its suite has left."""
+    folder = tmp_path_factory.mktemp("recorded") / "game"
+    write_game(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for command, status in (("baseline", 0), ("regress", 1)):
+            with pytest.raises(SystemExit) as ended:
+                main([command, "game.toml", *ONE])
+            assert ended.value.code == status
+    return folder
+
+
+def verdicts(out: str) -> list[str]:
+    return [" ".join(line.split()[:2]) for line in out.splitlines() if line[0] != " "][:-1]
+
+
+def test_the_report_for_people(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--out", "new", *ONE)
+    assert found.status == 1
+    lines = found.out.splitlines()
+    assert verdicts(found.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    assert re.fullmatch(
+        r"room:v0   pass     (\d\d) of \1   progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
+    )
+    assert lines[2].startswith("hopeless  fail      0 of 25   progress")
+    assert lines[3] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
+    assert all(line.startswith("    ") for line in lines[3:-1])
+    assert lines[-1] == "3 cases: 2 pass, 1 fail"
+    told = found.err.splitlines()
+    assert "room:v0: 25 of at most 50 episodes, 25 met the spec" in told
+    assert "hopeless: 25 of at most 50 episodes, 0 met the spec" in told
+    assert told[-1] == "wrote new/report.html: open it in a browser"
+    page = Path("new/report.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>") and all(name in page for name in NAMES)
+
+
+def test_what_was_played_before_is_said_to_be(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *ONE)
+    assert [line.endswith("  (as before)") for line in found.out.splitlines() if line[0] != " "] == [True] * 3 + [False]
+    assert found.err == "wrote regression/game/report.html: open it in a browser\n"
+    fresh = tltlc("regress", "game.toml", "--fresh", *ONE)
+    assert fresh.out == found.out.replace("  (as before)", "")
+    assert "25 of at most 50" in fresh.err
+
+
+def test_several_workers_come_to_the_same(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--out", "new", "--workers", "2")
+    assert found.out == tltlc("regress", "game.toml", *ONE).out.replace("  (as before)", "")
+    suite = read_suite(Path("game.toml"))
+    for name in NAMES:
+        ours, theirs = (case_folder(suite, name, Path(run) / CASES) / "case.json" for run in ("new", "regression/game"))
+        assert ours.read_bytes() == theirs.read_bytes()
+
+
+def test_the_report_for_programs(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--json", "-", *ONE)
+    assert found.status == 1
+    said = json.loads(found.out)
+    head = ["format", "version", "suite", "seed", "error", "complete", "left_out", "verdicts", "cases"]
+    assert list(said) == head
+    assert (said["format"], said["suite"], said["complete"]) == ("tltl-regression", "game.toml", True)
+    assert said["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
+    assert [case["name"] for case in said["cases"]] == NAMES
+    for case in said["cases"]:
+        assert {"level", "variant", "verdict", "pass_rate", "progress", "reward", "baseline", "reasons"} < case.keys()
+        assert case["episodes"] == len(case["accounts"])
+        assert sum(each["success"] for each in case["accounts"]) == pytest.approx(case["pass_rate"] * case["episodes"])
+    # What people read is on standard error then.
+    assert "3 cases: 2 pass, 1 fail" in found.err
+    again = tltlc("regress", "game.toml", "--json", "report.json", *ONE)
+    assert json.loads(Path("report.json").read_text(encoding="utf-8")) == said
+    assert "3 cases: 2 pass, 1 fail" in again.out
+
+
+def test_the_report_for_continuous_integration(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(game.parent))
+    found = tltlc("regress", "game.toml", "--junit", "report.xml", "--html", "page.html", "--github", *ONE)
+    (tests,) = ET.parse("report.xml").getroot()
+    assert [len(test.findall("failure")) for test in tests.iter("testcase")] == [0, 0, 1]
+    (command,) = (line for line in found.out.splitlines() if line.startswith("::"))
+    assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::met in 0 of 25 episodes")
+    assert Path("page.html").read_bytes() == Path("regression/game/report.html").read_bytes()
+    assert found.err.splitlines()[-1] == "wrote page.html: open it in a browser"
+
+
+def test_another_baseline(tltlc: Run, game: Path) -> None:  # noqa: F811
+    Path("game.baseline.json").rename("tonight.json")
+    found = tltlc("regress", "game.toml", "--baseline", "tonight.json", "--changed", "tonight", *ONE)
+    assert verdicts(found.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    found = tltlc("regress", "game.toml", "--baseline", "nowhere.json", *ONE)
+    assert found.err == (
+        "error[TLT0903]: the suite `game.toml` has no baseline: there is no `nowhere.json`\n"
+        "  help: record it: tltlc baseline game.toml --output nowhere.json\n"
+    )
+
+
+def test_the_default_folder_follows_the_place_of_the_suite(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(game.parent)
+    found = tltlc("regress", "game/game.toml", "--changed", "soon", *ONE)
+    assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
+    (game.parent / "elsewhere").mkdir()
+    monkeypatch.chdir(game.parent / "elsewhere")
+    found = tltlc("regress", str(game / "game.toml"), "--changed", "soon", *ONE)
+    assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
+
+
+def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tltl_runtime.regression.verdict.run._done", stopped)
+    found = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
+    assert found.status == 130
+    assert found.out == "no case was judged\n"
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["complete"], said["cases"]) == (False, [])
+    (tests,) = ET.parse("report.xml").getroot()
+    assert (tests.get("tests"), tests.get("errors")) == ("3", "3")
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [(TltlError([Diagnostic("TLT0850", "a worker was lost")]), 1), (KeyboardInterrupt(), 130), (RuntimeError(), 70)],
+)
+def test_what_ended_a_run_is_told_where_the_page_cannot_be_written_either(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    error: BaseException,
+    status: int,
+) -> None:
+    def ended(*_: object, **__: object) -> None:
+        raise error
+
+    folder = Path("regression/game")
+    (folder / CASES / "hopeless" / "case.json").unlink()
+    (folder / "report.html").unlink()
+    (folder / "report.html").mkdir()
+    monkeypatch.setattr("tltl_runtime.regression.verdict.run.judged", ended)
+    found = tltlc("regress", "game.toml", *ONE)
+    assert found.status == status
+    assert "error[TLT0005]: cannot write `regression/game/report.html`" in found.err
+    first = {1: "error[TLT0850]: a worker was lost", 130: "stopped: 2 of 3 cases are judged", 70: "error: a bug"}
+    assert first[status] in found.err
+
+
+def test_a_suite_behind_changed_is_no_word_of_it(tltlc: Run, game: Path) -> None:  # noqa: F811
+    refused = tltlc("regress", "--changed", "guard", "game.toml")
+    assert refused.status == 2
+    assert "`game.toml` is taken as a word of --changed: put the suite before it" in refused.err
+
+
+def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
+    assert verdicts(found.out) == ["hopeless fail"]
+    told = found.err.splitlines()
+    assert told[:2] == [
+        "no case depends on README.md",
+        "left out, since none of the named files concerns them: room:v0, room:v1",
+    ]
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["left_out"], said["complete"], len(said["cases"])) == (NAMES[:2], True, 1)
+    both = tltlc("regress", "game.toml", *ONE, "--changed", "soon", "--changed", "guard_alert.toml", "easy")
+    assert verdicts(both.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    assert "left out" not in both.err
+
+
+@pytest.mark.parametrize("words", [[], ["README.md", "src/game.py"]])
+def test_where_nothing_is_concerned(tltlc: Run, game: Path, words: list[str]) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
+    assert (found.status, found.out) == (0, "no case was to be played\n")
+    # One of an earlier run would be taken for this one's.
+    why = "it depends on none of the files that --changed names" if words else "--changed names no file"
+    assert Path("regression/game/report.html").read_text(encoding="utf-8").count(why) == 2 * len(NAMES)
+    assert f"left out, since none of the named files concerns them: {', '.join(NAMES)}" in found.err
+    assert ("no case depends on README.md, src/game.py" in found.err) == bool(words)
+    (tests,) = ET.parse("report.xml").getroot()
+    assert tests.get("tests") == "0"
+
+
+def test_a_name_that_is_no_file_may_be_a_slip(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "gaurd", "assets/hopeles.toml")
+    assert (found.status, found.out) == (0, "no case was to be played\n")
+    told = found.err.splitlines()
+    assert told[:2] == [
+        "no case depends on gaurd, assets/hopeles.toml",
+        "warning: there is no file `gaurd`: did you mean `guard`?",
+    ]
+    assert "warning" not in told[2]
+    # A file that is there is no slip, and neither is one that was renamed to what is named, too.
+    Path("gaurd.toml").touch()
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "gaurd.toml").err
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "rooms.toml", "room.toml").err
+    said = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "rooms.toml")
+    assert said.out.startswith("::warning title=--changed::there is no file `rooms.toml`: did you mean `room.toml`?\n")
+
+
+def test_what_has_changed_and_is_not_named_is_told(tltlc: Run, game: Path) -> None:  # noqa: F811
+    edit("room.toml", "8.0, 8.0", "8.0, 8.5")
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "soon")
+    warning = (
+        "warning: `room.toml` has changed since the baseline, and is not among the files that are named; left out: "
+    )
+    assert f"{warning}room:v0, room:v1" in found.err.splitlines()
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
+    assert f"{warning}room:v0, room:v1, hopeless" in found.err.splitlines() and found.status == 0
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "room").err
+    # Without a baseline nothing can be said of it.
+    Path("game.baseline.json").unlink()
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "README.md").err
+
+
+@pytest.mark.parametrize("option", ["--json", "--junit", "--html"])
+@pytest.mark.parametrize("place", ["-", "/dev/stdout"])
+def test_each_report_can_be_printed_in_place_of_the_text(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    option: str,
+    place: str,
+) -> None:
+    found = tltlc("regress", "game.toml", option, place, *ONE)
+    assert "3 cases: 2 pass, 1 fail" in found.err and "3 cases" not in found.out.splitlines()
+    again = tltlc("regress", "game.toml", option, "report", *ONE)
+    assert found.out == Path("report").read_text(encoding="utf-8")
+    assert "3 cases: 2 pass, 1 fail" in again.out and not Path("-").exists()
+
+
+def test_standard_output_is_for_one_report(tltlc: Run, game: Path) -> None:  # noqa: F811
+    both = "both need standard output: write"
+    for words, said in {
+        ("--json", "-", "--html", "-"): f"`--json -` and `--html -` {both} the page to a file",
+        ("--junit", "/dev/stdout", "--html", "-"): f"`--junit /dev/stdout` and `--html -` {both} the page to a file",
+        ("--github", "--junit", "-"): f"--github and `--junit -` {both} the XML to a file",
+        ("--github", "--json", "-"): f"--github and `--json -` {both} the JSON to a file",
+    }.items():
+        found = tltlc("regress", "game.toml", *words)
+        assert (found.status, found.out) == (2, "") and said in found.err
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+def test_reports_go_into_pipes(tltlc: Run, game: Path) -> None:  # noqa: F811
+    there, here = os.pipe()
+    with os.fdopen(there, encoding="utf-8") as pipe:
+        found = tltlc("regress", "game.toml", "--json", f"/dev/fd/{here}", *ONE, "--changed", "README.md")
+        os.close(here)
+        assert found.status == 0, found.err
+        assert json.load(pipe)["left_out"] == NAMES
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes close otherwise")
+def test_whoever_stops_reading_stops_no_run(game: Path) -> None:
+    words = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--fresh", "--junit", "report.xml", *ONE]
+    Path("regression/game/report.html").unlink()
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as running:
+        assert running.stdout is not None
+        # As `head -1` does.
+        assert running.stdout.readline().startswith(b"room:v0")
+        running.stdout.close()
+    assert running.returncode == 1
+    assert [test.get("name") for test in ET.parse("report.xml").iter("testcase")] == NAMES
+    assert Path("regression/game/report.html").is_file()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are Unicode here")
+def test_the_name_of_a_suite_may_be_no_utf_8(tltlc: Run, game: Path) -> None:  # noqa: F811
+    name = os.fsdecode(b"g\xff.toml")
+    Path("game.toml").rename(name)
+    words = ("--baseline", "game.baseline.json", "--out", "new", "--changed", "soon", *ONE)
+    found = tltlc("regress", name, "--json", "report.json", "--junit", "report.xml", *words)
+    assert (found.status, found.err.splitlines()[-1]) == (1, "wrote new/report.html: open it in a browser")
+    assert json.loads(Path("report.json").read_text(encoding="utf-8"))["suite"] == "g\ufffd.toml"
+    assert "<title>g\ufffd: regression report</title>" in Path("new/report.html").read_text(encoding="utf-8")
+    assert ET.parse("report.xml").getroot()[0].get("name") == "g\ufffd"
+
+
+def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path) -> None:  # noqa: F811
+    text = Path("room.toml").read_text(encoding="utf-8")
+    Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
+    found = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
+    assert found.out.startswith("room:v0   fail\n    it cannot be played\n    room.toml:")
+    commands = [line for line in found.out.splitlines() if line.startswith("::error file=room.toml,")]
+    assert len(commands) == 3
+    assert "3 cases: 3 fail" in found.out.splitlines()
+    assert found.err.splitlines()[-1].startswith("wrote regression/game/report.html")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--json", "game.toml"), "`game.toml`: the suite reads it"),
+        (("--json", "game.baseline.json"), "`game.baseline.json`: the suite reads it"),
+        (("--html", "room.toml"), "`room.toml`: the suite reads it"),
+        (("--json", "j", "--html", "./j"), "`j`: --json writes it, too"),
+    ],
+)
+def test_nothing_that_is_read_is_overwritten(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    words: tuple[str, ...],
+    said: str,
+) -> None:
+    before = {path: path.read_bytes() for path in game.iterdir() if path.is_file()}
+    found = tltlc("regress", "game.toml", *words)
+    assert (found.status, found.out) == (3, "")
+    assert found.err.startswith(f"error[TLT0005]: cannot write {said}\n  help: name another place with --")
+    assert {path: path.read_bytes() for path in game.iterdir() if path.is_file()} == before
+
+
+def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--github", "--json", "-")
+    assert (found.status, found.out) == (2, "")
+    assert "--github and `--json -` both need standard output" in found.err
+    for minutes in ("nan", "inf", "0"):
+        found = tltlc("regress", "game.toml", "--retrain", "--minutes", minutes)
+        assert found.status == 2 and "invalid value for '--minutes'" in found.err
+    Path("taken").touch()
+    found = tltlc("regress", "game.toml", "--out", "taken/run", *ONE)
+    assert (found.status, found.out) == (3, "")
+    assert found.err == (
+        "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, and no folder\n"
+        "  help: see that there is room, and that you may write there, or name another folder with --out\n"
+    )
+    for name in ("nowhere.toml", ".", "", "/"):
+        found = tltlc("regress", name)
+        assert found.status == 3 and "TLT000" in found.err, found.err
+    for option in ("--json", "--junit", "--html"):
+        found = tltlc("regress", "game.toml", "--fresh", option, "nowhere/report", *ONE)
+        assert (found.status, found.out) == (3, ""), "nothing was played"
+        assert found.err == (
+            "error[TLT0005]: cannot write `nowhere/report`: there is no such folder\n"
+            f"  help: name another place with {option}\n"
+        )
+        found = tltlc("regress", "game.toml", "--fresh", option, "a" * 300, *ONE)
+        assert (found.status, found.out) == (3, "") and "`: file name too long\n" in found.err
+    Path("game.baseline.json").unlink()
+    found = tltlc("regress", "game.toml", *ONE)
+    assert (found.status, found.out) == (1, "")
+    assert found.err == (
+        "error[TLT0903]: the suite `game.toml` has no baseline: there is no `game.baseline.json`\n"
+        "  help: record it: tltlc baseline game.toml\n"
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
+def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str, status: int) -> None:  # noqa: F811
+    # One that never meets its spec, and may: thousands of episodes would tell.
+    endless = 'name = "hopeless"\nepisodes = 10000\nthresholds = { pass_rate = 0.001, fail_rate = 0.0005 }'
+    text = SUITE.replace('name = "hopeless"', endless)
+    Path("game.toml").write_text(text, encoding="utf-8")
+    _lengthen(Path("game.baseline.json"), 10_000)
+    reports = ("--json", "report.json", "--junit", "report.xml")
+    command = [sys.executable, "-m", "tltlc", "regress", "game.toml", *reports, "--github", *ONE]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
+        assert playing.stderr is not None
+        for line in playing.stderr:
+            if line.startswith("hopeless: 25 of at most 10000"):
+                break
+        playing.send_signal(getattr(signal, name))
+        out, err = playing.communicate(timeout=HANG_S)
+    assert playing.returncode == status
+    assert verdicts(out) == ["room:v0 pass", "room:v1 pass"]
+    again = "tltlc regress game.toml --out regression/game --json report.json --junit report.xml --workers 1 --github"
+    assert f"stopped: 2 of 3 cases are judged, and kept; to go on: {again}" in err.splitlines()
+    (tests,) = ET.parse("report.xml").getroot()
+    assert [test.get("name") for test in tests.iter("testcase") if test.find("error") is not None] == ["hopeless"]
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["complete"], len(said["cases"])) == (False, 2)
+    assert Path("regression/game/report.html").exists()
+    # Nobody has to wait for a lock of a process that has gone.
+    Path("game.toml").write_text(text.replace("10000", "25"), encoding="utf-8")
+    found = tltlc("regress", "game.toml", *ONE)
+    assert [line.endswith("(as before)") for line in found.out.splitlines() if line[0] != " "][:2] == [True, True]
+
+
+def _lengthen(baseline: Path, episodes: int) -> None:
+    """Have a baseline's episodes follow each other, again and again, up to so many."""
+    document = json.loads(baseline.read_text(encoding="utf-8"))
+    for each in document["references"]:
+        known = each["accounts"]
+        each["accounts"] = [{**known[index % len(known)], "index": index} for index in range(episodes)]
+    baseline.write_text(json.dumps(document), encoding="utf-8")
+
+
+def test_the_folder_of_a_training_is_none_for_a_run(tltlc: Run, game: Path) -> None:  # noqa: F811
+    Path("training/vault").mkdir(parents=True)
+    Path("training/vault/run.json").touch()
+    found = tltlc("regress", "game.toml", "--out", "training/vault", *ONE)
+    assert (found.status, found.out) == (3, "")
+    assert found.err == (
+        "error[TLT0005]: cannot write into `training/vault`: it is the folder of a training\n"
+        "  help: name another folder with --out\n"
+    )
+    assert [path.name for path in Path("training/vault").iterdir()] == ["run.json"]
+
+
+def test_findings_of_the_shipped_suite_are_said_to_be_meant(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    meant = "v1 and v2 of the shipped levels are changed on purpose: see the page"
+    assert meant not in tltlc("regress", "game.toml", *ONE).out
+    monkeypatch.setattr("tltl_runtime.cli.support.regression_run.SHIPPED", Path("game.toml"))
+    assert meant not in tltlc("regress", "game.toml", *ONE).out, "the finding is of a level as it was designed"
+    edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nvariant = "v1"')
+    assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", meant]
+    assert meant in tltlc("regress", "game.toml", "--json", "-", *ONE).err
+    assert meant not in tltlc("regress", "game.toml", *ONE, "--changed", "easy").out, "all pass"
+
+
+def test_a_pipe_behind_changed_is_not_read(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pipes.put_beside(Path("pipe.toml"))
+    pipes.forbid(monkeypatch)
+    monkeypatch.setattr("tltl_runtime.cli.support.regression_run.run", lambda _: 0)
+    assert tltlc("regress", "--changed", "pipe.toml").status == 0

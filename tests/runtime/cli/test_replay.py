@@ -1,0 +1,297 @@
+"""``tltlc replay``: summaries, checks, plans, films and traces of recorded episodes."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shlex
+import subprocess
+import sys
+from io import BytesIO, StringIO
+from itertools import count
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tltl_runtime.stealth.rendering.film as film
+from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.cli.replay import _VIEWS
+from tltl_runtime.cli.support.notation import NOTATIONS
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.file import write_episode
+from tltl_runtime.stealth.recordings.summary import Notation, judged_with
+from tltl_runtime.stealth.rendering.camera import VIEWS
+from tltl_runtime.stealth.rendering.film import STRIP, frames
+from tltl_runtime.stealth.rendering.film_file import write_gif
+from tltl_runtime.stealth.rendering.plan import draw_episode, state_colour
+from tltlc.core.record import replace
+from tltlc.monitor import Monitor
+from tltlc.monitor.traces import read_trace
+
+STEPS = 20
+FILE = "run.episode.npz"
+
+
+@pytest.fixture(name="episode", scope="module")
+def _episode() -> Episode:
+    """To the first switch of branching, past the change of state."""
+    env = RecordEpisode(make_env("branching"), player="hand")
+    env.reset(seed=2)
+    for step in range(STEPS):
+        env.step([int(step >= 10), int(step < 10), 0, 0, 0])
+    episode = env.episode
+    env.close()
+    assert set(episode.states.tolist()) == {0, 1}
+    return episode
+
+
+@pytest.fixture(name="recorded")
+def _recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, episode: Episode) -> Path:
+    """The current folder, with the file in it."""
+    monkeypatch.chdir(tmp_path)
+    write_episode(FILE, episode)
+    return tmp_path
+
+
+def test_a_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE)
+    lines = found.out.splitlines()
+    assert (found.status, found.err, lines[0]) == (0, "", FILE)
+    assert lines[1] == "  level    branching v0, spec branching"
+    assert lines[2].startswith("  player   hand, seed ")
+    assert lines[3] == "  end      stopped, pending, after 20 of 600 steps, 3.00 s"
+    changes = lines[lines.index("    time  state  progress  what remains") + 1 :]
+    assert changes[0].startswith("    0.00      0     0.000  Reach near(s1), then ")
+    assert lines[4].startswith("  why      stopped after 3.00 s, remaining: Reach near(s2), then ")
+    assert "◇(near(s1) ∧ " in tltlc("replay", FILE, "--notation", "unicode").out
+    assert max(map(len, lines)) <= 80
+    changes = [each for each in changes if each and not each.startswith(" " * 9)]
+    assert [each.split()[1:3] for each in changes] == [["0", "0.000"], ["1", "0.250"]]
+
+
+def test_how_it_ended_is_said_once(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    write_episode("bad.episode.npz", replace(episode, end="violation", verdict="violated"))
+    assert "  end      violation, after 20 of 600 steps, 3.00 s\n" in tltlc("replay", "bad.episode.npz").out
+
+
+def test_the_end_lies_over_all_other_marks(episode: Episode) -> None:
+    def seen(drawn: Episode) -> int:
+        picture = np.asarray(Image.open(BytesIO(draw_episode(drawn))).convert("RGB"))
+        return int((picture == (0x64, 0x74, 0x8B)).all(axis=2).sum())
+
+    plain = replace(episode, end="limit")
+    *before, last = plain.snapshots
+    states = plain.states.copy()
+    states[-1] = 2
+    crowded = replace(plain, states=states, snapshots=(*before, replace(last, health=0.0)))
+    assert seen(crowded) > 0.95 * seen(plain) > 100
+
+
+def test_a_summary_for_programs(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE, FILE, "--format", "json", "--check")
+    first, second = json.loads(found.out)
+    assert first == second and found.status == 0
+    assert (first["steps"], first["seed"], first["end"]) == (STEPS, episode.seed, "stopped")
+    assert first["follows_from_spec"] and first["plays_again"]
+    assert first["reward"] == pytest.approx(episode.rewards.sum())
+    assert [each["state"] for each in first["changes"]] == [0, 1]
+    assert first["cause"]["kind"] == "stopped" and first["cause"]["by"] == []
+
+
+def test_a_check_that_fails(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    write_episode("bent.episode.npz", replace(episode, seed=episode.seed + 1, rewards=episode.rewards + 1e-9))
+    found: Outcome = tltlc("replay", "bent.episode.npz", "--check")
+    assert found.status == 1
+    assert "error[TLT0823]: step 1 of the recording" in found.err and "error[TLT0824]" in found.err
+    assert "the judgement does NOT follow from the signals; played again it is ANOTHER episode" in found.out
+    assert tltlc("replay", "bent.episode.npz").status == 0
+
+
+def test_a_file_that_is_broken_hides_no_other(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    Path("cut.episode.npz").write_bytes(b"")
+    found: Outcome = tltlc("replay", "cut.episode.npz", "gone.episode.npz", FILE)
+    assert found.status == 3 and found.out.startswith(FILE)
+    assert "TLT0820" in found.err and "TLT0001" in found.err
+
+
+def test_the_views_are_those_that_there_are() -> None:
+    assert get_args(film.View) == (*VIEWS, "plan") == _VIEWS
+
+
+def test_the_notations_are_those_that_there_are() -> None:
+    assert get_args(Notation) == NOTATIONS
+
+
+def test_messages_for_programs_are_json(recorded: Path) -> None:
+    Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
+    program = "import sys; from tltlc.interfaces.cli.main import main; main(sys.argv[1:])"
+    arguments = [sys.executable, "-c", program, "replay", "cut.episode.npz", "--format", "json"]
+    done = subprocess.run(arguments, capture_output=True, check=False, timeout=HANG_S)
+    assert done.returncode == 1
+    assert [each["code"] for each in json.loads(done.stderr)["diagnostics"]] == ["TLT0820"]
+
+
+def test_a_plan(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("replay", FILE, "-o", "run.png").status == 0
+    picture = np.asarray(Image.open("run.png").convert("RGB"))
+    for state in (0, 1):
+        colour = [int(state_colour(state)[at : at + 2], 16) for at in (1, 3, 5)]
+        assert (picture == colour).all(axis=2).sum() > 50
+    assert draw_episode(episode) == draw_episode(episode)
+    assert tltlc("replay", FILE, "-o", "small.png", "--size", "500x400").status == 0
+    assert Image.open("small.png").size == (500, 400)
+    assert tltlc("replay", FILE, "-o", "small.png", "--size", "400x300").status == 0
+    small = np.asarray(Image.open("small.png").convert("RGB"))
+    assert (small[:30, [0, 1, 2, -3, -2, -1]] == 255).all()  # the title is not cut
+
+
+def test_a_plan_tells_how_it_ended(episode: Episode) -> None:
+    dead = replace(episode.snapshots[-1], health=0.0)
+    died = replace(episode, snapshots=(*episode.snapshots[:-1], dead), end="violation")
+    pictures = {draw_episode(each) for each in (episode, died, replace(episode, end="success"))}
+    assert len(pictures) == 3
+    assert Image.open(BytesIO(draw_episode(replace(episode, player="$x$")))).size[0] > 500
+
+
+def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("replay", FILE, "-o", "run.gif", "--view", "plan", "--size", "320x240", "--speed", "0.5").status == 0
+    with Image.open("run.gif") as gif:
+        assert (gif.size, gif.n_frames, gif.info["duration"]) == ((320, 240), STEPS + 1, 300)
+    assert tltlc("replay", FILE, "-o", "part.gif", "--from", "1", "--to", "1.5", "--size", "200x200").status == 0
+    with Image.open("part.gif") as gif:
+        assert gif.n_frames == 4  # at 1, 1.15, 1.3 and 1.45 s
+
+
+@pytest.mark.parametrize("view", _VIEWS)
+def test_a_gif_has_the_colours_of_its_frames(tmp_path: Path, episode: Episode, view: film.View) -> None:
+    """Those that come late and are few, too: the switch turns green, and the strip shows the second state."""
+    pictures = list(frames(episode, [0.0, 1.5, 3.0], view, (320, 240)))
+    write_gif(tmp_path / "run.gif", pictures, 0.15)
+    with Image.open(tmp_path / "run.gif") as gif:
+        for number, picture in enumerate(pictures):
+            gif.seek(number)
+            away = np.abs(np.asarray(gif.convert("RGB"), int) - picture).max(axis=2)
+            assert np.percentile(away, 99.9) <= 20
+
+
+def test_an_mp4(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    from imageio_ffmpeg import count_frames_and_secs, read_frames
+
+    assert tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan", "--size", "320x240").status == 0
+    counted, seconds = count_frames_and_secs("run.mp4")
+    assert counted == STEPS + 1 and seconds == pytest.approx(0.15 * (STEPS + 1), abs=0.02)
+    assert next(read_frames("run.mp4"))["size"] == (320, 240)
+    assert tltlc("replay", FILE, "-o", "fast.mp4", "--view", "plan", "--size", "320x240", "--speed", "10").status == 0
+    counted, seconds = count_frames_and_secs("fast.mp4")
+    assert counted == 10 and seconds == pytest.approx(10 / 30, abs=0.02)
+    assert tltlc("replay", FILE, "-o", "slow.mp4", "--view", "plan", "--size", "320x240", "--fps", "20").status == 0
+    counted, seconds = count_frames_and_secs("slow.mp4")
+    assert counted == 61 and seconds == pytest.approx(61 / 20, abs=0.02)
+
+
+def test_frames_show_the_view_and_the_strip(episode: Episode) -> None:
+    for view in ("third_person", "top_down", "plan"):
+        one, other = frames(episode, [0.0, 3.0], view, (240, 200))  # type: ignore[arg-type]
+        assert one.shape == (200, 240, 3) and one.dtype == np.uint8
+        assert (one[:-STRIP] != other[:-STRIP]).any() and (one[-STRIP:] != other[-STRIP:]).any()
+    (again,) = frames(episode, [3.5], "plan", (240, 200))
+    assert (again == other)[-STRIP:].all()
+
+
+def test_a_small_film_shows_how_it_ended(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    last = episode.snapshots[-1].time
+    before, after = frames(replace(episode, end="violation"), [last - 0.01, last], "plan", (320, 240))
+    assert (before[-STRIP:] != after[-STRIP:]).any()
+    paper = after[-1, -1]
+    assert (after[-STRIP:, -4:] == paper).all()  # nothing runs over the edge
+    assert tltlc("replay", FILE, "-o", "run.gif", "--size", "320x240", "--from", "2.9").status == 0
+    with Image.open("run.gif") as gif:
+        assert gif.n_frames == 2  # at 2.9 s, and the end at 3 s
+
+
+def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:
+    moments = [film._moment(episode, time) for time in (0.0, 0.149, 0.15, 0.225, 3.0, 9.0)]
+    assert [row for row, _ in moments] == [0, 0, 1, 1, STEPS, STEPS]
+    assert moments[2][1] is episode.snapshots[1] and moments[-1][1] is episode.snapshots[-1]
+    y = [episode.snapshots[row].player.position[1] for row in (1, 2)]
+    assert moments[3][1].player.position[1] == pytest.approx(sum(y) / 2)
+
+
+def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    written: Outcome = tltlc("replay", FILE, "-o", "run.csv")
+    assert (written.status, written.err.splitlines()[1]) == (0, f"judge it with: {judged_with(episode, 'run.csv')}")
+    lines = BytesIO(Path("run.csv").read_bytes())
+    monitor = Monitor(episode.fspa, episode.params)
+    for row, sample in enumerate(read_trace(lines, "run.csv", episode.fspa.signals), start=1):
+        step = monitor.step(sample)
+        assert (step.state, step.progress) == (episode.states[row], episode.progress[row])
+        assert step.reward == episode.rewards[row - 1]
+    assert row == STEPS
+    program, *words = shlex.split(judged_with(episode, "run.csv"))
+    assert program == "tltlc" and words[1] == "SPEC.tltl:branching"
+    judged: Outcome = tltlc(words[0], ROOT / "examples/branching.tltl:branching", *words[2:])
+    rows = [each for each in csv.DictReader(StringIO(judged.out)) if each["step"].isdecimal()]
+    assert [int(each["state"]) for each in rows] == episode.states[1:].tolist()
+    assert float(rows[-1]["progress"]) == pytest.approx(episode.progress[-1], abs=1e-6)
+    assert tltlc("replay", FILE, "-o", "part.csv", "--from", "2.9").status == 0
+    assert len(Path("part.csv").read_text().splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("-o", "run.avi"), "the ending of `run.avi` says no kind of output: use one of .png, .gif, .mp4, .csv"),
+        (("-o", "run.gif", FILE), "-o takes one FILE"),
+        (("-o", "run.png", "--view", "plan"), "--view is for what -o writes to a .gif or .mp4"),
+        (("-o", "run.png", "--from", "1"), "--from is for what -o writes to a .gif, .mp4 or .csv"),
+        (("-o", "run.png", "--speed", "3"), "--speed is for what -o writes to a .gif or .mp4"),
+        (("-o", "run.csv", "--size", "500x400"), "--size is for what -o writes to a .png, .gif or .mp4"),
+        (("--speed", "2"), "--speed is for what -o writes"),
+        (("-o", "run.mp4", "--size", "321x240"), "the width and the height of an .mp4 are even"),
+        (("--size", "9x9"), "write WIDTHxHEIGHT, each from 160 to 4096"),
+        (("--size", "big"), "write WIDTHxHEIGHT"),
+        (("-o", "run.gif", "--speed", "nan"), "write a number"),
+        (("-o", "run.gif", "--to", "inf"), "write a number"),
+        (("-o", "run.gif", "--from", "-1"), "range"),
+        (("-o", "run.gif", "--from", "8", "--to", "9"), "there is nothing from 8 s to 9 s: the episode ends at 3.00 s"),
+        ((), ""),
+    ],
+)
+def test_usage(tltlc, recorded: Path, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE, *arguments) if arguments else tltlc("replay")
+    assert found.status == 2 and said in found.err
+    assert [path.name for path in recorded.iterdir()] == [FILE]
+
+
+def test_ctrl_c_leaves_nothing(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    calls, framed = count(), film._framed
+
+    def interrupted(*arguments: object) -> object:
+        if next(calls) % 6 == 5:
+            raise KeyboardInterrupt
+        return framed(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(film, "_framed", interrupted)
+    for name in ("run.gif", "run.mp4"):
+        Path(name).write_bytes(b"older")
+        found: Outcome = tltlc("replay", FILE, "-o", name, "--view", "plan")
+        assert found.status == 130 and Path(name).read_bytes() == b"older"
+    assert sorted(path.name for path in recorded.iterdir()) == [FILE, "run.gif", "run.mp4"]
+
+
+def test_no_encoder_is_a_missing_component(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    found: Outcome = tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan")
+    assert found.status == 4 and "pip install imageio-ffmpeg" in found.err.replace("'", "")
+    assert [path.name for path in recorded.iterdir()] == [FILE]
+
+
+def test_a_place_that_cannot_be_written_is_told_before_the_work(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE, "-o", "nowhere/run.mp4")
+    assert found.status == 3 and "error[TLT0005]: cannot write `nowhere/run.mp4`" in found.err

@@ -1,0 +1,225 @@
+"""``tltlc regress --retrain``: what it says, writes and refuses."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from tests.interfaces.cli.conftest import tltlc  # noqa: F401
+from tests.runtime.cli.test_regress import ONE, Run
+from tests.runtime.evaluation.untrained import untrained
+from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
+from tests.runtime.regression.made import several
+from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.evaluation.figures import figures_of
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.regression.retrain.retrained import Retrained, Trained
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.world.physics import WorldError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+RETRAIN = ("regress", "game.toml", "--retrain", "--minutes", "0.02", *ONE)
+FOLDER = "regression/game/retrained/hopeless"
+
+
+@pytest.fixture(name="recorded", scope="module")
+def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A game with its baseline, one of whose cases nobody meets."""
+    folder = tmp_path_factory.mktemp("recorded") / "game"
+    write_game(folder)
+    write_policy(folder / "soon.safetensors", untrained(NEVER, str(folder / "room.toml")))
+    with_baseline(folder / "game.toml")
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def _few_environments(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_few_environments(monkeypatch)
+
+
+def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
+    assert found.status == 1
+    (told,) = (line for line in found.out.splitlines() if line.startswith("hopeless, trained anew"))
+    assert told.startswith("hopeless, trained anew: no way found: neither a search of ")
+    assert found.out.splitlines()[-1] == "3 cases: 2 pass, 1 fail; trained anew: 1 no way found"
+    reports = "--json report.json --junit report.xml --workers 1"
+    again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
+    (longer,) = (line for line in found.out.splitlines() if line.startswith(f"    to train longer: {again}"))
+    assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.04
+    assert f"hopeless: a training begins with its policy, for 0.02 minutes at the most, in {FOLDER}" in found.err
+    assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in found.err
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert said["complete"] is True and said["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
+    *others, hopeless = said["cases"]
+    assert [case["retrained"] for case in others] == [None, None]
+    assert hopeless["retrained"]["outcome"] == "no_way"
+    assert f"hopeless, trained anew: {hopeless['retrained']['text']}" == told
+    assert hopeless["retrained"]["policy"] == "retrained/hopeless/policy.safetensors"
+    (tests,) = ET.parse("report.xml").getroot()
+    assert [each.text for each in tests.iter("system-out")][-1] == hopeless["retrained"]["text"]
+    values = {each.get("name"): each.get("value") for each in tests.iter("property")}
+    assert (values["hopeless.retrained"], values["hopeless.retrained_pass_rate"]) == ("no_way", "0.0000")
+    page = Path("regression/game/report.html").read_text(encoding="utf-8")
+    assert page.count("data:image/png;base64,") == 1 and "no way found: neither" in page
+
+    second = tltlc(*RETRAIN, "--json", "again.json")
+    assert "a training" not in second.err and "episodes" not in second.err, "all of it is kept"
+    assert Path("again.json").read_bytes() == Path("report.json").read_bytes()
+
+    plain = tltlc("regress", "game.toml", "--json", "-", *ONE)
+    assert [case["retrained"] for case in json.loads(plain.out)["cases"]] == [None] * 3
+
+    learned = Path(FOLDER, "policy.safetensors").read_bytes()
+    write_policy("soon.safetensors", untrained(NEVER, "room.toml", seed=7))
+    assert tltlc("baseline", "game.toml", *ONE).status == 0
+    third = tltlc(*RETRAIN)
+    assert (
+        "begins with its policy, anew, since what is kept is of another level, policy, spec, seed or settings"
+        in third.err
+    )
+    assert f"hopeless: the training that was in {FOLDER} is now in {FOLDER}-2" in third.err.splitlines()
+    assert Path(f"{FOLDER}-2", "policy.safetensors").read_bytes() == learned
+
+
+def test_where_all_pass_nothing_is_trained(tltlc: Run, game: Path) -> None:  # noqa: F811
+    text = Path("game.toml").read_text(encoding="utf-8")
+    Path("game.toml").write_text(text.rpartition("[[case]]")[0], encoding="utf-8")
+    found = tltlc(*RETRAIN)
+    assert (found.status, Path("regression/game/retrained").exists()) == (0, False)
+    _training("room-v0")
+    assert tltlc(*RETRAIN, "--fresh").status == 0
+    assert Path("regression/game/retrained/room-v0/policy.safetensors").exists(), "it is not trained again"
+
+
+def _training(slug: str) -> None:
+    """The files of a training that is over, as far as they are looked for."""
+    folder = Path("regression/game/retrained", slug)
+    folder.mkdir(parents=True)
+    for name in ("run.json", "record.json", "policy.safetensors"):
+        (folder / name).touch()
+
+
+def _edited(*_: object) -> Retrained:
+    raise TltlError([Diagnostic("TLT0905", "`room.toml` changed while `edited` was played")])
+
+
+def _left(*_: object) -> Retrained:
+    raise WorldError(load_level("navigation"), 3, "player", "it left")
+
+
+def _told(*_: object) -> Retrained:
+    trained = Trained("minutes", 100, 1.0, 10, False, None)
+    return Retrained("no_way", "no way found", trained, figures_of(several(0, 25)), (0.0, 0.2), None, "policy", None)
+
+
+def _lost(*_: object) -> Retrained:
+    raise TltlError([Diagnostic("TLT0850", "a worker was lost")])
+
+
+def _three(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained]) -> None:
+    """Have a suite of three cases that nobody meets, whose trainings, which take no time, come to these."""
+    head, *_, hopeless = Path("game.toml").read_text(encoding="utf-8").split("[[case]]")
+    cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")]
+    Path("game.toml").write_text(head + "".join(cases), encoding="utf-8")
+    waiting = iter(outcomes)
+    monkeypatch.setattr("tltl_runtime.cli.support.retraining._train", lambda *_: None)
+    monkeypatch.setattr("tltl_runtime.cli.support.retraining.retrained", lambda *_: next(waiting)())
+
+
+def test_what_is_wrong_with_one_training_leaves_the_others(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _three(monkeypatch, _edited, _left, _told)
+    found = tltlc(*RETRAIN, "--json", "report.json")
+    assert found.status == 1
+    lines = found.err.splitlines()
+    first, second = (lines.index(f"{name}: nothing can be said of its training") for name in ("edited", "left"))
+    assert lines[first + 1] == "error[TLT0905]: `room.toml` changed while `edited` was played"
+    assert lines[second + 1] == "error[TLT0806]: level navigation v0, step 3, player: it left"
+    assert "told, trained anew: no way found" in found.out.splitlines()
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert said["complete"] is False
+    assert [case["retrained"] and case["retrained"]["outcome"] for case in said["cases"]] == [None, None, "no_way"]
+
+
+def test_what_is_wrong_with_the_workers_ends_all(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _three(monkeypatch, _lost, _told)
+    found = tltlc(*RETRAIN)
+    assert "error[TLT0850]: a worker was lost" in found.err and "trained anew" not in found.out
+
+
+def test_fresh_trainings_leave_the_older_ones_beside_them(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _three(monkeypatch, _lost)
+    for slug in ("edited", "told"):
+        _training(slug)
+    found = tltlc(*RETRAIN, "--fresh")
+    folder = "regression/game/retrained"
+    for slug in ("edited", "told"):
+        assert f"{slug}: the training that was in {folder}/{slug} is now in {folder}/{slug}-2" in found.err.splitlines()
+        assert Path(folder, f"{slug}-2", "policy.safetensors").exists() and not Path(folder, slug).exists()
+
+
+def test_a_policy_where_its_training_goes_is_told_before_anything_is_played(tltlc: Run, game: Path) -> None:  # noqa: F811
+    Path(FOLDER).mkdir(parents=True)
+    Path("soon.safetensors").rename(Path(FOLDER, "policy.safetensors"))
+    edit("game.toml", '"soon.safetensors"', f'"{FOLDER}"')
+    found = tltlc(*RETRAIN)
+    assert (found.status, found.out) == (1, "")
+    assert found.err.startswith(f"error[TLT0942]: the policy of the case `hopeless` lies in `{FOLDER}`")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--minutes", "5"), "--minutes are those of --retrain"),
+        (("--retrain", "--minutes", "0"), "0 is not in the range"),
+    ],
+)
+def test_what_is_refused(tltlc: Run, game: Path, words: tuple[str, ...], said: str) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *words, *ONE)
+    assert (found.status, found.out) == (2, "")
+    assert said in re.sub(r"\s+", " ", found.err)
+
+
+@pytest.mark.slow
+def test_asked_to_end_it_keeps_what_there_is(game: Path) -> None:
+    command = [sys.executable, "-m", "tltlc"]
+    words = [*command, "regress", "game.toml", "--retrain", "--minutes", "60", *ONE]
+    with subprocess.Popen([*words, "--json", "report.json"], stderr=subprocess.PIPE, text=True) as training:
+        assert training.stderr is not None
+        for line in training.stderr:
+            if line.startswith("searching: "):
+                break
+        training.send_signal(signal.SIGINT)
+        _, err = training.communicate(timeout=HANG_S)
+    assert training.returncode == 130
+    assert (
+        "stopped: all cases are judged, and 1 is still to be trained for; to go on: "
+        "tltlc regress game.toml --out regression/game --json report.json --workers 1 --retrain --minutes 60"
+    ) in err.splitlines()
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["complete"], len(said["cases"]), said["cases"][2]["retrained"]) == (False, 3, None)
+    # Another process, since this one trains in few environments, and a training goes on with its own settings alone.
+    on = subprocess.run([*command, *RETRAIN], capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert f"hopeless: a training goes on, for 0.02 minutes at the most, in {FOLDER}" in on.stderr
+    assert "hopeless, trained anew: no way found" in on.stdout

@@ -1,0 +1,82 @@
+"""C99 and C++17, by GNU's compilers with every warning an error.
+
+A monitor alone is optimized and has sanitizers.  Of all monitors together, C is optimized and C++ has sanitizers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from tests.tools.conformance.runner import Runner, execute
+
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
+SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+C = ("gcc", "-x", "c", "-std=c99")
+CPP = ("g++", "-x", "c++", "-std=c++17")
+_SOURCE = ("-DTLTL_MAIN", "{name}_monitor.h", "-o", "{name}_c", "-lm")
+
+# Each trace has a process of its own, since a program begins with variables that no other has changed.
+_DRIVER = r"""
+#define _POSIX_C_SOURCE 200809L
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+int run(const char *name, int argc, char **argv);
+
+int main(int argc, char **argv) {
+    for (int i = 1; i + 1 < argc; i += 2) {
+        int status = 0;
+        printf("@@ %s\n", argv[i + 1]);
+        fprintf(stderr, "@@ %s\n", argv[i + 1]);
+        fflush(stdout);
+        char full[] = "--full";
+        char *arguments[] = {argv[0], full, argv[i + 1], NULL};
+        const pid_t child = fork();
+        if (child == 0) exit(run(argv[i], 3, arguments));
+        waitpid(child, &status, 0);
+        fprintf(stderr, "@@status %d\n", WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
+    }
+    return 0;
+}
+"""
+
+
+def linked(compiler: Sequence[str], folder: Path, names: Sequence[str]) -> None:
+    """The program ``monitors``: the headers in one unit, side by side."""
+    lines = ["#define TLTL_MAIN"]
+    for name in names:
+        lines += [f"#define main main_of_{name}", f'#include "{name}_monitor.h"', "#undef main"]
+    lines += ["int run(const char *name, int argc, char **argv);"]
+    lines += ["int run(const char *name, int argc, char **argv) {"]
+    lines += [f'    if (strcmp(name, "{name}") == 0) return main_of_{name}(argc, argv);' for name in names]
+    (folder / "monitors.c").write_text("\n".join([*lines, "    return 70;", "}", ""]))
+    (folder / "driver.c").write_text(_DRIVER)
+    execute([*compiler, "monitors.c", "driver.c", "-o", "monitors", "-lm"], folder)
+
+
+RUNNERS = (
+    Runner(
+        name="c",
+        target="c",
+        build=(*C, "-O1", *STRICT, *SANITIZED, *_SOURCE),
+        run=("./{name}_c",),
+        build_all=partial(linked, (*C, "-O1", *STRICT)),
+        run_all=("./monitors",),
+        tools=("gcc",),
+    ),
+    Runner(
+        name="c++",
+        target="c",
+        build=(*CPP, "-O1", *STRICT, *SANITIZED, *_SOURCE),
+        run=("./{name}_c",),
+        build_all=partial(linked, (*CPP, *STRICT, *SANITIZED)),
+        # To look for leaks takes longer than all else that a program does; those alone are looked through.
+        run_all=("env", "ASAN_OPTIONS=detect_leaks=0", "./monitors"),
+        tools=("g++",),
+    ),
+)

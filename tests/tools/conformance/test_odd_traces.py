@@ -1,0 +1,50 @@
+"""The programs of most languages read odd traces, of a table and random ones, as :mod:`tltlc.monitor.traces` does."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from tests.monitor.odd_bytes import csv_traces
+from tests.tools.conformance.runner import Runner, built, runners
+from tests.tools.conformance.runner import problems as differences
+from tltlc.automaton.fspa import Fspa
+from tltlc.tools.conformance.corpus import CASES
+from tltlc.tools.conformance.expected import expected
+from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, VALUES
+
+NAME = "trace_values"
+# C++ is the program of C again, and Godot takes long to read a megabyte.
+LEFT_OUT = ("c++", "gdscript3")
+# Which cannot be used here, and why, tests/tools/conformance/test_conformance.py says.
+USABLE = [runner for runner in runners() if runner.build_all and not runner.missing() and runner.name not in LEFT_OUT]
+
+
+def automaton() -> Fspa:
+    return CASES[NAME]().fspa
+
+
+def problems(run, traces: list[bytes]) -> list[str]:  # type: ignore[no-untyped-def]
+    fspa, found = automaton(), []
+    for trace, outcome in zip(traces, run([(NAME, trace) for trace in traces]), strict=True):
+        found += [f"{trace[:200]!r}: {each}" for each in differences(outcome, expected(fspa, trace), 0.0)]
+    return found
+
+
+@pytest.fixture(scope="module", params=USABLE, ids=lambda runner: runner.name)
+def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory):  # type: ignore[no-untyped-def]
+    runner: Runner = request.param
+    return built(runner, [automaton()], tmp_path_factory.mktemp(runner.name))
+
+
+def test_odd_traces_are_read_alike(run) -> None:  # type: ignore[no-untyped-def]
+    odd = [each.trace for each in (*LINES.values(), *CELLS.values(), *VALUES.values(), *MORE_VALUES.values())]
+    assert not problems(run, odd)
+
+
+# One example is a hundred traces, which one process reads.
+@settings(max_examples=2, phases=(Phase.generate,), suppress_health_check=list(HealthCheck))
+@given(traces=st.lists(csv_traces(), min_size=100, max_size=100))
+def test_random_traces_are_read_alike(run, traces: list[bytes]) -> None:  # type: ignore[no-untyped-def]
+    assert not problems(run, traces)

@@ -1,0 +1,262 @@
+"""``tltlc diff`` as its readers see it: texts in ``golden/NAME``, which ``UPDATE_GOLDEN=1`` writes anew, and JSON."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+from hypothesis import given, settings
+
+from tests.calls import calls
+from tests.interfaces.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
+from tests.logic.strategies import formulas
+from tltlc import TltlError, compile_text
+from tltlc.core.source import SourceFile
+from tltlc.io.spec_file import STDIN_NAME
+from tltlc.logic.formula import Formula
+from tltlc.logic.text.notation import ASCII, write
+from tltlc.monitor.tests import run_tests
+from tltlc.pipeline import compile_source
+from tltlc.tools.diff.diff_json import document
+from tltlc.tools.diff.pairs import FileDiff, diff, diff_files
+from tltlc.tools.diff.text import text
+from tltlc.tools.diff.traces import block, told
+
+GOLDEN = Path(__file__).parent / "golden"
+CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
+SCHEMA = json.loads((ROOT / "tltlc/tools/diff/diff.schema.json").read_text(encoding="utf-8"))
+SMALL = formulas(atoms=("a", "b"), max_leaves=4)
+Run = Callable[..., Outcome]
+
+
+def arguments(case: Path) -> list[str]:
+    return shlex.split((case / "cmd").read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
+    def into(case: Path) -> None:
+        shutil.copytree(case, tmp_path / "case")
+        monkeypatch.chdir(tmp_path / "case")
+
+    return into
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_the_text(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    copy(case)
+    done = tltlc(*arguments(case))
+    expected = case / "expected.txt"
+    if os.environ.get("UPDATE_GOLDEN") == "1":
+        expected.write_text(done.out, encoding="utf-8")
+    assert done.out == expected.read_text(encoding="utf-8")
+    assert done.err == ""
+    assert done.status == (0 if case.name in ("equivalent", "no_specs") else 1)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_the_document(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    copy(case)
+    done = tltlc(*arguments(case), "--format", "json")
+    found = json.loads(done.out)
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    jsonschema.validate(found, SCHEMA)
+    assert found["same"] == (done.status == 0)
+    for spec in found["specs"]:
+        if spec["relation"] is not None:
+            sides = spec["only_a"] is not None, spec["only_b"] is not None
+            relations = {
+                (False, False): "equivalent",
+                (True, False): "stricter",
+                (False, True): "looser",
+                (True, True): "incomparable",
+            }
+            assert spec["relation"] == relations[sides]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_its_tests_pass(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    copy(case)
+    out = tltlc(*arguments(case)).out
+    blocks = re.findall(r"as a test of ([AB]):\n\n(    test .*?^    })$", out, re.DOTALL | re.MULTILINE)
+    for side, written in blocks:
+        file = Path(arguments(case)["AB".index(side) + 1].partition(":")[0])
+        pasted = Path("pasted.tltl")
+        pasted.write_text(f"{file.read_text(encoding='utf-8')}\n{written}\n", encoding="utf-8")
+        assert tltlc("test", pasted).out.splitlines()[-1] == "1 passed, 0 failed"
+
+
+@settings(max_examples=100, deadline=None)
+@given(SMALL, SMALL)
+def test_a_test_tells_the_two_apart(first: Formula, second: Formula) -> None:
+    texts = [f"signal a: bool  signal b: bool  spec s = {write(each, ASCII)}\n" for each in (first, second)]
+    (a,), (b,) = map(compile_text, texts)
+    pair = diff(a, b)
+    for trace in (pair.comparison.only_a, pair.comparison.only_b):
+        if trace is None:
+            continue
+        written = block(pair, told(pair, trace), "one that tells")
+        if written is None:
+            assert not a.atoms and not b.atoms
+            continue
+        side, lines = written
+        results = []
+        for source in texts if side == "A" else texts[::-1]:
+            try:
+                compiled = compile_source(SourceFile("pasted", source + lines))
+            except TltlError:
+                # An atom that the other spec does not have.
+                continue
+            results += [result.passed for result in run_tests(compiled.program, compiled.automata)]
+        assert results[0] is True
+        if {atom.name for atom in a.atoms} == {atom.name for atom in b.atoms}:
+            assert results == [True, False]
+
+
+@settings(max_examples=50, deadline=None)
+@given(SMALL, SMALL)
+def test_every_document_fits_the_schema(first: Formula, second: Formula) -> None:
+    for clause in ("", "semantics infinite "):
+        a, b = (
+            compile_text(f"signal a: bool  signal b: bool  spec s {{ {clause}require {write(each, ASCII)} }}")
+            for each in (first, second)
+        )
+        found = diff_files(("a", a), ("b", b))
+        jsonschema.validate(document(found), SCHEMA)
+        assert text(found).startswith("A is a\nB is b\n")
+
+
+def test_an_artefact_is_the_spec_that_it_was_made_of(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    assert tltlc("compile", "hide.tltl", "-t", "json").status == 0
+    done = tltlc("diff", "hide.fspa.json", "hide.tltl")
+    assert (done.status, done.err) == (0, "")
+    assert "B accepts the same traces as A, and nothing else differs" in done.out
+
+
+def test_what_both_sources_declare_to_be_exclusive(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    declared = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
+    Path("old.tltl").write_text(f"{declared}exclusive a, b, c\nspec s = b\n", encoding="utf-8")
+    Path("new.tltl").write_text(f"{declared}exclusive a, b\nspec s = !a\n", encoding="utf-8")
+    Path("free.tltl").write_text(f"{declared}exclusive a, c\nspec s = !a\n", encoding="utf-8")
+
+    def said(old: str, new: str) -> tuple[str, list[list[str]] | None]:
+        (spec,) = json.loads(tltlc("diff", old, new, "--format", "json").out)["specs"]
+        return spec["relation"], spec["only_a"]
+
+    assert said("old.tltl", "new.tltl") == ("looser", None)
+    assert said("old.tltl", "free.tltl") == ("incomparable", [["b", "a"]])
+
+
+def test_what_an_artefact_does_not_know_to_be_exclusive(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    declared = "signal a: bool\nsignal b: bool\nsignal x in [0, 9]\n"
+
+    def said(spec: str, source: str) -> list[dict[str, object]]:
+        """What is said of the spec as an artefact against the source, and the other way round."""
+        Path("of.tltl").write_text(spec, encoding="utf-8")
+        Path("new.tltl").write_text(source, encoding="utf-8")
+        assert tltlc("compile", "of.tltl", "-t", "json").status == 0
+        sides = ("s.fspa.json", "new.tltl"), ("new.tltl", "s.fspa.json")
+        return [json.loads(tltlc("diff", *pair, "--format", "json").out)["specs"][0] for pair in sides]
+
+    exclusive = f"{declared}exclusive a, b\nspec s = !a\n"
+    there, back = said(f"{declared}exclusive a, b\nspec s = b\n", exclusive)
+    assert (there["relation"], back["relation"]) == ("looser", "stricter")
+    assert there["exclusive"] == [{"atoms": ["a", "b"], "in_a": False, "in_b": True}]
+    assert back["exclusive"] == [{"atoms": ["a", "b"], "in_a": True, "in_b": False}]
+    judged_on = (
+        "judged on traces in which at most one of these holds at a time:\n    `a` and `b` (exclusive in B alone)\n"
+    )
+    assert judged_on in tltlc("diff", "s.fspa.json", "new.tltl").out
+
+    # An artefact of both atoms that has no such group was made where they are not exclusive.
+    there, _ = said(f"{declared}spec s = b & (a | !a & X a)\n", exclusive)
+    assert (there["relation"], there["exclusive"]) == ("incomparable", [])
+
+    # The atom of that name is another one there.
+    of_x = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\n"
+    there, _ = said(f"{of_x.format(5)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    assert (there["relation"], there["exclusive"]) == ("incomparable", [])
+    there, _ = said(f"{of_x.format(6)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    assert there["relation"] == "looser"
+
+
+def test_atoms_that_two_sources_call_alike_are_not_exclusive_in_both(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    text = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\nexclusive a, b\nspec s = {}\n"
+    Path("old.tltl").write_text(text.format(5, "b"), encoding="utf-8")
+    for number, relation in ((5, "looser"), (6, "incomparable")):
+        Path("new.tltl").write_text(text.format(number, "!a"), encoding="utf-8")
+        (spec,) = json.loads(tltlc("diff", "old.tltl", "new.tltl", "--format", "json").out)["specs"]
+        assert spec["relation"] == relation
+    assert tltlc("diff", "old.tltl", "new.tltl", "--by-name").out.count("B is looser") == 1
+
+
+def test_why_there_is_no_relation(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    Path("ever.tltl").write_text("signal seen: bool\nspec hide { semantics infinite avoid seen }\n", encoding="utf-8")
+    done = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
+    (spec,) = json.loads(done.out)["specs"]
+    assert (done.status, spec["relation"]) == (1, None)
+    assert spec["reason"] == (
+        "B is of another kind than A: A is about traces that end, B about traces that never end, so no trace is one of "
+        "both. To compare what they ask for, give both the same `semantics`."
+    )
+    assert spec["beginnings"] == {"relation": "equivalent", "only_a": None, "only_b": None}
+    text = "signal seen: bool\nspec hide { semantics infinite avoid not seen }\n"
+    Path("ever.tltl").write_text(text, encoding="utf-8")
+    done = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
+    (spec,) = json.loads(done.out)["specs"]
+    assert spec["beginnings"] == {"relation": "incomparable", "only_a": [[]], "only_b": [["seen"]]}
+    jsonschema.validate(json.loads(done.out), SCHEMA)
+    (same,) = json.loads(tltlc("diff", "hide.tltl", "hide.tltl", "--format", "json").out)["specs"]
+    assert (same["relation"], same["reason"]) == ("equivalent", None)
+
+
+def test_one_side_names_the_spec_of_both(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    Path("two.tltl").write_text("signal seen: bool\nspec show = F seen\nspec hide = G !seen\n", encoding="utf-8")
+    assert tltlc("diff", "hide.tltl:hide", "two.tltl").status == 0
+    assert tltlc("diff", "two.tltl", "hide.tltl:hide").status == 0
+    # The only spec of a file is meant whatever its name.
+    assert "show and hide\n  B accepts other traces than A" in tltlc("diff", "two.tltl:show", "hide.tltl").out
+    assert tltlc("diff", "two.tltl", "hide.tltl").status == 1
+    two = tltlc("diff", "hide.tltl", "two.tltl:nothing")
+    assert (two.status, two.out) == (2, "")
+    Path("three.tltl").write_text("signal seen: bool\nspec a = F seen\nspec b = G seen\n", encoding="utf-8")
+    several = tltlc("diff", "three.tltl", "two.tltl:hide")
+    assert several.status == 2 and "TLT0721" in several.err
+
+
+def test_specs_of_other_names_are_named_as_arguments() -> None:
+    found = FileDiff(STDIN_NAME, "b.tltl", (), ("one", "two"), ("other",))
+    assert "name both, e.g. `-:one` and `b.tltl:other`" in text(found)
+
+
+def test_what_cannot_be_read(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    assert tltlc("diff", "hide.tltl", "gone.tltl").status == 3
+    Path("broken.tltl").write_text("spec hide = G !seem\n", encoding="utf-8")
+    broken = tltlc("diff", "hide.tltl", "broken.tltl")
+    assert broken.status == 1 and "TLT0201" in broken.err and broken.out == ""
+    assert tltlc("diff", "-", "-").status == 2
+
+
+@pytest.mark.parametrize("names", [("cover_and_hide", "branching"), ("navigation", "navigation")])
+def test_it_takes_less_than_three_times_the_calls_of_compiling_both(names: tuple[str, str]) -> None:
+    sources = [SourceFile(name, (ROOT / f"examples/{name}.tltl").read_text(encoding="utf-8")) for name in names]
+
+    def compiled() -> None:
+        for source in sources:
+            compile_source(source)
+
+    automata = [compile_source(source).automata for source in sources]
+
+    def both() -> None:
+        compiled()
+        text(diff_files(("a", automata[0]), ("b", automata[1]), one_each=True))
+
+    both()  # the libraries are read
+    assert calls(both) < 3 * calls(compiled)

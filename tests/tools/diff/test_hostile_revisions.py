@@ -1,0 +1,213 @@
+"""Git trees that nobody makes by ``git add``: their paths lead elsewhere, or are too many."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.tools.diff.test_breaking import git, needs_git, repository  # noqa: F401
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.io.limits import Limit
+from tltlc.tools.diff import git as revisions
+
+Run = Callable[..., Outcome]
+
+pytestmark = needs_git
+
+PLAIN, FOLDER = b"100644", b"40000"
+
+
+def stored(kind: str, content: bytes) -> bytes:
+    """The name, in hexadecimal, of an object that git stores without a look at it."""
+    command = ["git", "hash-object", "-t", kind, "-w", "--stdin", "--literally"]
+    return subprocess.run(command, input=content, check=True, capture_output=True).stdout.strip()
+
+
+def tree(*entries: tuple[bytes, bytes, bytes]) -> bytes:
+    """A tree of entries: mode, name, and the object in hexadecimal."""
+    lines = (mode + b" " + name + b"\0" + bytes.fromhex(of.decode()) for mode, name, of in entries)
+    return stored("tree", b"".join(lines))
+
+
+def revision(name: str, top: bytes) -> str:
+    """A branch whose commit holds a tree."""
+    about = b"author t <t@t> 0 +0000\ncommitter t <t@t> 0 +0000\n\nx\n"
+    git("update-ref", f"refs/heads/{name}", stored("commit", b"tree " + top + b"\n" + about).decode())
+    return name
+
+
+@pytest.fixture
+def inside(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:  # noqa: F811
+    """Where temporary folders are made; a file of the user lies beside them."""
+    place = tmp_path / "temporary"
+    (place / "deep").mkdir(parents=True)
+    (place / "mine.tltl").write_text("my work")
+    monkeypatch.setattr("tempfile.tempdir", str(place / "deep"))
+    return place
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("levels", [1, 2, 5])
+@pytest.mark.parametrize("command", ["breaking", "diff"])
+def test_an_entry_above_the_folder_is_refused(inside: Path, tltlc: Run, levels: int, command: str) -> None:  # noqa: F811
+    top = tree((PLAIN, b"mine.tltl", stored("blob", b"overwritten")))
+    for _ in range(levels):
+        top = tree((FOLDER, b"..", top))
+    name = revision("bad", top)
+    before = files(inside)
+    if command == "breaking":
+        done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    else:
+        done = tltlc("diff", f"{name}:specs/leave.tltl", "specs/leave.tltl")
+    assert (done.status, done.out) == (3, "")
+    path = "../" * levels + "mine.tltl"
+    assert done.err == (
+        f"error[TLT0009]: the revision `bad` holds the path `{path}`, which leads out of its folder\n"
+        "  help: use another revision: `git fsck` names the damaged tree, which `git add` does not make\n"
+    )
+    assert files(inside) == before
+
+
+def test_an_absolute_entry_is_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+    target = inside / "mine.tltl"
+    name = revision("bad", tree((PLAIN, str(target).encode(), stored("blob", b"overwritten"))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert (done.status, target.read_text()) == (3, "my work")
+    assert "error[TLT0009]" in done.err
+
+
+def test_an_entry_that_is_a_file_and_a_folder_is_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+    blob = stored("blob", b"")
+    below = tree((PLAIN, b"b.tltl", blob))
+    name = revision("bad", tree((PLAIN, b"a.tltl", blob), (FOLDER, b"a.tltl", below)))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert done.status == 3
+    assert "two entries for `a.tltl/b.tltl`" in done.err
+
+
+def test_names_that_differ_in_capitals_have_a_help_that_is_right(
+    inside: Path,
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A file system that ignores case, as macOS and Windows have it: the revision is a sound one."""
+    blob = stored("blob", b"")
+    name = revision("capitals", tree((PLAIN, b"Leave.tltl", blob), (PLAIN, b"leave.tltl", blob)))
+    monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, path, archive: folder / path.lower())
+    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert done.status == 3
+    assert done.err == (
+        "error[TLT0009]: the revision `capitals` holds `Leave.tltl` and `leave.tltl`, which the file system here takes "
+        "for one path\n"
+        "  help: run this on Linux, or name a revision in which the file has another name\n"
+    )
+
+
+def test_a_tree_of_billions_of_paths_is_refused(
+    inside: Path,
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    top = tree((PLAIN, b"x", stored("blob", b"")))
+    for _ in range(10):
+        top = tree(*((FOLDER, b"%02d" % number, top) for number in range(10)))
+    monkeypatch.setattr(revisions, "REVISION_PATHS", Limit(size=1 << 20, values=1000))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
+    assert (done.status, done.out) == (3, "")
+    assert done.err == (
+        "error[TLT0764]: the revision `bomb` holds more than 1,000 paths\n"
+        "  help: take out the part to compare, and name its folder: `--against DIR`\n"
+    )
+
+
+def test_a_tree_of_too_many_specs_is_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+    blob = stored("blob", b"spec a = true\n")
+    many = tree(*((PLAIN, b"%03d.tltl" % number, blob) for number in range(200)))
+    name = revision("bomb", tree(*((FOLDER, b"%03d" % number, many) for number in range(101))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert done.status == 3
+    assert "the revision `bomb` holds more than 20,000 specs and artefacts" in done.err
+
+
+def test_specs_that_are_too_large_together_are_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+    blob = stored("blob", bytes(10 << 20))
+    name = revision("bomb", tree(*((PLAIN, b"%03d.tltl" % number, blob) for number in range(30))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert done.status == 3
+    assert "the revision `bomb` holds more than 256 MiB of specs and artefacts" in done.err
+
+
+def nested(name: bytes, levels: int, top: bytes) -> bytes:
+    """A tree in as many folders, each of which has that name."""
+    for _ in range(levels):
+        top = tree((FOLDER, name, top))
+    return top
+
+
+def doubled(levels: int, names: tuple[bytes, bytes], top: bytes) -> bytes:
+    """A tree of two to the power of ``levels`` paths."""
+    for _ in range(levels):
+        top = tree(*((FOLDER, name, top) for name in names))
+    return top
+
+
+@pytest.mark.parametrize("kind", ["empty", "long"])
+def test_folders_without_end_are_refused(inside: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch, kind: str) -> None:  # noqa: F811
+    """Folders without any file, and few paths that are long each: neither is a matter of the number of files."""
+    monkeypatch.setattr(revisions, "REVISION_PATHS", Limit(size=1 << 20, values=1000))
+    if kind == "empty":
+        top = doubled(60, (b"a", b"b"), tree())
+    else:
+        top = doubled(60, (b"a" * 4000, b"b" * 4000), tree((PLAIN, b"x", stored("blob", b""))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
+    assert (done.status, done.out) == (3, "")
+    what = "paths of more than 1 MiB" if kind == "long" else "more than 1,000 paths"
+    assert f"error[TLT0764]: the revision `bomb` holds {what}" in done.err
+
+
+def test_a_path_of_megabytes_is_read_no_further(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.BytesIO(b"100644 blob 0\t" + bytes([97]) * (50 << 20))
+    with pytest.raises(TltlError, match="TLT0764: the revision `bomb` holds a path of more than 1 MiB"):
+        list(revisions._listed(stream, "bomb"))
+    assert stream.tell() < 2 << 20
+
+
+def test_paths_are_the_same_in_whichever_blocks_they_come() -> None:
+    names = [b"a" * length + b".tltl" for length in (1, 65_000, 65_516, 65_517, 65_518, 200_000, 3)]
+    listed = b"".join(b"100644 blob %d\t%s\0" % (place, name) for place, name in enumerate(names))
+    found = list(revisions._listed(io.BytesIO(listed), "v1"))
+    assert [(file.name, file.path.encode()) for file in found] == [(str(i), name) for i, name in enumerate(names)]
+
+
+@pytest.mark.parametrize(
+    ("name", "levels", "why"),
+    [
+        (b"d", 1000, "which has more than 100 parts"),
+        (b"d" * 200, 60, "which is longer than 4,096 bytes"),
+        (b"d" * 400, 1, "a part of which is longer than 255 bytes"),
+    ],
+    ids=["deep", "long", "long part"],
+)
+def test_a_path_that_no_folder_can_hold_is_refused(
+    inside: Path,
+    tltlc: Run,  # noqa: F811
+    name: bytes,
+    levels: int,
+    why: str,
+) -> None:
+    top = nested(name, levels, tree((PLAIN, b"leave.tltl", stored("blob", b"spec a = true\n"))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bad", top))
+    assert (done.status, done.out) == (3, "")
+    assert "error[TLT0009]: the revision `bad` holds the path `dd" in done.err or "`d/d" in done.err
+    assert why in done.err
+    # The name itself is shortened.
+    assert len(done.err) < 700
+    assert "…" in done.err

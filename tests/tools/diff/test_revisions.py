@@ -1,0 +1,162 @@
+"""``tltlc diff REV:FILE``: a file as it was in a revision of git, with the imports that it had there."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.tools.diff.test_breaking import LIBRARY, SPEC, commit, git, needs_git, repository, write  # noqa: F401
+
+Run = Callable[..., Outcome]
+
+pytestmark = needs_git
+
+
+def relation(done: Outcome) -> str:
+    (spec,) = json.loads(done.out)["specs"]
+    return str(spec["relation"])
+
+
+def test_a_file_since_a_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    assert tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl").status == 0
+    write(specs__leave=SPEC.replace("keep alive", "keep alive\n    avoid door and not alive"))
+    write(libs__mine=LIBRARY.replace("= health", "= health - 10 %"))
+    done = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl", "--format", "json")
+    # The import is the old one, too.
+    assert (done.status, relation(done), json.loads(done.out)["a"]) == (1, "stricter", "v1:specs/leave.tltl")
+    assert relation(tltlc("diff", "specs/leave.tltl", "HEAD:specs/leave.tltl:leave", "--format", "json")) == "looser"
+
+
+def test_between_revisions(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    write(specs__exit=SPEC.replace("    keep alive\n", ""), specs__leave="spec other = F true\n")
+    commit("v2")
+    assert tltlc("compile", "specs/exit.tltl", "-t", "json", "-o", "specs").status == 0
+    commit("v3")
+    Path("specs/exit.tltl").unlink()
+    Path("specs/leave.fspa.json").unlink()
+    monkeypatch.chdir(repository / "specs")
+    for new in ("v2:exit.tltl", "v3:leave.fspa.json"):
+        assert relation(tltlc("diff", "v1:leave.tltl", new, "--format", "json")) == "looser"
+
+
+def test_what_is_not_there(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    gone = tltlc("diff", "v1:leave.tltl", "specs/leave.tltl")
+    assert (gone.status, gone.out) == (3, "")
+    assert gone.err == (
+        "error[TLT0751]: there is no file `leave.tltl` in `v1`\n"
+        "  help: name a file that was there, by its path from the current folder\n"
+    )
+    assert "there is no revision and no folder `v9`" in tltlc("diff", "v9:specs/leave.tltl", "-").err
+    # A file of now that is called so is meant itself.
+    write(**{"v1:leave": "spec other = true\n"})
+    assert tltlc("diff", "v1:leave.tltl", "v1:leave.tltl:other").status == 0
+    write(specs__leave=SPEC.replace("door", "dor", 1))
+    commit("v2")
+    broken = tltlc("diff", "v2:specs/leave.tltl", "v1:specs/leave.tltl")
+    assert (broken.status, broken.out) == (1, "")
+    assert "\n  v2:specs/leave.tltl:4:11\n" in broken.err
+
+
+def test_a_branch_that_is_called_like_a_file(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    git("branch", "same")
+    Path("same").write_text("a file")
+    assert tltlc("diff", "same:specs/leave.tltl", "specs/leave.tltl").status == 0
+    assert tltlc("breaking", "specs", "--against", "same").status == 0
+    Path("other").write_text("a file")
+    done = tltlc("breaking", "specs", "--against", "other")
+    assert "error[TLT0751]: `other` is a file, and neither a folder nor a revision\n" in done.err
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "way_out"),
+    [
+        ("^HEAD", "there is no revision and no folder `^HEAD`", "`git log` and `git tag` list revisions"),
+        ("blob", "`blob` names something in git that is no commit", "name the commit that holds it"),
+        ("folder", "`folder` names something in git that is no commit", "name the commit that holds it"),
+    ],
+)
+def test_what_is_no_commit(repository: Path, tltlc: Run, name: str, title: str, way_out: str) -> None:  # noqa: F811
+    git("tag", "blob", "HEAD:specs/leave.tltl")
+    git("tag", "folder", "HEAD^{tree}")
+    done = tltlc("breaking", "specs", "--against", name)
+    assert (done.status, done.err) == (3, f"error[TLT0751]: {title}\n  help: {way_out}\n")
+
+
+@pytest.mark.parametrize("lost", [True, False])
+def test_a_file_that_git_cannot_give(repository: Path, tltlc: Run, lost: bool) -> None:  # noqa: F811
+    command = ["git", "rev-parse", "HEAD:specs/leave.tltl"]
+    name = subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    place = Path(".git/objects", name[:2], name[2:])
+    place.unlink()
+    if not lost:
+        place.write_bytes(b"")
+    done = tltlc("diff", "HEAD:specs/leave.tltl", "specs/leave.tltl")
+    title = "git does not give `specs/leave.tltl` of the revision `HEAD`"
+    assert (done.status, f"error[TLT0751]: {title}\n  help: fetch it, or take it" in done.err) == (3, True)
+
+
+def test_a_file_outside_of_the_repository(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    done = tltlc("diff", "HEAD:../../x.tltl", "specs/leave.tltl")
+    outside = repository.absolute().parents[1]
+    assert f"`{outside}` lies in no git repository in which it could be a revision\n" in done.err
+
+
+def test_a_repository_that_git_cannot_use(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    Path(".git/HEAD").unlink()
+    done = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl")
+    assert f"error[TLT0751]: git cannot use the repository of `{repository.absolute()}`\n" in done.err
+
+
+def test_a_repository_without_files_of_now(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(repository / ".git")
+    done = tltlc("breaking", ".", "--against", "HEAD")
+    assert "belongs to git itself, and holds no files of now" in done.err
+
+
+def test_a_repository_whose_name_ends_in_a_line_end(
+    repository: Path,  # noqa: F811
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    odd = repository.with_name("odd\n")
+    repository.rename(odd)
+    monkeypatch.chdir(odd)
+    assert tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl").status == 0
+
+
+def test_links_lead_where_they_led_in_the_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    Path("specs/link.tltl").symlink_to("leave.tltl")
+    Path("specs/chain.tltl").symlink_to("link.tltl")
+    Path("shortcut").symlink_to("specs")
+    # Of these, git prints no file, and the lines below must not be taken for another link's.
+    Path("specs/dangling.tltl").symlink_to("nowhere.tltl")
+    Path("specs/loop.tltl").symlink_to("loop.tltl")
+    Path("specs/outside.tltl").symlink_to("/nowhere\nblob 0123456789")
+    write(
+        specs__user='import "./chain.tltl"\nspec user = F true\n', specs__stricter=SPEC.replace("    keep alive\n", "")
+    )
+    commit("v2")
+    Path("specs/link.tltl").unlink()
+    Path("specs/link.tltl").symlink_to("stricter.tltl")
+    for old in ("link", "chain"):
+        for folder in ("specs", "shortcut"):
+            done = tltlc("diff", f"v2:{folder}/{old}.tltl", f"specs/{old}.tltl", "--format", "json")
+            assert relation(done) == "looser"
+    assert relation(tltlc("diff", "v2:specs/user.tltl", "specs/user.tltl", "--format", "json")) == "equivalent"
+    for other in ("dangling", "loop", "outside"):
+        assert "TLT0751" in tltlc("diff", f"v2:specs/{other}.tltl", "specs/leave.tltl").err
+
+
+def test_a_link_from_outside_stands_for_the_file_in_the_repository(
+    repository: Path,  # noqa: F811
+    tltlc: Run,  # noqa: F811
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    link = tmp_path_factory.mktemp("outside") / "leave.tltl"
+    link.symlink_to(Path("specs/leave.tltl").absolute())
+    assert tltlc("diff", f"v1:{link}", "specs/leave.tltl").status == 0

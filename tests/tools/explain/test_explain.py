@@ -1,0 +1,242 @@
+"""What is said of specs, against their automata and formulas; the texts of the examples are goldens."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import jsonschema
+import pytest
+from hypothesis import given, settings
+
+import tltlc as compiler
+from tests.calls import calls
+from tests.interfaces.cli.conftest import EXAMPLE, Outcome, inside, tltlc
+from tests.logic.strategies import formulas
+from tltlc.automaton.compare import Letter
+from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.io.files import read_source
+from tltlc.logic.formula import Formula
+from tltlc.logic.oracle import all_traces, robustness_of_state
+from tltlc.logic.text.printer import ascii_text
+from tltlc.monitor.guards import holds
+from tltlc.pipeline import compile_source
+from tltlc.tools.explain.explanation import explain
+from tltlc.tools.explain.formulas import formula_of, guard_reader
+from tltlc.tools.explain.sections import Table, document
+from tltlc.tools.explain.text import text
+from tltlc.tools.explain.values import values
+from tltlc.tools.witness import blocks
+
+__all__ = ["inside", "tltlc"]
+
+Run = Callable[..., Outcome]
+
+ROOT = Path(__file__).parents[3]
+EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
+GOLDEN = Path(__file__).parent / "golden"
+SCHEMA = json.loads((ROOT / "tltlc/tools/explain/explain.schema.json").read_text(encoding="utf-8"))
+FORMULAS = formulas(atoms=("a", "b", "c"), max_leaves=5)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_the_text_of_the_examples(path: Path) -> None:
+    compiled = compile_source(read_source(path))
+    found = "\n".join(
+        text(explain(fspa, spec.formula)) for fspa, spec in zip(compiled.automata, compiled.program.specs, strict=True)
+    )
+    golden = GOLDEN / f"{path.stem}.txt"
+    if os.environ.get("UPDATE_GOLDEN") == "1":
+        golden.write_text(found, encoding="utf-8")
+    assert found == golden.read_text(encoding="utf-8")
+    assert all(len(line) <= 100 and line == line.rstrip() for line in found.splitlines())
+
+
+def test_no_golden_is_left_over() -> None:
+    assert {path.stem for path in GOLDEN.iterdir()} == {path.stem for path in EXAMPLES}
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_an_artefact_says_what_its_file_says(path: Path) -> None:
+    compiled = compile_source(read_source(path))
+    for fspa, spec in zip(compiled.automata, compiled.program.specs, strict=True):
+        assert explain(fspa) == explain(fspa, spec.formula)
+
+
+@settings(max_examples=150, deadline=None)
+@given(FORMULAS)
+def test_a_formula_is_read_back_from_its_text(formula: Formula) -> None:
+    fspa = build(spec_from_formula(formula))
+    found = formula_of(fspa)
+    assert found is not None
+    assert ascii_text(found) == ascii_text(formula)
+
+
+def test_names_in_names_are_told_apart() -> None:
+    text_ = "signal x in [-9, 9]  signal y in [0, 9]  signal x1: bool  signal F1.x: bool\n"
+    text_ += "spec s = F x > 1 & G(x + y > 1 -> x > 1.5) & (!x1 U F1.x) & F -x > 1"
+    (fspa,) = compiler.compile_text(text_)
+    found = formula_of(fspa)
+    assert found is not None
+    assert ascii_text(found) == fspa.formula.ascii
+    assert set(found.atoms()) == {each.name for each in fspa.atoms}
+
+
+@settings(max_examples=100, deadline=None)
+@given(FORMULAS)
+def test_guards_are_read_back_from_their_texts(formula: Formula) -> None:
+    fspa = build(spec_from_formula(formula))
+    read = guard_reader(fspa)
+    names = [each.name for each in fspa.atoms]
+    for edge in fspa.edges:
+        for number in range(2 ** len(names)):
+            truth = {name: 1.0 if number >> place & 1 else -1.0 for place, name in enumerate(names)}
+            said = robustness_of_state(read(edge.guard), truth) > 0
+            assert said == holds(edge.guard, [truth[name] for name in names])
+
+
+@settings(max_examples=100, deadline=None)
+@given(FORMULAS)
+def test_the_fields_are_those_of_the_automaton(formula: Formula) -> None:
+    fspa = build(spec_from_formula(formula))
+    found = explain(fspa, formula)
+    verdicts = {state.verdict for state in fspa.states}
+    assert [(state.id, state.verdict, state.distance) for state in found.states] == [
+        (state.id, state.verdict, state.distance) for state in fspa.states
+    ]
+    for state in found.states:
+        assert bool(state.leads) == bool(state.distance)
+        for lead in state.leads:
+            assert (there := found.states[lead.state].distance) is not None and there <= (state.distance or 0)
+            assert there != state.distance or is_looser(fspa, state.id, lead.state)
+    assert (found.succeed is None) == (verdicts == {"violated"})
+    if found.fail is not None:
+        assert found.states[found.fail.steps[-1].state].verdict == "violated"
+    if found.succeed is not None:
+        assert fspa.states[found.succeed.steps[-1].state].accepting
+    jsonschema.validate({"specs": [values(found)]}, SCHEMA)
+
+
+def is_looser(fspa: Fspa, one: int, other: int) -> bool:
+    """Whether another state accepts all short traces that the one does."""
+    traces = all_traces(tuple(atom.name for atom in fspa.atoms), 3)
+    return all(ends_well(fspa, other, trace) for trace in traces if ends_well(fspa, one, trace))
+
+
+def ends_well(fspa: Fspa, state: int, letters: Iterable[Letter]) -> bool:
+    for letter in letters:
+        truth = blocks.values(fspa, letter)
+        state = next(edge.target for edge in fspa.edges_from(state) if holds(edge.guard, truth))
+    return fspa.states[state].accepting
+
+
+def test_one_goal_at_a_time_stands_before_several_at_once() -> None:
+    (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { reach a  reach b }")
+    assert [lead.when for lead in explain(fspa).states[0].leads] == ["b and not a", "a and not b", "a and b"]
+    # The time that passes is no lead.
+    (fspa,) = compiler.compile_text("signal a: bool  spec s = F[0,3] a")
+    assert [lead.when for lead in explain(fspa).states[0].leads] == ["a"]
+
+
+@pytest.mark.parametrize(
+    ("formula", "rows"),
+    [
+        ("F[0,100] a & G !b", ["0", "1", "2, 4–100", "3", "101", "102"]),
+        ("X X X X X X a", ["0", "1–4", "5", "6", "7", "8"]),
+        ("F a", ["0", "1"]),
+    ],
+)
+def test_states_that_count_share_a_row(formula: str, rows: list[str]) -> None:
+    (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s = {formula}")
+    found = explain(fspa)
+    (section,) = (each for each in document(found) if each.heading == "States")
+    (table,) = section.blocks
+    assert isinstance(table, Table)
+    assert [row[0] for row in table.rows] == rows
+    assert len(values(found)["states"]) == len(fspa.states)
+
+
+def test_a_row_for_many_states_says_what_they_count_and_where_they_lead() -> None:
+    (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { require G (b -> F[0,20] a) }")
+    said = " ".join(text(explain(fspa)).split())
+    assert said.count("18…1 steps.") == 1
+    (fspa,) = compiler.compile_text("signal a: bool  spec s = X X X X X X a")
+    row = "  1–4    pending    6…3    Have a after 5…2 steps.      anything (to the next)\n"
+    assert row in text(explain(fspa))
+
+
+def test_what_breaks_a_spec_is_said_reason_by_reason() -> None:
+    (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { keep a  avoid b  require F a }")
+    found = [(failure.when, failure.everywhere) for failure in explain(fspa).failures]
+    assert found == [("not a", True), ("b", True)]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_the_document_of_the_examples(path: Path, tltlc: Run) -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    jsonschema.validate(json.loads(tltlc("explain", path, "--format", "json").out), SCHEMA)
+
+
+def test_json_and_markdown(tltlc: Run) -> None:
+    document = json.loads(tltlc("explain", EXAMPLE, "--format", "json").out)
+    (spec,) = document["specs"]
+    assert spec["name"] == "cover_and_hide"
+    assert spec["outline"]["goals"] == [
+        [{"text": name, "together": False} for name in ("near(s1)", "near(s2)", "near(exit)")]
+    ]
+    assert spec["outline"]["throughout"] == ["keep alive"]
+    assert spec["failures"] == [{"when": "not alive", "states": [0, 1, 3, 4], "everywhere": True}]
+    assert [step["what"] for step in spec["fail"]["steps"]] == ["not alive"]
+    markdown = tltlc("explain", EXAMPLE, "--format", "markdown").out
+    assert markdown.startswith("# cover\\_and\\_hide\n\nButton 1,")
+    assert "| 2 | violated | - | The spec is violated. |  |\n" in markdown
+
+
+def test_a_file_is_explained_spec_by_spec(tltlc: Run, inside: Path) -> None:
+    Path("two.tltl").write_text("signal a: bool\nspec one = F a\nspec two { keep a  judge at limit }\n")
+    both = tltlc("explain", "two.tltl")
+    assert both.out.startswith("one\n===\n") and "\n\ntwo\n===\n" in both.out
+    assert tltlc("explain", "two.tltl:two").out.startswith("two\n===\n")
+    assert "goes on until the game ends it" in both.out
+    missing = tltlc("explain", "two.tltl:three")
+    assert (missing.status, missing.out) == (2, "")
+    assert "TLT0720" in missing.err
+
+
+@pytest.mark.parametrize(
+    ("clauses", "said"),
+    [
+        ("reach a & F b", "    1. a\n    2. now or later, b\n"),
+        ("require F(a & b) & G(a -> F b)", "    - whenever a, reach b at that step or later\n"),
+        ("require a U b", "  Do this:\n    - reach b, keeping a until then\n"),
+        ("require F a | G !a", "There is none: every trace meets it."),
+        ("require F a & G !a", "It cannot be met at all."),
+        ("require F a & G !a", "The shortest way to succeed\n  There is none.\n"),
+        ("reach a limit 1 steps", "The limit is 1 step."),
+        ("semantics infinite keep a", "  1. not a (to state 1)\n  After that, whatever comes makes no difference.\n"),
+        ("reach b reach a", "  Reach, in any order:\n    - b\n    - a\n"),
+        ("semantics infinite require G F a", "  Again and again, for ever:\n    - reach a\n"),
+    ],
+)
+def test_what_is_said(clauses: str, said: str) -> None:
+    (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s {{ {clauses} }}")
+    assert said in text(explain(fspa))
+
+
+@pytest.mark.parametrize("name", ["cover_and_hide", "navigation", "branching"])
+def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str) -> None:
+    source = read_source(ROOT / "examples" / f"{name}.tltl")
+
+    def compiled() -> None:
+        compile_source(source)
+
+    def explained() -> None:
+        found = compile_source(source)
+        for fspa, spec in zip(found.automata, found.program.specs, strict=True):
+            text(explain(fspa, spec.formula))
+
+    explained()  # the libraries are read
+    assert calls(explained) < 3 * calls(compiled)

@@ -1,0 +1,70 @@
+"""The layout keeps trees and comments, and formatting twice is formatting once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.tools.fmt import random_texts
+from tests.tools.fmt.laws import check
+from tltlc.core.source import SourceFile
+from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.parser import parse
+from tltlc.tools.fmt import STYLES
+
+ROOT = Path(__file__).parents[3]
+EVERYTHING = (ROOT / "tests" / "grammar" / "everything.tltl").read_text(encoding="utf-8")
+
+
+def _texts() -> dict[str, str]:
+    """The files of the repository that have no syntax errors."""
+    texts: dict[str, str] = {}
+    for path in sorted(ROOT.rglob("*.tltl")):
+        inside = path.relative_to(ROOT)
+        if any(part.startswith(".") for part in inside.parts):
+            continue
+        try:
+            text = path.read_bytes().decode("utf-8-sig")
+        except (UnicodeDecodeError, OSError):
+            continue
+        if not parse(SourceFile("a", text))[1]:
+            texts[str(inside)] = text
+    return texts
+
+
+TEXTS = _texts()
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_every_file_of_the_repository(style: str) -> None:
+    assert len(TEXTS) > 100
+    for name, text in TEXTS.items():
+        try:
+            check(text, style)
+        except AssertionError as error:
+            raise AssertionError(name) from error
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
+def test_random_modules(random: Random, style: str) -> None:
+    check(random_texts.module(random), style)
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
+def test_comments_allow_the_same_as_before(random: Random, style: str) -> None:
+    check(random_texts.module(random, random_texts.ALLOWING), style)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
+def test_comments_between_any_two_words(random: Random, style: str) -> None:
+    # A number stands beside its unit.
+    words = [token for token in tokenize(EVERYTHING).tokens if token.text]
+    text = "".join((" " if word.type == "UNIT" else random.choice(random_texts.GAPS)) + word.text for word in words)
+    check(text, style)

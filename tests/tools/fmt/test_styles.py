@@ -1,0 +1,104 @@
+"""The four styles: spellings, bounds, and that a formula means the same in each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.calls import calls
+from tests.tools.fmt.laws import check
+from tltlc.core.source import SourceFile
+from tltlc.grammar.parser import parse
+from tltlc.io.project import FORMATTINGS
+from tltlc.pipeline import compile_text
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.program import resolve
+from tltlc.tools.fmt import STYLES, format_text
+
+ROOT = Path(__file__).parents[3]
+OPERATORS = (
+    "(eventually a) and not always b or next c iff weak_next d implies true until false weak_until a release b "
+    "strong_release c <= 3"
+)
+
+BOUNDS = [
+    ("eventually within 20 steps p", "F[0,20] p", "<>[0,20] p", "◇[0,20] p"),
+    ("eventually within 1 step p", "F[0,1] p", "<>[0,1] p", "◇[0,1] p"),
+    ("eventually within 2 s (p)", "F[0,2 s](p)", "<>[0,2 s](p)", "◇[0,2 s](p)"),
+    ("always for 20 steps not p", "G[0,19] !p", "[][0,19] !p", "□[0,19] ¬p"),
+    ("always for 1 step p", "G[0,0] p", "[][0,0] p", "□[0,0] p"),
+    ("always for 2 s p", "G for 2 s p", "[] for 2 s p", "□ for 2 s p"),
+    ("next after 3 steps p", "X after 3 steps p", "X after 3 steps p", "○ after 3 steps p"),
+    ("weak_next after 1 s (p)", "N after 1 s (p)", "N after 1 s (p)", "N after 1 s (p)"),
+    ("F[2,3] p", "F[2,3] p", "<>[2,3] p", "◇[2,3] p"),
+    ("G[1 s, 2 s] (p)", "G[1 s, 2 s](p)", "[][1 s, 2 s](p)", "□[1 s, 2 s](p)"),
+    ("G[0,2 s] p", "G[0,2 s] p", "[][0,2 s] p", "□[0,2 s] p"),
+]
+"""Bounds in words, letters, symbols and Unicode; in each row, all four are one formula."""
+
+
+def formula(text: str) -> object:
+    source = f"clock 3 Hz  signal p: bool  spec s = {text}"
+    module, found = parse(SourceFile("a", source))
+    assert not found
+    program, found = resolve(module, ResolveOptions())
+    assert not found
+    return program.specs[0].formula
+
+
+def test_the_styles_are_those_of_projects() -> None:
+    assert tuple(STYLES) == FORMATTINGS
+
+
+@pytest.mark.parametrize(
+    "style, expected",
+    [
+        ("words", OPERATORS),
+        ("letters", "(F a) & !G b | X c <-> N d -> true U false W a R b M c <= 3"),
+        ("symbols", "(<>a) & ![]b | X c <-> N d -> true U false W a R b M c <= 3"),
+        ("unicode", "(◇a) ∧ ¬□b ∨ ○c ⇔ N d ⇒ ⊤ 𝒰 ⊥ W a R b M c ≤ 3"),
+    ],
+)
+def test_operators(style: str, expected: str) -> None:
+    text = format_text(f"spec s = {OPERATORS}", style)
+    assert " ".join(text.split()) == f"spec s = {expected}"
+    for other in STYLES:
+        assert format_text(format_text(text, other), style) == text
+
+
+@pytest.mark.parametrize("row", BOUNDS, ids=lambda row: row[0])
+def test_bounds(row: tuple[str, ...]) -> None:
+    for written in row:
+        for style, expected in zip(STYLES, row, strict=True):
+            assert check(f"spec s = {written}", style) == f"spec s = {expected}\n"
+        assert formula(written) == formula(row[0])
+
+
+@pytest.mark.parametrize("name", ["x", "in", "at", "as", "for", "within", "after", "step", "expect", "s", "m", "steps"])
+@pytest.mark.parametrize("style", STYLES)
+def test_names_that_mean_something_elsewhere(name: str, style: str) -> None:
+    text = (
+        f"signal {name}: bool\n"
+        f"spec a = F {name} & G[0,3] {name} & !X {name} & {name} U F within 2 steps {name}\n"
+        f'test "t" for a {{ step 3x {name} step {name} expect pending }}\n'
+    )
+    assert [fspa.formula for fspa in compile_text(check(text, style))] == [fspa.formula for fspa in compile_text(text)]
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.tltl")), ids=lambda path: path.name)
+def test_the_examples_compile_to_the_same_automata(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    before = compile_text(text)
+    for style in STYLES:
+        assert compile_text(format_text(text, style)) == before
+
+
+def test_it_takes_no_more_calls_than_two_parses() -> None:
+    names = ("branching", "platformer", "puzzle", "racing", "robot_sorting")
+    text = "".join((ROOT / "examples" / f"{name}.tltl").read_text(encoding="utf-8") for name in names) * 2
+    assert text.count("\n") > 400
+
+    format_text(text)  # the tables of the grammar are read
+    # Measured: 1.37.
+    assert calls(lambda: format_text(text)) < 2 * calls(lambda: parse(SourceFile("a", text)))

@@ -1,0 +1,36 @@
+"""TLT0431: clauses that contradict each other by what their atoms say of signals."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+
+from tests.tools.lint.helpers import RANGES, of, remarks
+from tests.tools.lint.strategies import RANGED, World, specs
+from tltlc.tools.lint.rules import apart_by_ranges
+
+
+@pytest.mark.parametrize(
+    ("clauses", "expected"),
+    [
+        (("reach a", "keep x > 5", "avoid x > 3"), ["keep x > 5"]),
+        (("reach a", "keep x > 5", "keep x < 3"), ["keep x > 5"]),
+        (("reach x > 5 and x < 3",), ["reach x > 5 and x < 3"]),
+        (("semantics infinite", "require G F (x > 5 & x < 3)"), ["G F (x > 5 & x < 3)"]),
+        (("reach a", "keep x > 5", "avoid x > 7"), []),
+        (("reach x > 5", "reach x < 3"), []),
+        (("reach x > 5 then x < 3",), []),
+        (("reach a", "keep x > 5", "keep y < 3"), []),
+        (("reach a", "avoid a"), []),
+    ],
+)
+def test_clauses_that_signals_set_apart(clauses: tuple[str, ...], expected: list[str]) -> None:
+    assert of("TLT0431", *clauses, before=RANGES) == expected
+
+
+@given(specs("keep {}", "avoid {}", "reach {}", "require {}", worlds=[RANGED]))
+def test_no_trace_of_values_satisfies_it(drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(apart_by_ranges.check, text)
+    for _ in told:
+        assert not any(world.traces.satisfying(spec.spec.formula))

@@ -1,0 +1,46 @@
+"""TLT0416: atoms with one truth."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+
+from tests.tools.lint.helpers import block, codes, found, remarks
+from tests.tools.lint.predicates import PREDICATES, Predicate
+from tltlc.tools.lint.rules import constant_atom
+
+
+@pytest.mark.parametrize(
+    ("predicate", "expected"),
+    [
+        ("[0, 1] = x / 10", []),
+        ("[-1, 0] = -x / 10", ["never"]),
+        ("[-1, 0] = x / 10 - 1", ["never"]),
+        ("[-1, 1] = x / 10 - 0.5", []),
+        ("[0, 1] = (x + 1) / 11", ["always"]),
+        ("[-1, 1] = when x > 5: -0.5 otherwise: -1", ["never"]),
+        ("[-1, 1] = when x > 5: 0.5 otherwise: -1", []),
+        ("[-1, 1] = when x > 11: 1 otherwise: -1", ["never"]),
+        ("[-1, 1] = when x >= 10: 1 otherwise: -1", []),
+        ("[0, 1] = (x / 10)^2", []),
+        ("[-1, 0] = -(x / 10)^2", ["never"]),
+        ("[-1, 1] = min(x / 10 - 0.5, 0.5 - x / 10)", ["never"]),
+    ],
+)
+def test_atoms_with_one_truth(predicate: str, expected: list[str]) -> None:
+    before = f"signal x in [0, 10]\npredicate p in {predicate}\n"
+    titles = [e.diagnostic.title for e in found(block("reach p", before=before)) if e.diagnostic.code == "TLT0416"]
+    assert titles == [f"`p` {each} holds" for each in expected]
+
+
+def test_an_atom_is_named_once_in_a_file() -> None:
+    before = "signal x in [0, 10]\npredicate p in [-1, 0] = -x / 10\n"
+    assert codes(before + "spec one = F p\nspec two = G !p\n") == ["TLT0416"]
+
+
+@given(PREDICATES)
+def test_no_value_of_the_signal_tells_otherwise(predicate: Predicate) -> None:
+    _, told = remarks(constant_atom.check, block("reach p", before=predicate.declared))
+    for remark in told:
+        truths = {value > 0 for value in predicate.values()}
+        assert truths == {remark.title == "`p` always holds"}

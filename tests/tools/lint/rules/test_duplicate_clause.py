@@ -1,0 +1,65 @@
+"""TLT0425: clauses that stand twice."""
+
+from __future__ import annotations
+
+import pytest
+
+import tltlc
+from tests.calls import calls
+from tests.tools.lint.helpers import SIGNALS, mended, of
+from tltlc.core.source import SourceFile
+from tltlc.pipeline import CompileOptions
+from tltlc.tools.lint.rules.duplicate_clause import RULE
+from tltlc.tools.lint.run import view_of
+
+
+@pytest.mark.parametrize(
+    ("clauses", "expected"),
+    [
+        (("avoid a", "keep not a"), ["keep not a"]),
+        (("reach a", "require F a"), ["F a"]),
+        (("require F a and G b", "reach c", "reach a"), ["reach a"]),
+        (("reach a", "reach b", "reach a", "reach b", "reach a"), ["reach a", "reach b", "reach a"]),
+        (("require F a and F a",), ["F a"]),
+        # What comes to the same in another form is implied.
+        (("reach a and b", "reach b and a"), []),
+        (("reach a", "keep a"), []),
+    ],
+)
+def test_clauses_that_stand_twice(clauses: tuple[str, ...], expected: list[str]) -> None:
+    assert of("TLT0425", *clauses) == expected
+
+
+def test_the_first_of_them_stays() -> None:
+    before = SIGNALS + "spec s {\n    limit 9 steps\n"
+    twice = before + "    reach a then b then c\n    avoid b // once\n    keep not b // twice\n}\n"
+    assert mended(twice).source.text == before + "    reach a then b then c\n    avoid b // once\n}\n"
+
+
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        ("require a", "require F[0,0] a"),
+        ("require F[0,0] a", "require a"),
+        ("require a", "require F[0,0] a", "require F[0,0] a"),
+        ("reach b", "require a", "require F[0,0] a"),
+    ],
+)
+def test_a_clause_that_decides_when_the_spec_is_judged_is_not_removed(clauses: tuple[str, ...]) -> None:
+    lines = "\n    ".join(("limit 9 steps", *clauses))
+    text = f"{SIGNALS}spec s {{\n    {lines}\n}}\n"
+    before, after = (tltlc.compile_text(each)[0] for each in (text, mended(text).source.text))
+    assert before.judge == after.judge == "goal"
+
+
+def test_what_stands_twice_beside_such_a_clause_is_removed() -> None:
+    text = "signal a: bool\nspec s {\n    limit 9 steps\n    require a\n    require F[0,0] a\n    require a\n}\n"
+    assert mended(text).source.text == text.replace("    require a\n}", "}")
+
+
+def test_the_work_grows_with_the_clauses() -> None:
+    def work(clauses: int) -> int:
+        view = view_of(SourceFile("a.tltl", f"{SIGNALS}spec s {{\n{'    avoid a' * clauses}\n}}"), CompileOptions())
+        return calls(lambda: list(RULE.check(view)))
+
+    assert work(400) < 3 * work(200)

@@ -1,0 +1,78 @@
+"""TLT0434: a bounded `always` is no goal that lasts."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+
+from tests.tools.lint.helpers import codes, marked, remarks
+from tests.tools.lint.strategies import FREE, World, specs
+from tltlc.monitor.monitor import Monitor
+from tltlc.pipeline import compile_text
+from tltlc.tools.lint.rules import lasting_goal
+
+SIGNALS = "clock 10 Hz\nsignal a: bool\nsignal b: bool\nsignal c: bool\n"
+
+
+def spec(*clauses: str) -> str:
+    return SIGNALS + "\n    ".join(["spec s {", "limit 300 steps", *clauses]) + "\n}\n"
+
+
+@pytest.mark.parametrize(
+    ("clause", "expected"),
+    [
+        ("reach (always for 3 s a)", "always for 3 s a"),
+        ("reach always for 3 s a", "always for 3 s a"),
+        ("require eventually (always for 3 s a)", "always for 3 s a"),
+        ("require c and F[0,9] G[0,3] a", "G[0,3] a"),
+        ("reach eventually within 5 s (always for 3 s a)", "always for 3 s a"),
+        ("reach c and (always for 3 s a)", "always for 3 s a"),
+        ("reach not (eventually within 3 s not a)", "eventually within 3 s not a"),
+        ("reach (c and b) or (always for 3 s a)", "always for 3 s a"),
+    ],
+)
+def test_one_step_meets_the_goal(clause: str, expected: str) -> None:
+    assert marked(spec(clause), "TLT0434") == [expected]
+    (fspa,) = compile_text(spec(clause))
+    monitor = Monitor(fspa)
+    assert monitor.step({"a": True, "b": False, "c": True}).done and monitor.success
+
+
+@pytest.mark.parametrize("clause", ["reach b then (always for 3 s a)", "require b then c then (always for 3 s a)"])
+def test_of_a_chain_it_is_the_last_goal(clause: str) -> None:
+    assert marked(spec(clause), "TLT0434") == ["always for 3 s a"]
+
+
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        ("reach (always for 3 s a) then b",),
+        ("reach (always for 3 s a) and (next after 29 steps true)",),
+        ("reach (always for 3 s (a then b))",),
+        ("reach b", "require always for 3 s a"),
+        ("reach b", "keep b implies (always for 3 s a)"),
+        ("reach eventually within 3 s a",),
+        ("reach not (always for 3 s a)",),
+        ("judge at limit", "reach (always for 3 s a)"),
+        ("semantics infinite", "reach (always for 3 s a)"),
+    ],
+)
+def test_where_more_is_asked_for_or_less_is_said(clauses: tuple[str, ...]) -> None:
+    assert "TLT0434" not in codes(spec(*clauses))
+
+
+def test_the_way_out_without_a_signal_takes_the_time() -> None:
+    (fspa,) = compile_text(spec("reach (always for 3 s a) and (next after 29 steps true)"))
+    monitor = Monitor(fspa)
+    assert [monitor.step({"a": True}).done for _ in range(30)] == [False] * 29 + [True]
+
+
+LASTING = "(always for 3 steps {} and {})"
+
+
+@given(specs(f"reach {LASTING}", f"reach {LASTING} and {{}}", f"require F ({LASTING} | {{}})", worlds=[FREE], most=1))
+def test_some_play_of_one_step_meets_it(drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(lasting_goal.check, text)
+    for _ in told:
+        assert world.traces.satisfying(spec.spec.formula)[0]

@@ -1,0 +1,117 @@
+"""TLT0412: goals that are met by what does not hold."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+
+from tests.tools.lint.helpers import RANGES, block, codes, found, marked, of, remarks
+from tests.tools.lint.strategies import World, specs
+from tests.tools.lint.traces import both
+from tltlc.logic.formula import TRUE, Formula, atom
+from tltlc.tools.lint.file_view import SpecView
+from tltlc.tools.lint.goals import goals
+from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rules import met_by_nothing
+
+EXAMPLES = Path(__file__).parents[4] / "examples"
+
+
+@pytest.mark.parametrize(
+    ("clause", "expected"),
+    [
+        ("reach a implies b", ["a implies b"]),
+        ("reach (a -> b) then c", ["a -> b"]),
+        ("reach a then ((b -> c))", ["b -> c"]),
+        ("require F (a -> F b)", ["a -> F b"]),
+        ("require G (c -> F (a -> b))", ["a -> b"]),
+        ("require (a -> b) then c", ["a -> b"]),
+        ("require eventually within 3 steps (a -> b)", ["a -> b"]),
+        ("require F ((a -> b) & !c)", ["a -> b"]),
+        ("keep a implies b", []),
+        ("require G (a -> F b)", []),
+        ("reach a and (b -> c)", []),
+        ("reach not a implies b", []),
+        ("reach not a", []),
+        ("reach not a or b", ["not a or b"]),
+        ("reach (b or not a) then c", ["b or not a"]),
+        ("reach (not a and not b) or c", ["(not a and not b) or c"]),
+        ("reach (a and not b) or c", []),
+        ("reach not a and b", []),
+        ("reach a implies (b until c)", ["a implies (b until c)"]),
+        ("require not F (a -> b)", []),
+        ("reach a iff b", []),
+        ("reach (a iff b) or c", ["(a iff b) or c"]),
+        # Without c both a and b are to hold.
+        ("reach (a iff b) and (b or c)", []),
+    ],
+)
+def test_goals_that_are_implications(clause: str, expected: list[str]) -> None:
+    assert of("TLT0412", clause) == expected
+
+
+@pytest.mark.parametrize(
+    ("clauses", "is_found"),
+    [
+        (("reach a implies b", "keep a"), False),
+        (("reach not a or b", "keep c"), True),
+        (("reach c and (a implies b)", "keep c"), True),
+        (("reach c and (a implies b)",), False),
+        (("reach a implies b", "require G (a or c)", "avoid c"), False),
+        (("reach a implies b", "require a"), True),
+        (("reach a implies b", "reach b"), True),
+        (("reach F a implies b", "keep F a"), False),
+    ],
+)
+def test_what_the_other_clauses_ask_counts(clauses: tuple[str, ...], is_found: bool) -> None:
+    assert bool(of("TLT0412", *clauses)) == is_found
+
+
+def test_a_condition_that_is_kept_is_not_to_blame() -> None:
+    text = block("reach a implies (b or not c)", "keep a")
+    (said,) = (each.diagnostic for each in found(text) if each.diagnostic.code == "TLT0412")
+    assert [label.message for label in said.labels] == ["can be met without `b`"]
+
+
+@pytest.mark.parametrize(
+    ("clause", "expected"),
+    [
+        ("reach x < 7 implies x > 3", []),
+        ("reach x > 3 implies x < 5", []),
+        ("reach x > 5 implies x < 3", ["x > 5 implies x < 3"]),
+        ("reach x > 5 implies y > 3", ["x > 5 implies y > 3"]),
+    ],
+)
+def test_what_comparisons_say_of_each_other_counts(clause: str, expected: list[str]) -> None:
+    assert of("TLT0412", clause, before=RANGES) == expected
+
+
+def test_the_papers_formula_as_it_is_printed() -> None:
+    text = (EXAMPLES / "branching.tltl").read_text(encoding="utf-8").replace("tltlc: allow", "")
+    assert marked(text, "TLT0412") == ["open_right implies near(e_right)"]
+    assert len(codes(text)) == 1
+
+
+@given(specs("reach {}", "reach {} implies {}", "reach {} then ({} or {})", "keep {}", "avoid {}"))
+def test_some_trace_meets_the_goal_while_what_it_awaits_does_not_hold(drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(met_by_nothing.check, text)
+    satisfying = world.traces.satisfying(spec.spec.formula)
+    for remark in told:
+        around = [goal for goal in goals(spec) if goal.tree.span.covers(remark.labels[0].span)]
+        met = [world.traces.ever(goal.formula() or TRUE, without=list(failing(remark, spec))) for goal in around]
+        assert any(any(both(traces, satisfying)) for traces in met)
+
+
+def failing(remark: Remark, spec: SpecView) -> Iterator[Formula]:
+    """What a remark says need not hold: the conditions of implications, or atoms that it lists."""
+    trees = {part.tree.span: part.formula() for clause in spec.formulas() for part in clause.parts()}
+    for label in remark.labels:
+        formula = trees[label.span]
+        if label.message.startswith("true while") and formula:
+            yield formula.args[0]
+        yield from (atom(name) for name in re.findall("`([^`]*)`", label.message))

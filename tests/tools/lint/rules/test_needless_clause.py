@@ -1,0 +1,86 @@
+"""TLT0430: clauses that every trace satisfies."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+
+import tltlc
+from tests.calls import calls
+from tests.tools.lint.helpers import APART, PLACES, RANGES, SIGNALS, found, of, remarks
+from tests.tools.lint.strategies import World, specs
+from tltlc.core.source import SourceFile
+from tltlc.pipeline import CompileOptions
+from tltlc.tools.lint.rules import needless_clause
+from tltlc.tools.lint.rules.needless_clause import RULE
+from tltlc.tools.lint.run import view_of
+
+
+@pytest.mark.parametrize(
+    ("clauses", "expected"),
+    [
+        (("reach a", "keep x > 3 or x < 5"), ["keep x > 3 or x < 5"]),
+        (("reach a", "avoid x > 5 and x < 3"), ["avoid x > 5 and x < 3"]),
+        (("reach a", "avoid x > 5 and not x > 3"), ["avoid x > 5 and not x > 3"]),
+        (("reach a", "require always (x > 5 implies x > 3)"), ["always (x > 5 implies x > 3)"]),
+        (("reach a", "keep b or not b"), ["keep b or not b"]),
+        (("reach a", "reach b or not b"), ["reach b or not b"]),
+        (("reach a", "require b or not b"), ["b or not b"]),
+        (("reach a", "avoid x + y > 15 and x < 4"), ["avoid x + y > 15 and x < 4"]),
+        (("semantics infinite", "require G F a", "keep x > 3 or x < 5"), ["keep x > 3 or x < 5"]),
+        (("reach a", "keep x > 5 or x < 3"), []),
+        (("reach a", "keep x > 3 or x < 3"), []),
+        (("reach a", "keep x > 3 or y < 5"), []),
+        (("reach a", "avoid x + y > 13 and x < 4"), []),
+        (("reach a", "avoid x > 3 and x < 5"), []),
+        (("reach a", "keep b or not c"), []),
+        # Of what the compiler says of the whole spec nothing more is said.
+        (("reach b or not b",), []),
+    ],
+)
+def test_clauses_that_nothing_breaks(clauses: tuple[str, ...], expected: list[str]) -> None:
+    assert of("TLT0430", *clauses, before=RANGES) == expected
+
+
+def test_what_is_exclusive_cannot_be_broken() -> None:
+    assert of("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=APART) == ["avoid at(x) and at(y)"]
+    assert of("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=PLACES) == []
+
+
+@given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
+def test_no_trace_breaks_it(drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(needless_clause.check, text)
+    for remark in told:
+        (formula,) = (part.formula for part in spec.spec.parts if part.span == remark.labels[0].span)
+        assert world.traces.satisfying(formula) == world.traces.every
+
+
+@pytest.mark.parametrize(
+    ("clauses", "judged"),
+    [
+        (("avoid a", "keep not a or b", "reach (b or not b)"), True),
+        (("avoid a", "require F[0,0] (b or not b)"), True),
+        (("judge at goal", "avoid a", "reach (b or not b)"), False),
+        (("avoid a", "reach c", "reach (b or not b)"), False),
+        (("avoid a", "keep (b or not b)"), False),
+        (("avoid a", "reach (b or not b) require F (c or not c)"), True),
+    ],
+)
+def test_what_makes_a_clause_a_goal_is_said_where_it_may_be_left_out(clauses: tuple[str, ...], judged: bool) -> None:
+    *_, needless = clauses
+    text = f"{SIGNALS}spec s {{ limit 9 steps {' '.join(clauses)} }}"
+    told = [each.diagnostic for each in found(text) if each.diagnostic.code == "TLT0430"]
+    ours, theirs = (tltlc.compile_text(each)[0] for each in (text, text.replace(needless, "")))
+    assert (ours.judge != theirs.judge) == judged
+    # Of several the last says it, without which the spec would have no goal.
+    assert ["`judge at goal`" in (each.help or "") for each in told] == [*[False] * (len(told) - 1), judged]
+
+
+def test_the_work_grows_with_the_clauses() -> None:
+    def work(clauses: int) -> int:
+        text = f"{SIGNALS}spec s {{ reach b\n{'    keep a or not a' * clauses}\n}}"
+        view = view_of(SourceFile("a.tltl", text), CompileOptions())
+        return calls(lambda: list(RULE.check(view)))
+
+    assert work(400) < 3 * work(200)

@@ -1,0 +1,132 @@
+"""TLT0424: what speaks of the last step alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tltlc
+from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, found, marked, of, remarks
+from tests.tools.lint.strategies import FREE, SMALL, World, specs
+from tltlc.automaton.compare import are_equivalent
+from tltlc.automaton.finite.build import build
+from tltlc.core.source import SourceFile
+from tltlc.grammar.tree import Unary
+from tltlc.pipeline import compile_source
+from tltlc.tools.lint.file_view import SpecView
+from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rules import recurrence
+
+CLAUSES = (
+    *("keep {}", "avoid {}", "reach {}", "reach {} then {}", "require G {}", "require F {}"),
+    *("keep {} and F {}", "keep {} or F {}", "avoid {} or G {}", "avoid {} and G {}", "reach {} and G {}"),
+)
+
+
+@pytest.mark.parametrize(
+    ("clause", "expected"),
+    [
+        ("keep eventually a", ["keep eventually"]),
+        ("keep (F (a))", ["keep (F"]),
+        ("require G F a", ["G F"]),
+        ("require b -> [] <> a", ["[] <>"]),
+        ("require F (G a)", ["F (G"]),
+        ("reach always a", ["reach always"]),
+        ("keep b and eventually a", ["eventually"]),
+        ("require always (b and eventually a)", ["eventually"]),
+        ("require F (b or G a)", ["G"]),
+        ("require F (b and G a)", []),
+        ("require G (b or F a)", []),
+        ("avoid always a", ["avoid always"]),
+        ("avoid b or always a", ["always"]),
+        ("avoid b and always a", []),
+        ("avoid eventually a", []),
+        ("require G not G a", ["G not G"]),
+        ("reach b then (always a)", ["always"]),
+        ("reach b then (always a) then c", []),
+        ("keep a until b", ["keep a until"]),
+        ("require a until b", []),
+        ("require G F[0,3] a", []),
+        ("require G (a -> F b)", []),
+        ("keep a", []),
+        ("reach a", []),
+    ],
+)
+def test_what_speaks_of_the_last_step(clause: str, expected: list[str]) -> None:
+    assert of("TLT0424", clause) == expected
+    assert of("TLT0424", clause, "semantics infinite") == []
+
+
+def test_a_good_clause_is_not_blamed_for_one_that_speaks_of_the_last_step() -> None:
+    before = "signal a: bool signal b: bool\n"
+    assert codes(block("reach a", "keep b until a", before=before)) == ["TLT0424"]
+    assert codes(block("reach a", "require b until a", before=before)) == ["TLT0413"]
+
+
+@settings(deadline=None)
+@given(st.sampled_from(["keep", "avoid", "reach", "require G", "require F"]), SMALL)
+def test_what_speaks_of_the_last_step_can_be_said_of_it_alone(clause: str, formula: str) -> None:
+    """Where the rule speaks of a whole clause, the automaton looks at the last sample of a trace and at no other."""
+    text = block(f"{clause} ({formula})")
+    (spec,) = compile_source(SourceFile("example.tltl", text)).program.specs
+    labels = [each.diagnostic.labels[0] for each in found(text) if each.diagnostic.code == "TLT0424"]
+    start = text.index(clause)
+    for label in labels:
+        if label.span.start != start or " U " in formula:
+            continue
+        message = label.message
+        last = message[message.index("`") + 1 : message.rindex("`")]
+        (same,) = tltlc.compile_text(f"{SIGNALS}spec t = F ((N false) & ({last}))")
+        assert are_equivalent(build(spec), same)
+
+
+def test_what_is_said_of_all_entities_is_said_once() -> None:
+    assert of("TLT0424", "require all e in (x, y): G F at(e)", before=PLACES) == ["G F"]
+    assert of("TLT0412", "require all e in (x, y): F (at(z) -> at(e))", before=PLACES) == ["at(z) -> at(e)"]
+
+
+@pytest.mark.parametrize(
+    ("clause", "goal"),
+    [
+        ("reach always a", "; once is `reach a`"),
+        ("reach always (a and (b -> c))", "; once is `reach a and (b -> c)`"),
+        # As a goal it would be met by a not holding.
+        ("reach always (a implies b)", ""),
+        ("keep F ((a -> b) and (b -> c))", ""),
+        ("avoid G (a -> b)", "; once is `reach not (a -> b)`"),
+    ],
+)
+def test_what_is_named_is_no_goal_that_is_met_by_nothing(clause: str, goal: str) -> None:
+    (said,) = (each for each in found(block(clause)) if each.diagnostic.code == "TLT0424")
+    assert (said.diagnostic.help or "").partition(" say `semantics infinite`")[2] == goal
+
+
+def test_lets_are_looked_at_where_all_specs_are_finite() -> None:
+    text = "signal a: bool let often = G F a spec s = often"
+    assert marked(text, "TLT0424") == ["G F"]
+    assert codes(f"{text} spec t {{ semantics infinite limit 9 steps judge at limit require often }}") == []
+    assert codes("signal a: bool let often = G F a") == []
+
+
+@given(specs(*CLAUSES, worlds=[FREE], most=1))
+def test_a_part_that_speaks_of_the_last_step_can_be_said_of_it_alone(drawn: tuple[World, str]) -> None:
+    """In place of the part, what it asks of the last step makes the same spec."""
+    world, text = drawn
+    spec, told = remarks(recurrence.check, text)
+    for part in last_steps(spec, told):
+        awaited = text[part.operand.span.start : part.operand.span.end]
+        alone = f"{text[: part.span.start]}(F ((N false) & ({awaited}))){text[part.span.end :]}"
+        same, _ = remarks(recurrence.check, alone)
+        assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)
+
+
+def last_steps(spec: SpecView, told: list[Remark]) -> Iterator[Unary]:
+    """The `eventually` and `always` whose words remarks end with."""
+    ends = {remark.labels[0].span.end for remark in told}
+    for formula in spec.formulas():
+        for part in formula.parts():
+            if isinstance(part.tree, Unary) and part.tree.op in ("F", "G") and part.tree.op_span.end in ends:
+                yield part.tree

@@ -1,0 +1,32 @@
+"""TLT0428: limits that end the episode before the goal can be reached."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tools.lint.helpers import SIGNALS, codes, remarks
+from tests.tools.lint.strategies import World, specs
+from tltlc.tools.lint.rules import short_limit
+
+
+@pytest.mark.parametrize(
+    ("clauses", "is_found"),
+    [
+        ("limit 2 steps reach a then b", False),
+        ("limit 1 step reach a then b", True),
+        ("limit 2 steps require F[3,5] a", True),
+        ("limit 3 steps keep a", False),
+    ],
+)
+def test_limits_that_are_too_short(clauses: str, is_found: bool) -> None:
+    assert ("TLT0428" in codes(f"{SIGNALS}spec s {{ {clauses} }}")) == is_found
+
+
+@given(st.integers(1, 4), specs("reach {} then {}", "require X {}", "require {} U ({} then {})"))
+def test_no_trace_within_the_limit_satisfies_the_spec(limit: int, drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(short_limit.check, text.replace("limit 9 steps", f"limit {limit} steps"))
+    for _ in told:
+        assert not any(world.traces.satisfying(spec.spec.formula)[:limit])

@@ -1,0 +1,107 @@
+"""TLT0415: goals at several places at one step."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+
+import tltlc
+from tests.tools.lint.helpers import APART, PLACES, block, found, of, remarks
+from tests.tools.lint.strategies import World, specs
+from tests.tools.lint.traces import Traces
+from tltlc.tools.lint.rules import steps_at_once
+
+
+@pytest.mark.parametrize(
+    ("clauses", "before", "is_found"),
+    [
+        (("reach at(x)", "reach at(y)"), PLACES, True),
+        (("reach at(x)", "reach at(y)"), APART, False),
+        (("reach at(x) then at(y)",), PLACES, False),
+        (("reach at(x) then at(y)", "reach at(z)"), APART, True),
+        (("reach at(x) or at(y)",), PLACES, False),
+        # Exclusive, these would be no farther from their goals.
+        (("keep at(x)", "require N eventually at(y)"), PLACES, False),
+        (("avoid next not at(x)", "require N at(x) until at(z)"), PLACES, False),
+        (("reach at(x)", "reach d(y) < 3 m"), PLACES, False),
+    ],
+)
+def test_goals_that_may_be_met_at_one_step(clauses: tuple[str, ...], before: str, is_found: bool) -> None:
+    assert ("s" in of("TLT0415", *clauses, before=before)) == is_found
+
+
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        ("reach at(x)", "keep at(y)"),
+        ("reach at(x)", "require always at(y)"),
+        ("reach at(x)", "require at(y) until at(x)"),
+        ("reach at(x)", "require F (at(y) U at(x))"),
+        ("reach at(x)", "reach at(y)", "keep at(x)"),
+    ],
+)
+def test_what_is_kept_is_no_goal_beside_another(clauses: tuple[str, ...]) -> None:
+    assert of("TLT0415", *clauses, before=PLACES) == []
+
+
+def test_the_advice_to_exclude_never_makes_a_spec_impossible() -> None:
+    for clauses in (
+        ("reach at(x) and at(y)",),
+        ("reach all e in (x, y): at(e)",),
+        ("reach at(x) and at(y)", "reach at(z)"),
+        ("reach at(x)", "reach at(y)", "reach at(x) and at(y)"),
+        ("reach at(x) and at(y) and at(z)",),
+    ):
+        helps = [e.diagnostic.help for e in found(block(*clauses, before=PLACES)) if e.diagnostic.code == "TLT0415"]
+        assert [text for text in helps if "exclusive" in (text or "")] == []
+        assert [text for text in helps if " then " in (text or "")]
+
+
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        # Between steps that are longer, the way from the start and the longest one stay as they are.
+        ("reach at(x) then at(y)", "require G (at(z) -> F at(x))"),
+        ("reach at(x)", "require X F at(z)"),
+        ("reach at(x) then at(z)", "reach at(x) or at(y)"),
+    ],
+)
+def test_nothing_is_said_where_exclusive_would_lengthen_nothing(clauses: tuple[str, ...]) -> None:
+    assert of("TLT0415", *clauses, before=PLACES) == []
+
+
+def test_atoms_of_different_predicates_are_not_said_to_exclude_each_other() -> None:
+    before = PLACES + "signal seen(e): bool\n"
+    helps = [
+        each.diagnostic.help
+        for each in found(block("reach at(x)", "reach at(y)", "reach seen(x)", "reach seen(y)", before=before))
+        if each.diagnostic.code == "TLT0415"
+    ]
+    asked = [re.search("`exclusive (.*)`", text or "") for text in helps]
+    assert [match and match[1] for match in asked] == ["at(x), at(y)", "seen(x), seen(y)"]
+
+
+def test_exclusive_atoms_make_the_way_longer() -> None:
+    """What the rule says of progress: with the declaration that it asks for, the spec has more steps."""
+    clauses = ("reach at(x)", "reach at(y)")
+    (joint,) = tltlc.compile_text(block(*clauses, before=PLACES))
+    (apart,) = tltlc.compile_text(block(*clauses, before=APART))
+    assert (joint.spec_size, apart.spec_size) == (1, 2)
+
+
+NEAR = World("entity x, y, z\nsignal at(e): bool\nsignal b: bool\n", ("at(x)", "at(y)", "at(z)", "b"), Traces(()))
+
+
+@given(specs("reach {}", "reach at(x)", "reach at(y) then {}", "require {}", "keep {}", worlds=[NEAR]))
+def test_with_what_it_asks_for_the_way_is_longer_and_there_still_is_one(drawn: tuple[World, str]) -> None:
+    _, text = drawn
+    spec, told = remarks(steps_at_once.check, text)
+    for remark in told:
+        excluded = re.search("`(exclusive .*)`", remark.help)
+        if excluded:
+            (apart,) = tltlc.compile_text(f"{excluded[1]}\n{text}")
+            assert apart.states[0].verdict != "violated"
+            longer = (apart.states[0].distance or 0, apart.spec_size)
+            assert longer > (spec.fspa.states[0].distance or 0, spec.fspa.spec_size)

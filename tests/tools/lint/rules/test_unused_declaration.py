@@ -1,0 +1,34 @@
+"""TLT0421: declarations that nothing uses."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.tools.lint.helpers import block, codes, marked
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "signal a: bool\nlet both(x) = a & x\n",  # a library
+        "import spatial\nsignal position.x: length in [0 m, 9 m]\nspec s = F inside_rectangle(1 m, 2 m, 3 m, 4 m)",
+        "param far: length = 3 m\nimport spatial\nentity e\nspec s = F near(e, far = far)",
+        "entity e, f\nsignal a(x: entity): bool\nspec s = all x in (e, f): F a(x)",
+        "entity e\nsignal a(x: entity): bool\nexclusive a(e), b\nsignal b: bool\nspec s = F b & F c\nsignal c: bool",
+        "import stealth as st\nspec s = G st.alive",
+        "import stealth (alive)\nspec s = G alive",
+        "signal x: length in [0 m, 9 m]\nparam most: length in [1 m, 4 m] = 3 m\nspec s = F x > most",
+    ],
+)
+def test_what_is_used(text: str) -> None:
+    assert not {"TLT0421", "TLT0422"}.intersection(codes(text))
+
+
+def test_what_is_used_by_what_is_not_used_goes_with_the_next_look() -> None:
+    text = "signal a: bool\nsignal b: bool\nlet c = F b\nspec s = F a\n"
+    assert marked(text, "TLT0421") == ["c"]
+
+
+def test_a_level_or_a_tag_of_the_same_name_is_no_use() -> None:
+    text = block("level vault", "tag quick", "reach a", before="signal vault: bool signal quick: bool signal a: bool\n")
+    assert marked(text, "TLT0421") == ["vault", "quick"]

@@ -1,0 +1,63 @@
+"""Small formulas and specs as they are written, and the traces that there are for them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from hypothesis import strategies as st
+
+from tests.tools.lint.helpers import RANGES, SIGNALS, block
+from tests.tools.lint.traces import Traces, subsets
+
+_UNARY = ("!({})", "F ({})", "G ({})", "X ({})", "N ({})")
+_BINARY = ("({}) & ({})", "({}) | ({})", "({}) U ({})", "({}) -> ({})")
+
+
+def written(atoms: Sequence[str], max_leaves: int = 4) -> st.SearchStrategy[str]:
+    """Formulas over these atoms."""
+    return st.recursive(
+        st.sampled_from(atoms),
+        lambda inner: (
+            st.builds(str.format, st.sampled_from(_UNARY), inner)
+            | st.builds(str.format, st.sampled_from(_BINARY), inner, inner)
+        ),
+        max_leaves=max_leaves,
+    )
+
+
+SMALL = written(["a", "b", "c"])
+
+
+class World(NamedTuple):
+    """Declarations, atoms that can be made of them, and all short traces of those."""
+
+    before: str
+    atoms: tuple[str, ...]
+    traces: Traces
+
+
+_FREE = subsets(["a", "b", "c"])
+_BELOW = ({"x < 5", "x < 7"}, {"x > 3", "x < 5", "x < 7"}, {"x > 3", "x < 7"})
+_RANGED = (*_BELOW, {"x > 3", "x > 5", "x < 7"}, {"x > 3", "x > 5"})
+"""What holds for x = 3, 4, 5, 6 and 7: one value of each kind."""
+
+FREE = World(SIGNALS, ("a", "b", "c"), Traces(_FREE))
+EXCLUSIVE = World(SIGNALS + "exclusive a, b\n", FREE.atoms, Traces([each for each in _FREE if not {"a", "b"} <= each]))
+RANGED = World(
+    RANGES,
+    ("a", "x > 3", "x > 5", "x < 5", "x < 7"),
+    Traces([each | truth for each in _RANGED for truth in (set(), {"a"})]),
+)
+
+
+@st.composite
+def specs(
+    draw: st.DrawFn, *clauses: str, worlds: Sequence[World] = (FREE, EXCLUSIVE, RANGED), most: int = 3
+) -> tuple[World, str]:
+    """A spec of one clause to ``most``: ``clauses`` with formulas in place of ``{}``."""
+    world = draw(st.sampled_from(worlds))
+    chosen = draw(st.lists(st.sampled_from(clauses), min_size=1, max_size=most))
+    formulas = written(world.atoms)
+    filled = [each.format(*(f"({draw(formulas)})" for _ in range(each.count("{}")))) for each in chosen]
+    return world, block(*filled, before=world.before)

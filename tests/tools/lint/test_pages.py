@@ -1,0 +1,61 @@
+"""The page of a rule shows what the rule finds and what to write instead, and both examples are right."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import blocks
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics import codes
+from tltlc.tools.lint import allow
+from tltlc.tools.lint import rules as package
+from tltlc.tools.lint.rules import rules
+from tltlc.tools.lint.run import lint
+
+FOLDER = Path(codes.__file__).parent / "pages"
+CODES = sorted([*(rule.code for rule in rules()), allow.CODE])
+
+
+def found(code: str, kind: str) -> list[str]:
+    """The codes that are found in the example of a page: the first one is to be avoided, the second preferred."""
+    avoid, prefer = (block for block in blocks(FOLDER / f"{code}.md") if block.kind == "tltl")
+    block = avoid if kind == "avoid" else prefer
+    return [each.diagnostic.code for each in lint(SourceFile("example.tltl", block.text))]
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_what_to_avoid_causes_this_code_alone(code: str) -> None:
+    assert found(code, "avoid") == [code]
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_what_to_prefer_causes_nothing(code: str) -> None:
+    assert found(code, "prefer") == []
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_the_form_of_a_page(code: str) -> None:
+    text = codes.page(code)
+    headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
+    assert headings == ["Example", "How to fix it", "Why"]
+    assert re.findall(r"(\w+):\n\n```tltl\n", text) == ["Avoid", "Prefer"]
+
+
+def test_every_rule_has_a_code_of_its_own() -> None:
+    assert len(set(CODES)) == len(CODES) >= 16
+    assert all("TLT0412" <= code <= "TLT0439" for code in CODES)
+
+
+def test_every_rule_has_tests_of_its_own() -> None:
+    folder, tests = Path(package.__file__).parent, Path(__file__).parent / "rules"
+    names = {path.name for path in folder.glob("[!_]*.py")}
+    assert {path.name.removeprefix("test_") for path in tests.glob("test_*.py")} == names
+
+
+def test_the_guide_lists_every_rule_with_its_severity() -> None:
+    guide = (Path(__file__).parents[3] / "docs" / "guides" / "linting.md").read_text(encoding="utf-8")
+    listed = dict(re.findall(r"^\| (TLT04[1-3][0-9]) \| (\w+) \|", guide, re.MULTILINE))
+    assert listed == {**{rule.code: rule.severity for rule in rules()}, allow.CODE: allow.SEVERITY}

@@ -1,0 +1,21 @@
+"""The traces that other tests judge rules by are those of the definition."""
+
+from __future__ import annotations
+
+from hypothesis import given
+
+from tests.logic.strategies import formulas, traces
+from tests.tools.lint.traces import LONGEST, Traces, subsets
+from tltlc.logic.formula import Formula
+from tltlc.logic.oracle import holds
+
+LETTERS = subsets(["a", "b"])
+
+
+@given(formulas(["a", "b"]), traces(["a", "b"], max_length=LONGEST))
+def test_all_traces_at_once_are_judged_as_one_by_one(formula: Formula, trace: tuple[frozenset[str], ...]) -> None:
+    number = sum(LETTERS.index(letter) * len(LETTERS) ** step for step, letter in enumerate(trace))
+    found = Traces(LETTERS).satisfying(formula)[len(trace) - 1]
+    assert bool(found >> number & 1) == holds(formula, trace)
+    ever = Traces(LETTERS).ever(formula)[len(trace) - 1]
+    assert bool(ever >> number & 1) == any(holds(formula, trace, step) for step in range(len(trace)))

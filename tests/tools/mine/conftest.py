@@ -1,0 +1,25 @@
+from __future__ import annotations
+
+from hypothesis import strategies as st
+
+from tests.interfaces.cli.conftest import inside, process, tltlc
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.vocabulary import Words, of_columns
+
+__all__ = ["inside", "process", "tltlc"]
+
+ATOMS = ("a", "b", "c")
+
+
+def words(atoms: tuple[str, ...] = ATOMS) -> Words:
+    return of_columns(dict.fromkeys(atoms, True))
+
+
+@st.composite
+def evidences(draw: st.DrawFn, atoms: tuple[str, ...] = ATOMS, longest: int = 20) -> Evidence:
+    """A few short traces and counterexamples over a few atoms."""
+    letters = st.frozensets(st.sampled_from(atoms))
+    traces = st.lists(letters, min_size=1, max_size=longest).map(tuple)
+    good = draw(st.lists(traces, min_size=1, max_size=4))
+    bad = draw(st.lists(traces, min_size=0, max_size=4))
+    return Evidence(*(tuple(Recorded(f"t{i}", each) for i, each in enumerate(part)) for part in (good, bad)))

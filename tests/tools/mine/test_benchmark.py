@@ -1,0 +1,92 @@
+"""The benchmark's parts: peers that learn what they say they learn, and a report of any records."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks import mine
+from benchmarks.mine_peers import enumerated, has_scarlet, scarlet
+from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
+from tests.tools.mine.conftest import words
+from tests.waiting import HANG_S
+from tltlc.automaton.compare import are_equivalent
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.source import SourceFile
+from tltlc.pipeline import compile_source
+from tltlc.tools.mine.confirm import judge
+from tltlc.tools.mine.evidence import Evidence
+
+SHORT = Planted("short", ("reach p0 then p1",), dict.fromkeys(("p0", "p1", "p2"), 0.2))
+
+
+def learned(formula: str, spec: Planted) -> Fspa:
+    text = words(tuple(spec.likely)).library.text + f"spec found = {formula}\n"
+    return compile_source(SourceFile("found.tltl", text)).automata[0]
+
+
+def tells_apart(fspa: Fspa, given: Evidence) -> bool:
+    return all(judge(fspa, trace).accepted for trace in given.traces) and not any(
+        judge(fspa, trace).accepted for trace in given.counterexamples
+    )
+
+
+@pytest.mark.parametrize(
+    "clauses", [("reach p0",), ("keep not p0",), ("require p0 until p1",), ("require X p1",), ("reach p0 and p1",)]
+)
+def test_enumeration_finds_a_formula_that_tells_all_apart(clauses: tuple[str, ...]) -> None:
+    spec = Planted("tiny", clauses, SHORT.likely)
+    given = evidence(spec, 20, 40, seed=1)
+    found = enumerated(given, timeout_s=HANG_S)
+    assert found.formula is not None
+    assert tells_apart(learned(found.formula, spec), given)
+
+
+def test_enumeration_gives_up_in_time() -> None:
+    found = enumerated(evidence(planted(0), 20, 40, seed=1), timeout_s=0.0)
+    # It looks at the clock as often as that.
+    assert (found.formula, found.tried) == (None, 64)
+
+
+@pytest.mark.skipif(not has_scarlet(), reason="Scarlet is not installed")
+def test_scarlet_is_read_as_it_means() -> None:
+    given = evidence(SHORT, 20, 40, seed=1)
+    found = scarlet(given, timeout_s=HANG_S)
+    assert found.formula is not None
+    assert tells_apart(learned(found.formula, SHORT), given)
+
+
+@pytest.mark.parametrize("spec", [*of_the_paper(), *map(planted, range(10))], ids=lambda spec: spec.name)
+def test_evidence_is_on_the_sides_that_it_says(spec: Planted) -> None:
+    given = evidence(spec, 6, 8, seed=2)
+    assert tells_apart(spec.automaton(), given)
+    assert given == evidence(spec, 6, 8, seed=2)
+    noisy = evidence(spec, 6, 8, seed=2, noise=0.5)
+    assert sum(not judge(spec.automaton(), trace).accepted for trace in noisy.traces) == 3
+
+
+def test_no_two_random_specs_are_the_same() -> None:
+    automata = [planted(number).automaton() for number in range(0, 20, 10)]
+    assert not are_equivalent(*automata)
+
+
+def test_the_report_of_what_was_measured() -> None:
+    ours = {"seconds": 0.1, "rank": 1, "tried": 100}
+    records = {
+        name: {
+            "clauses": list(spec.clauses),
+            "limit_s": 5.0,
+            "ours": ours,
+            "noisy": {**ours, "rank": None},
+            "enumeration": {"seconds": 5.0, "formula": None, "equal": False, "tried": 9},
+        }
+        for name, spec in mine.SPECS.items()
+    }
+    text = mine.section(records)
+    assert f"ours at rank 1 {len(mine.SPECS)} of {len(mine.SPECS)}; with noise 0 of {len(mine.SPECS)}" in text
+    assert "| 0.10 | 1 | – | > 5.0 | – |" in text
+    assert "Both are stopped after 5 s." in text
+    rows = list(mine.goals(records))
+    assert [row[2] for row in rows] == ["met", "met"]
+    assert "50 times" in rows[1][1]
+    assert mine.section({}) == ""
+    assert list(mine.goals({})) == []

@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tools.mine.conftest import evidences
+from tltlc.tools.mine.bits import Bits, count
+from tltlc.tools.mine.evidence import Evidence, Recorded
+
+
+def places(bits: Bits, samples: int, evidence: Evidence) -> list[set[int]]:
+    """Per trace the samples of a set, seen through single samples."""
+    found = []
+    width = bits.all.bit_length() // len(evidence.all) + 8
+    size = next(size for size in range(1, width) if _fits(bits, size, evidence))
+    for number, trace in enumerate(evidence.all):
+        segment = samples >> (8 * size * number)
+        found.append({place for place in range(len(trace.letters)) if segment >> place & 1})
+    return found
+
+
+def _fits(bits: Bits, size: int, evidence: Evidence) -> bool:
+    whole = sum(((1 << len(trace.letters)) - 1) << (8 * size * number) for number, trace in enumerate(evidence.all))
+    return whole == bits.all and size == max(len(trace.letters) for trace in evidence.all) // 8 + 1
+
+
+def members(bits: Bits, verdicts: int, evidence: Evidence) -> list[bool]:
+    return [bool(verdicts >> (8 * number) & 0x80) for number in range(len(evidence.all))]
+
+
+@given(evidences(), st.integers(0, 9))
+def test_operations_are_what_they_say(evidence: Evidence, steps: int) -> None:
+    bits = Bits(evidence)
+    for name, samples in bits.holds.items():
+        naive = [{place for place, letter in enumerate(trace.letters) if name in letter} for trace in evidence.all]
+        every = [set(range(len(trace.letters))) for trace in evidence.all]
+        assert places(bits, samples, evidence) == naive
+        assert members(bits, bits.some(samples), evidence) == [bool(each) for each in naive]
+        assert members(bits, bits.none(samples), evidence) == [not each for each in naive]
+        assert places(bits, bits.complement(samples), evidence) == [
+            all_ - each for all_, each in zip(every, naive, strict=True)
+        ]
+        firsts = [min(each, default=None) for each in naive]
+        assert places(bits, bits.after_first(samples), evidence) == [
+            {place for place in all_ if first is not None and place > first}
+            for all_, first in zip(every, firsts, strict=True)
+        ]
+        assert places(bits, bits.before_first(samples), evidence) == [
+            {place for place in all_ if first is None or place < first}
+            for all_, first in zip(every, firsts, strict=True)
+        ]
+        assert places(bits, bits.within(samples, steps), evidence) == [
+            {place for place in all_ if any(place <= other <= place + steps for other in each)}
+            for all_, each in zip(every, naive, strict=True)
+        ]
+
+
+@given(evidences())
+def test_backwards_turns_every_trace_around(evidence: Evidence) -> None:
+    turned = Evidence(
+        *(
+            tuple(Recorded(trace.name, trace.letters[::-1]) for trace in part)
+            for part in (evidence.traces, evidence.counterexamples)
+        )
+    )
+    assert Bits(evidence, backwards=True).holds == Bits(turned).holds
+
+
+@given(evidences())
+def test_the_traces_and_the_counterexamples_are_all(evidence: Evidence) -> None:
+    bits = Bits(evidence)
+    assert count(bits.traces) == len(evidence.traces)
+    assert count(bits.counterexamples) == len(evidence.counterexamples)
+    assert bits.traces & bits.counterexamples == 0

@@ -1,0 +1,169 @@
+"""Traces with thousands of columns: limited work, and a warning that says what is left out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome
+from tltlc.automaton.infinite.work import Work
+from tltlc.core.source import SourceFile
+from tltlc.io.limits import WORK
+from tltlc.resolve.options import ResolveOptions
+from tltlc.tools.mine import candidates
+from tltlc.tools.mine.bits import Bits
+from tltlc.tools.mine.candidates import Candidates
+from tltlc.tools.mine.clause import Clause, Conjunction
+from tltlc.tools.mine.conjunctions import best
+from tltlc.tools.mine.events import MOST_EVENTS, best_events
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence_reader import gathered
+from tltlc.tools.mine.reading import TraceFile
+from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.sequences import sequences
+from tltlc.tools.mine.templates import clauses
+
+Run = Callable[..., Outcome]
+
+
+def letters(*names: str) -> tuple[frozenset[str], ...]:
+    """A trace in which each sample has the atoms that a text lists."""
+    return tuple(frozenset(each.split()) for each in names)
+
+
+def noisy(columns: int, rows: int, seed: int, steps: tuple[str, ...] = ()) -> tuple[frozenset[str], ...]:
+    """A trace of columns that hold by chance; the ``steps`` hold in this order at the end."""
+    random = Random(seed)
+    names = [f"c{number}" for number in range(columns)]
+    samples = [{name for name in names if random.random() < 0.5} for _ in range(rows)]
+    return tuple(map(frozenset, samples)) + tuple(frozenset((step,)) for step in steps)
+
+
+def csv(trace: tuple[frozenset[str], ...], columns: int) -> str:
+    names = [f"c{number}" for number in range(columns)]
+    rows = [",".join(str(int(name in letter)) for name in names) for letter in trace]
+    return "\n".join([",".join(names), *rows]) + "\n"
+
+
+def many(columns: int) -> Evidence:
+    good, bad = (Recorded(f"t{seed}", noisy(columns, 10, seed)) for seed in (1, 2))
+    return Evidence((good,), (bad,))
+
+
+def test_the_work_does_not_grow_with_the_columns() -> None:
+    work = []
+    for columns in (1_000, 2_000):
+        search = Search(many(columns), Options())
+        list(search.run())
+        work.append(search.tried - 2 * columns)
+        assert search.ranked()
+    pairs = MOST_EVENTS**2
+    assert max(work) <= 8 * pairs + WORK["mined sequences"] + 500_000
+    assert abs(work[0] - work[1]) < max(work) / 5
+
+
+def test_the_search_can_be_left_after_a_few_candidates() -> None:
+    """What holds `--time`: between two moments at which the search may end, it tries few candidates."""
+    search = Search(many(1_000), Options())
+    before = most = 0
+    for _ in search.run():
+        most = max(most, search.tried - before)
+        before = search.tried
+    assert most <= 20_000
+
+
+def test_the_events_that_separate_best_are_related() -> None:
+    planted = ("key", "door")
+    good = [Recorded(f"g{seed}", noisy(300, 10, seed, planted)) for seed in range(20)]
+    bad = [Recorded(f"b{seed}", noisy(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
+    given = Evidence(tuple(good), tuple(bad))
+    assert set(planted) <= set(best_events(given, given.atoms()))
+    search = Search(given, Options())
+    list(search.run())
+    assert [each.text for each in search.ranked()[0]] == ["require (not door) weak_until key"]
+
+
+def test_few_events_are_all_related() -> None:
+    given = many(50)
+    assert best_events(given, given.atoms()) == list(given.atoms())
+
+
+def test_sequences_end_where_no_work_is_left() -> None:
+    bits = Bits(many(20))
+    whole = sum(map(len, sequences(bits, tuple(bits.holds), 1, 4)))
+    some = sum(map(len, sequences(bits, tuple(bits.holds), 1, 4, work=Work(500))))
+    assert 0 < some < whole
+
+
+def every_clause(bits: Bits) -> list[Clause]:
+    backwards = Bits(many(30), backwards=True)
+    return [each for portion in clauses(bits, backwards, tuple(bits.holds), 1) for each in portion]
+
+
+def test_the_candidates_that_are_kept_are_those_that_would_be_chosen() -> None:
+    bits = Bits(many(30))
+    found: dict[Conjunction, int] = {(each,): each.accepts for each in every_clause(bits)}
+    found |= {(a, b): a.accepts & b.accepts for a, b in combinations(every_clause(bits)[:60], 2)}
+    kept = Candidates(bits)
+    for conjunction, accepts in found.items():
+        kept.add(conjunction, accepts)
+    assert len(list(kept.items())) < len(found) / 10
+    assert best(kept.items(), bits) == best(found.items(), bits)
+    assert not kept.is_cut
+
+
+def test_of_too_many_candidates_the_best_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(candidates, "_MOST", 2)
+    traces = [Recorded(f"t{number}", letters("a", "b")) for number in range(4)]
+    bits = Bits(Evidence(tuple(traces), (Recorded("bad", letters("c")),)))
+    kept = Candidates(bits)
+    for number in range(5):
+        accepts = sum(0x80 << 8 * each for each in range(number))
+        kept.add((Clause("reach", 0, f"reach {number}", 1, accepts, accepts),), accepts)
+    assert kept.is_cut
+    assert {each[0].text for each, _ in kept.items()} == {"reach 3", "reach 4"}
+
+
+# --- the command ----------------------------------------------------------------------------------
+
+
+def test_many_columns_are_mined_with_a_warning(tltlc: Run, inside: Path) -> None:
+    for name, seed in (("good.csv", 1), ("bad.csv", 2)):
+        (inside / name).write_text(csv(noisy(1_000, 10, seed), 1_000))
+    done = tltlc("mine", "good.csv", "--against", "bad.csv", "--json")
+    assert done.status == 0
+    document = json.loads(done.out)
+    assert document["proposals"]
+    assert document["complete"] is False
+    assert "warning[TLT0624]: only 244 atoms are related to each other" in done.err
+
+
+def test_few_columns_are_mined_without_a_warning(tltlc: Run, inside: Path) -> None:
+    for name, seed in (("good.csv", 1), ("bad.csv", 2)):
+        (inside / name).write_text(csv(noisy(12, 10, seed), 12))
+    done = tltlc("mine", "good.csv", "--against", "bad.csv", "--json", "--max-length", "3")
+    assert json.loads(done.out)["complete"] is True
+    assert "TLT0624" not in done.err
+
+
+def test_of_too_many_columns_the_first_are_read() -> None:
+    columns = WORK["mined columns"] + 7
+    files = [TraceFile(f"t{seed}", csv(noisy(columns, 2, seed), columns).encode()) for seed in (1, 2)]
+    words, evidence, _ = gathered(files[:1], files[1:], None, ResolveOptions((), {}))
+    assert words.unread == 7
+    assert not words.left_out
+    assert len(words.reader.atoms) == WORK["mined columns"]
+    assert f"c{WORK['mined columns']}" not in evidence.atoms()
+
+
+def test_of_too_many_instances_of_a_predicate_the_first_are_read() -> None:
+    library = SourceFile("lib.tltl", "signal at(x: entity, y: entity): bool\n")
+    data = "".join(f'"at(e{a}, e{a + 1})",' for a in range(49)) + "time\n" + "0," * 49 + "1\n"
+    file = TraceFile("t", data.encode())
+    words, _, _ = gathered([file], [], library, ResolveOptions((), {}))
+    assert words.unread == 50 * 50 - WORK["mined instances"]

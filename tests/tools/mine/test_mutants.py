@@ -1,0 +1,32 @@
+from __future__ import annotations
+
+from hypothesis import given
+
+from tests.tools.mine.conftest import evidences
+from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.mutants import with_mutants
+
+
+@given(evidences(longest=10))
+def test_mutants_are_no_traces_and_always_the_same(given_: Evidence) -> None:
+    made = with_mutants(given_.traces)
+    assert made == with_mutants(given_.traces)
+    assert made.counterexamples == with_mutants(given_.traces[::-1]).counterexamples
+    assert made.made_up
+    good = {trace.letters for trace in made.traces}
+    bad = [trace.letters for trace in made.counterexamples]
+    assert not good.intersection(bad)
+    assert len(set(bad)) == len(bad)
+    assert all(bad)
+
+
+def test_each_way_to_go_wrong() -> None:
+    a, b, kept = frozenset({"a", "k"}), frozenset({"b", "k"}), frozenset({"k"})
+    made = with_mutants([Recorded("run", (kept, a, kept, b, kept))])
+    found = {trace.name: trace.letters for trace in made.counterexamples}
+    assert found["run, cut short"] == (kept, a, kept)
+    assert found["run, without a"] == (kept, kept, kept, b, kept)
+    assert found["run, without b"] == (kept, a, kept, kept, kept)
+    broken = found["run, with k broken"]
+    assert sum("k" not in letter for letter in broken) == 1
+    assert any(name.startswith("run, in another order") for name in found)
