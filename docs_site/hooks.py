@@ -22,7 +22,7 @@ WHOLE: Final = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
     "benchmarks/RESULTS.md": "benchmarks.md",
-    "docs/adr": "adr/index.md",
+    "docs/adr": "adr/README.md",
 }
 """Files, and a folder, that are pages as they stand."""
 
@@ -76,7 +76,7 @@ def _with_bars(code: re.Match[str]) -> str:
 def made() -> dict[str, Page]:
     """The pages that are no files of ``docs/``, by their place in the site."""
     whole = [Page(uri, read(path), path) for path, uri in WHOLE.items() if path.endswith(".md")]
-    pages = [*readme.pages(), *commands.pages(), *diagnostics.pages(), *sources.pages(), *whole, _decisions()]
+    pages = [*readme.pages(), *commands.pages(), *diagnostics.pages(), *sources.pages(), *whole]
     return {page.uri: page for page in pages}
 
 
@@ -84,14 +84,6 @@ def made() -> dict[str, Page]:
 def homes() -> dict[str, str]:
     """Where the files of the project are in the site."""
     return {"docs": "index.md"} | COPIED | WHOLE | readme.homes() | diagnostics.homes() | sources.homes()
-
-
-def _decisions() -> Page:
-    lines = ["# Decision records", "", "What was decided, why, and what came of it.", "", "| | |", "|---|---|"]
-    for path in sorted((ROOT / "docs" / "adr").glob("[0-9]*.md")):
-        title = path.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
-        lines.append(f"| {int(path.name[:4])} | [{title}]({path.name}) |")
-    return Page("adr/index.md", "\n".join(lines) + "\n", "docs/adr/index.md")
 
 
 def _place(uri: str) -> tuple[str, bool, str]:

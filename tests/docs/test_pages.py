@@ -47,12 +47,25 @@ def test_the_tests_they_name_are_there(page: Path) -> None:
             assert f"\ndef {name}(" in source, f"{file}: {name}"
 
 
-def test_decisions_are_numbered_and_say_why_what_and_what_came_of_it() -> None:
-    pages = sorted((DOCS / "adr").glob("*.md"))
+def test_decisions_are_numbered_and_have_the_same_headings() -> None:
+    pages = sorted((DOCS / "adr").glob("[0-9]*.md"))
     assert [int(page.name[:4]) for page in pages] == list(range(1, len(pages) + 1))
-    for page in pages:
-        heads = re.findall(r"^## (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
-        assert heads == ["Context", "Decision", "Consequences"], page.name
+    required = ["Status", "Context", "Decision", "Consequences"]
+    for number, page in enumerate(pages, 1):
+        text = page.read_text(encoding="utf-8")
+        assert text.startswith(f"# {number}. "), page.name
+        heads = re.findall(r"^## (.*)$", text, re.MULTILINE)
+        assert heads in (required, [*required, "Alternatives considered"]), page.name
+
+
+def test_the_index_lists_every_decision() -> None:
+    index = (DOCS / "adr" / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d+) \| \[(.*)\]\((.*)\) \| \w.*\. \|$", index, re.MULTILINE)
+    pages = sorted((DOCS / "adr").glob("[0-9]*.md"))
+    titles = [page.read_text(encoding="utf-8").splitlines()[0] for page in pages]
+    assert [(f"# {number}. {title}", name) for number, title, name in rows] == [
+        (title, page.name) for title, page in zip(titles, pages, strict=True)
+    ]
 
 
 @pytest.mark.parametrize(
