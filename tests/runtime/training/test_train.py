@@ -183,7 +183,7 @@ def test_no_checkpoint_tells_of_an_iteration_that_was_not_measured(
 
     reports = train(run := run_in(folder / f"before-{broken}"))
     next(reports)
-    monkeypatch.setattr(f"tltl_runtime.training.{broken}", broken_off)
+    monkeypatch.setattr(f"tltl_runtime.training.run.{broken}", broken_off)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 1
