@@ -18,26 +18,29 @@ FAILED = ("FAILED ", "ERROR ")
 
 
 def main(runs: int, busy: int, arguments: list[str]) -> int:
-    """Run pytest ``runs`` times beside ``busy`` processes and print a line for each; the number of runs that failed."""
+    """Run pytest ``runs`` times beside ``busy`` busy processes, and return the number of failed runs.
+
+    Prints one line for each run.
+    """
     failed = 0
     with busy_processes(busy):
         for number in range(1, runs + 1):
             seed = random.randrange(10**6)
-            begun = time.monotonic()
-            done = run(seed, arguments)
-            minutes = (time.monotonic() - begun) / 60
-            lines = done.stdout.splitlines() or [""]
+            start = time.monotonic()
+            result = run(seed, arguments)
+            minutes = (time.monotonic() - start) / 60
+            lines = result.stdout.splitlines() or [""]
             print(f"run {number} of {runs}, seed {seed}, {minutes:.1f} min: {lines[-1].strip('= ')}", flush=True)
-            if done.returncode:
+            if result.returncode:
                 failed += 1
-                kept = Path(tempfile.gettempdir(), f"test-again-{seed}.log")
-                kept.write_text(done.stdout + done.stderr, encoding="utf-8")
-                print(*(line for line in lines if line.startswith(FAILED)), f"all of it: {kept}", sep="\n", flush=True)
+                log = Path(tempfile.gettempdir(), f"test-again-{seed}.log")
+                log.write_text(result.stdout + result.stderr, encoding="utf-8")
+                print(*(line for line in lines if line.startswith(FAILED)), f"all of it: {log}", sep="\n", flush=True)
     return failed
 
 
 def run(seed: int, arguments: list[str]) -> subprocess.CompletedProcess[str]:
-    """One run, in the order of a seed; later arguments overrule earlier ones."""
+    """Run pytest once, in the random order of ``seed``; later arguments override earlier ones."""
     command = [sys.executable, "-m", "pytest", "-q", "-rfE", "-n", "2", "-m", "not slow"]
     order = ["--random-order", f"--random-order-seed={seed}"]
     return subprocess.run([*command, *order, *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -45,7 +48,7 @@ def run(seed: int, arguments: list[str]) -> subprocess.CompletedProcess[str]:
 
 @contextmanager
 def busy_processes(count: int) -> Iterator[None]:
-    """Run this many busy processes until the block ends."""
+    """Run ``count`` busy processes until the block ends."""
     started = [get_context("spawn").Process(target=_work, args=(os.getpid(),), daemon=True) for _ in range(count)]
     for process in started:
         process.start()

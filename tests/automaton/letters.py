@@ -1,4 +1,4 @@
-"""Brute force over letters, to hold the automaton against: slow, obvious, independent of the diagrams."""
+"""Brute-force reference for automata, over all letters: slow, simple, independent of the diagrams."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Letter = tuple[bool, ...]
 
 
 def letters(fspa: Fspa) -> list[Letter]:
-    """Every truth assignment of the atoms that keeps the ``exclusive`` declarations."""
+    """Return every truth assignment of the atoms that the ``exclusive`` declarations allow."""
     return [
         letter
         for letter in product((False, True), repeat=len(fspa.atoms))
@@ -20,42 +20,42 @@ def letters(fspa: Fspa) -> list[Letter]:
 
 
 def holds(edge: Edge, letter: Letter) -> bool:
-    """Whether the edge's guard, by its prime implicants, is true of a letter."""
+    """Whether a letter satisfies the guard of an edge, by its prime implicants."""
     return any(all(letter[atom] == polarity for atom, polarity in prime) for prime in edge.guard.primes)
 
 
 def step(fspa: Fspa, state: int, letter: Letter) -> int:
-    """The successor; asserts that exactly one guard is true."""
+    """Return the successor of a state; asserts that exactly one guard is true."""
     taken = [edge.target for edge in fspa.edges_from(state) if holds(edge, letter)]
     assert len(taken) == 1, (state, letter, taken)
     return taken[0]
 
 
 def table(fspa: Fspa) -> dict[int, dict[Letter, int]]:
-    """The whole transition function."""
+    """Return the transition function as a table."""
     return {state.id: {letter: step(fspa, state.id, letter) for letter in letters(fspa)} for state in fspa.states}
 
 
 def run(fspa: Fspa, trace: Sequence[Letter], state: int = 0) -> int:
-    """The state after a trace."""
+    """Return the state after a trace."""
     for letter in trace:
         state = step(fspa, state, letter)
     return state
 
 
 def traces(fspa: Fspa, longest: int) -> Iterator[tuple[Letter, ...]]:
-    """Every non-empty trace up to a length."""
+    """Yield every non-empty trace of up to ``longest`` letters."""
     for length in range(1, longest + 1):
         yield from product(letters(fspa), repeat=length)
 
 
 def named(fspa: Fspa, trace: Sequence[Letter]) -> list[frozenset[str]]:
-    """The trace as the oracle takes it: the names of the atoms that hold at each sample."""
+    """Return the trace in the form of the oracle: the names of the true atoms of each sample."""
     return [frozenset(atom.name for atom, value in zip(fspa.atoms, letter, strict=True) if value) for letter in trace]
 
 
 def minimal_size(fspa: Fspa, accepting: set[int]) -> int:
-    """The states of the minimal complete automaton with that accepting set, by Moore's algorithm on letters."""
+    """Return the size of the minimal complete automaton with these accepting states, by Moore's algorithm."""
     moves = table(fspa)
     block = {state: int(state in accepting) for state in moves}
     while True:

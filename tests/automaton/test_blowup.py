@@ -1,4 +1,4 @@
-"""Formulas that blow up end in an error that names the part, in bounded time."""
+"""A formula that blows up is an error that labels the part at fault, in bounded time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tltlc.resolve.spec import Part, Spec
 
 
 def with_parts(*formulas: Formula) -> Spec:
-    """A spec whose parts span one character each of its source."""
+    """Return a spec with one part for each formula; a part spans one character of the source."""
     spec = spec_from_formula(and_(*formulas))
     return replace(spec, parts=tuple(Part(formula, spec.source, Span(i, i + 1)) for i, formula in enumerate(formulas)))
 
@@ -33,43 +33,43 @@ def error(spec: Spec, budget: int) -> TltlError:
 
 def test_the_budget_names_the_part_that_is_too_large() -> None:
     large = read_formula("G(a -> X X X X X X X X X X X X b)")
-    found = error(with_parts(read_formula("F c"), large), 3_000).diagnostics[0]
-    assert found.code == "TLT0501"
-    assert [label.span for label in found.labels] == [Span(1, 2)]
+    diagnostic = error(with_parts(read_formula("F c"), large), 3_000).diagnostics[0]
+    assert diagnostic.code == "TLT0501"
+    assert [label.span for label in diagnostic.labels] == [Span(1, 2)]
 
 
 def test_parts_that_are_large_only_together_are_named_together() -> None:
-    found = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(8))), 100).diagnostics[0]
-    assert [label.message for label in found.labels] == ["2 states alone; the parts multiply"] * 3
+    diagnostic = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(8))), 100).diagnostics[0]
+    assert [label.message for label in diagnostic.labels] == ["2 states alone; the parts multiply"] * 3
 
 
-def test_parts_are_looked_at_until_one_is_too_large_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_measuring_stops_at_the_first_part_that_is_too_large_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     large = read_formula("G(a -> X X X X X X X X X X X X b)")
-    looked = looked_at(monkeypatch)
-    found = error(with_parts(read_formula("F c"), large, *(eventually(atom(f"a{i}")) for i in range(9))), 3_000)
-    assert [label.span for label in found.diagnostics[0].labels] == [Span(1, 2)]
-    assert looked == [Span(0, 1), Span(1, 2)]
+    measured = record_measured_parts(monkeypatch)
+    raised = error(with_parts(read_formula("F c"), large, *(eventually(atom(f"a{i}")) for i in range(9))), 3_000)
+    assert [label.span for label in raised.diagnostics[0].labels] == [Span(1, 2)]
+    assert measured == [Span(0, 1), Span(1, 2)]
 
 
-def test_of_very_many_parts_some_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_some_of_very_many_parts_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORK, "states of blamed parts", 7)
-    looked = looked_at(monkeypatch)
-    found = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(30))), 100).diagnostics[0]
-    assert [label.message for label in found.labels] == ["2 states alone; the parts multiply"] * 3
-    assert len(looked) == 4
+    measured = record_measured_parts(monkeypatch)
+    diagnostic = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(30))), 100).diagnostics[0]
+    assert [label.message for label in diagnostic.labels] == ["2 states alone; the parts multiply"] * 3
+    assert len(measured) == 4
 
 
-def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[Span]:
-    """The parts whose own automata are made, as that happens."""
-    looked: list[Span] = []
+def record_measured_parts(monkeypatch: pytest.MonkeyPatch) -> list[Span]:
+    """Return a list that records each part whose own automaton is built, by its span."""
+    measured: list[Span] = []
     size = blowup._size
 
     def counted(part: Part, spec: Spec) -> blowup.Size | None:
-        looked.append(part.span)
+        measured.append(part.span)
         return size(part, spec)
 
     monkeypatch.setattr(blowup, "_size", counted)
-    return looked
+    return measured
 
 
 def test_the_budget_is_exact() -> None:
@@ -92,11 +92,14 @@ def test_deep_formulas_need_no_deep_stack(wrap: Callable[[Formula], Formula]) ->
     assert sys.getrecursionlimit() == before
 
 
-def test_what_nests_too_deeply_is_not_said_to_need_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_deep_nesting_is_not_reported_as_a_lack_of_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(blowup, "_RECURSION_ROOM", 1_000)
-    found = error(with_parts(read_formula("F c"), within(2_000)), 50_000).diagnostics[0]
-    assert (found.code, found.title) == ("TLT0501", "the automaton of `spec` needs formulas that nest too deeply")
-    assert [label.span for label in found.labels] == [Span(1, 2)]
+    diagnostic = error(with_parts(read_formula("F c"), within(2_000)), 50_000).diagnostics[0]
+    assert (diagnostic.code, diagnostic.title) == (
+        "TLT0501",
+        "the automaton of `spec` needs formulas that nest too deeply",
+    )
+    assert [label.span for label in diagnostic.labels] == [Span(1, 2)]
 
 
 def test_a_long_chain_of_untils() -> None:

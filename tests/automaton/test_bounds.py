@@ -1,4 +1,4 @@
-"""Bounds that are counted down: of several at once the shortest stays, so that a bound of n takes about n states."""
+"""Bounds count down: of several copies of a bound only the tightest stays, so a bound of n takes about n states."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def for_all(steps: int, body: Formula = A) -> Formula:
 
 @pytest.mark.parametrize("body", [A, f.or_(A, B), f.and_(A, B), f.next_(A)])
 @pytest.mark.parametrize("bound", [within, for_all])
-def test_what_is_counted_down(bound, body: Formula) -> None:  # type: ignore[no-untyped-def]
+def test_bounded_formulas_count_down(bound, body: Formula) -> None:  # type: ignore[no-untyped-def]
     step = f.next_ if bound is within else f.weak_next
     for steps in (1, 2, 5):
         assert counted_down(step(bound(steps, body))) is step(bound(steps - 1, body))
@@ -67,7 +67,7 @@ def test_what_is_counted_down(bound, body: Formula) -> None:  # type: ignore[no-
     ],
     ids=str,
 )
-def test_what_is_not(formula: Formula) -> None:
+def test_other_formulas_do_not_count_down(formula: Formula) -> None:
     assert counted_down(formula) is None
 
 
@@ -85,7 +85,7 @@ def test_what_is_not(formula: Formula) -> None:
         ("G(a -> F[0,20] G[0,3] b)", 152),
     ],
 )
-def test_bounds_that_run_at_once_take_as_many_states_as_they_must(formula: str, states: int, semantics: str) -> None:
+def test_overlapping_bounds_have_these_sizes(formula: str, states: int, semantics: str) -> None:
     fspa = compiled(formula, semantics)
     assert len(fspa.states) == states
 
@@ -97,7 +97,7 @@ def test_labels_count_down(semantics: str) -> None:
 
 
 @pytest.mark.parametrize("bound", [within, for_all])
-def test_long_bounds_need_no_stack_for_each_shorter_one(bound) -> None:  # type: ignore[no-untyped-def]
+def test_long_bounds_need_no_deep_stack(bound) -> None:  # type: ignore[no-untyped-def]
     longest, before = bound(1_000), sys.getrecursionlimit()
     step = f.next_ if bound is within else f.weak_next
     successors, after = Successors(["a"], Diagrams()), After(["a"], Letters(Work(1_000)))
@@ -109,7 +109,7 @@ def test_long_bounds_need_no_stack_for_each_shorter_one(bound) -> None:  # type:
         sys.setrecursionlimit(before)
 
 
-def test_labels_of_long_bounds_are_not_searched_for_what_can_go(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_labels_of_long_bounds_are_not_searched_for_redundant_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     searched: set[int] = set()
     support = Writer.support
 

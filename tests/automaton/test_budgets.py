@@ -1,4 +1,4 @@
-"""Budgets of edges, guards, parts and labels: what compiles within them, and refusals in counted steps."""
+"""Budgets of edges, guards, parts and labels: what compiles within them, and the errors beyond them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tltlc.resolve.spec import Spec
 
 
 def any_order(goals: int) -> Formula:
-    """Goals that may be met in any order, also at once."""
+    """Return the conjunction of goals that may be met in any order, or at once."""
     return and_(*(eventually(atom(f"a{number}")) for number in range(goals)))
 
 
@@ -50,25 +50,26 @@ def test_goals_in_any_order_are_met_as_the_oracle_says(goals: int, exclusive: bo
 
 
 @pytest.mark.parametrize("goals", [2, 5, 8, 10])
-def test_goals_in_any_order_of_which_one_is_met_at_a_time_have_few_edges(goals: int) -> None:
+def test_exclusive_goals_in_any_order_have_few_edges(goals: int) -> None:
     fspa = build(spec_from_formula(any_order(goals), exclusive=[names(goals)]))
     assert len(fspa.states) == 2**goals
     assert len(fspa.edges) == goals * 2 ** (goals - 1) + 2**goals
 
 
-def test_goals_in_any_order_that_are_met_at_once_have_an_edge_to_each_smaller_set() -> None:
+def test_goals_in_any_order_have_an_edge_to_each_set_of_remaining_goals() -> None:
     assert len(build(spec_from_formula(any_order(7))).edges) == 3**7
 
 
-def test_too_many_edges_are_refused_before_a_guard_or_a_label_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_edges_are_an_error_before_guards_and_labels_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(build_module, "Guards", None)
     monkeypatch.setattr(build_module, "Labels", None)
     with pytest.raises(TltlError) as raised:
         build(spec_from_formula(any_order(13)))
-    (found,) = raised.value.diagnostics
-    assert (found.code, found.title) == ("TLT0502", "the automaton of `spec` has more than 1000000 edges")
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == ("TLT0502", "the automaton of `spec` has more than 1000000 edges")
     assert (
-        found.help == "declare atoms that never hold together `exclusive`, give the goals an order, or split the spec"
+        diagnostic.help
+        == "declare atoms that never hold together `exclusive`, give the goals an order, or split the spec"
     )
 
 
@@ -80,8 +81,8 @@ def test_the_limit_of_edges_is_exact(semantics: Literal["finite", "infinite"], m
     monkeypatch.setitem(WORK, "edges", 19)
     with pytest.raises(TltlError) as raised:
         built(spec)
-    (found,) = raised.value.diagnostics
-    assert (found.title, found.help) == (
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.title, diagnostic.help) == (
         "the automaton of `spec` has more than 19 edges",
         "give the goals an order, or split the spec",
     )
@@ -92,22 +93,25 @@ def built(spec: Spec, budget: int = 1_000) -> Fspa:
     return make(spec, state_budget=budget)
 
 
-def test_products_on_the_way_to_guards_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_partial_products_of_guards_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORK, "partial products", 100)
     assert build(spec_from_formula(read_formula("F (a & b | c)")))
     equal = and_(*(iff(atom(f"a{number}"), atom(f"b{number}")) for number in range(6)))
     with pytest.raises(TltlError) as raised:
         build(spec_from_formula(equal))
-    (found,) = raised.value.diagnostics
-    assert (found.code, found.title) == ("TLT0502", "all guards of `spec` have more than 100 partial products")
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == (
+        "TLT0502",
+        "all guards of `spec` have more than 100 partial products",
+    )
 
 
 def run(fspa: Fspa, trace: Iterable[frozenset[str]]) -> int:
-    """The state after a trace."""
+    """Return the state after a trace."""
     state = 0
     for letter in trace:
-        given = [1.0 if atom.name in letter else -1.0 for atom in fspa.atoms]
-        (edge,) = (edge for edge in fspa.edges_from(state) if guard_holds(edge.guard, given))
+        values = [1.0 if atom.name in letter else -1.0 for atom in fspa.atoms]
+        (edge,) = (edge for edge in fspa.edges_from(state) if guard_holds(edge.guard, values))
         state = edge.target
     return state
 
@@ -118,10 +122,10 @@ def powerset(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 @pytest.mark.parametrize("semantics", ["finite", "infinite"])
 def test_the_help_on_many_exclusive_atoms_is_right(semantics: Literal["finite", "infinite"]) -> None:
-    """142 atoms of one group have 10,011 pairs, each of which counts as a prime implicant; two groups have half."""
+    """A group of 142 atoms has 10,011 pairs, each of which counts as a prime implicant; two groups have about half."""
     goal = eventually(or_(*map(atom, names(142))))
-    found = refusal(replace(spec_from_formula(goal, exclusive=[names(142)]), semantics=semantics))
-    assert (found.code, found.help) == (
+    diagnostic = refusal(replace(spec_from_formula(goal, exclusive=[names(142)]), semantics=semantics))
+    assert (diagnostic.code, diagnostic.help) == (
         "TLT0502",
         "declare fewer atoms `exclusive`, or several smaller groups: now 10011 pairs exclude each other",
     )
@@ -129,16 +133,16 @@ def test_the_help_on_many_exclusive_atoms_is_right(semantics: Literal["finite", 
     assert built(replace(spec_from_formula(goal, exclusive=halves), semantics=semantics))
 
 
-def test_a_large_guard_without_exclusive_atoms_is_no_fault_of_theirs() -> None:
+def test_the_help_does_not_blame_exclusive_atoms_for_other_large_guards() -> None:
     parity = atom("a0")
     for name in names(16)[1:]:
         parity = iff(atom(name), parity)
-    found = refusal(spec_from_formula(eventually(parity), exclusive=[names(2)]))
-    assert (found.code, found.help) == ("TLT0502", "split the spec, or name the condition as a predicate")
+    diagnostic = refusal(spec_from_formula(eventually(parity), exclusive=[names(2)]))
+    assert (diagnostic.code, diagnostic.help) == ("TLT0502", "split the spec, or name the condition as a predicate")
 
 
 def test_the_states_of_all_parts_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A disjunction of n parts is put together in n - 1 products, each of which is small enough alone."""
+    """A disjunction of n parts takes n - 1 products, each of which is within the budget alone."""
     parts = [and_(*(eventually(atom(name)) for name in chosen)) for chosen in combinations(names(5), 3)]
     spec = spec_from_formula(or_(*parts))
     monkeypatch.setattr(composition, "WHOLE_STEPS", 0)
@@ -148,7 +152,7 @@ def test_the_states_of_all_parts_are_counted(monkeypatch: pytest.MonkeyPatch) ->
     assert refusal(spec, 32).title == "the automaton of `spec` needs more than 32 states"
 
 
-def test_long_labels_are_refused_before_they_are_written(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_labels_are_an_error_before_they_are_written(monkeypatch: pytest.MonkeyPatch) -> None:
     formula = atom("a4")
     for number in (3, 2, 1, 0):
         formula = or_(atom(f"a{number}"), next_(formula))
@@ -156,8 +160,8 @@ def test_long_labels_are_refused_before_they_are_written(monkeypatch: pytest.Mon
     assert build(spec)
     monkeypatch.setitem(WORK, "label nodes", 20)
     monkeypatch.setattr(build_module, "text_of", None)
-    found = refusal(spec)
-    assert (found.code, found.title) == (
+    diagnostic = refusal(spec)
+    assert (diagnostic.code, diagnostic.title) == (
         "TLT0501",
         "the automaton of `spec` needs labels of more than 20 operators and atoms",
     )
@@ -165,7 +169,7 @@ def test_long_labels_are_refused_before_they_are_written(monkeypatch: pytest.Mon
 
 @given(state_formulas(("a", "b", "c"), max_leaves=5), state_formulas(("a", "b", "c"), max_leaves=5), st.booleans())
 @settings(max_examples=200, deadline=None)
-def test_what_joins_constrained_transitions_is_constrained(one: Formula, other: Formula, conjunction: bool) -> None:
+def test_joining_constrained_transitions_keeps_the_constraint(one: Formula, other: Formula, conjunction: bool) -> None:
     diagrams = Diagrams()
     successors = Successors(["a", "b", "c"], diagrams)
     allowed = allowed_letters(diagrams, [[0, 1, 2]])
@@ -176,7 +180,7 @@ def test_what_joins_constrained_transitions_is_constrained(one: Formula, other: 
 
 
 def test_a_product_over_exclusive_atoms_makes_few_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At first it made the transitions of all letters, and those of the possible ones from them."""
+    """An earlier version built the transitions for all letters first, and restricted them to the possible ones later."""
     made: list[Diagrams] = []
     monkeypatch.setattr(build_module, "Diagrams", lambda: made.append(Diagrams()) or made[-1])
     monkeypatch.setattr(build_module, "_labels", None)
@@ -189,5 +193,5 @@ def test_a_product_over_exclusive_atoms_makes_few_nodes(monkeypatch: pytest.Monk
 def refusal(spec: Spec, budget: int = 1_000) -> Diagnostic:
     with pytest.raises(TltlError) as raised:
         built(spec, budget)
-    (found,) = raised.value.diagnostics
-    return found
+    (diagnostic,) = raised.value.diagnostics
+    return diagnostic

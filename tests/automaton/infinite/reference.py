@@ -1,6 +1,6 @@
-"""Formulas over infinite traces with the sizes that the construction has reached, on which tests hold it.
+"""A table of formulas over infinite traces with the sizes of their automata; tests check that no size grows.
 
-``python -m tests.automaton.infinite.reference`` measures the table anew, in a minute or two.
+``python -m tests.automaton.infinite.reference`` measures the table again, in a minute or two.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ _PLENTY = 10**9
 
 
 class Entry(NamedTuple):
-    """A formula, its source (``owl`` or ``families``), the states of its automaton without the trap, its pairs, and the
-    steps of work.
+    """A formula, its source (``owl`` or ``families``), and the size of its automaton.
+
+    ``states`` leaves out the trap; ``steps`` is the work of the construction.
     """
 
     source: str
@@ -35,7 +36,7 @@ class Entry(NamedTuple):
 
 
 def entries() -> list[Entry]:
-    """The table, in file order."""
+    """Return the rows of the table, in file order."""
     with TABLE.open(encoding="utf-8", newline="") as file:
         return [
             Entry(row["source"], read_formula(row["formula"]), *(int(row[name]) for name in _COLUMNS[2:]))
@@ -44,16 +45,16 @@ def entries() -> list[Entry]:
 
 
 def made(formula: Formula) -> Rabin:
-    """The automaton of a formula of the table."""
+    """Return the automaton of a formula of the table."""
     with recursion_room():
         return rabin(formula)
 
 
 def states(automaton: Rabin) -> int:
-    """The states without the trap, one at least."""
+    """Return the number of states without the trap, at least one."""
     analysis = analysis_of_rabin(automaton, Work(_PLENTY))
-    every = range(len(automaton.steps))
-    return max(1, sum(analysis.verdict(state) != "violated" for state in every))
+    states_ = range(len(automaton.steps))
+    return max(1, sum(analysis.verdict(state) != "violated" for state in states_))
 
 
 def _measure() -> None:

@@ -1,4 +1,4 @@
-"""Runs of automata over infinite traces, on traces that end in a cycle: slow, and straight from the definition."""
+"""Runs of automata over infinite traces, on traces that end in a cycle, directly from the definition."""
 
 from __future__ import annotations
 
@@ -15,31 +15,34 @@ from tltlc.logic.formula import Formula
 
 
 def compiled(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
-    """The automaton over infinite traces of a formula over free atoms."""
+    """Compile a formula to its automaton over infinite traces; ``exclusive`` are groups of its atoms."""
     if isinstance(formula, str):
         formula = read_formula(formula)
     return build_infinite(replace(spec_from_formula(formula, exclusive=exclusive), semantics="infinite"))
 
 
 def accepts(fspa: Fspa, prefix: Sequence[Letter], cycle: Sequence[Letter], state: int = 0) -> bool:
-    """Whether a state accepts ``prefix`` followed by ``cycle`` for ever; asserts that exactly one guard is true."""
+    """Whether the automaton accepts, from ``state``, ``prefix`` followed by ``cycle`` forever.
+
+    Asserts that exactly one guard is true at each step.
+    """
     for letter in prefix:
         state = fspa.edges[_edge(fspa, state, letter)].target
-    met: dict[int, int] = {}
+    first_rounds: dict[int, int] = {}
     rounds: list[set[int]] = []
-    while state not in met:
-        met[state] = len(rounds)
+    while state not in first_rounds:
+        first_rounds[state] = len(rounds)
         taken = []
         for letter in cycle:
             taken.append(_edge(fspa, state, letter))
             state = fspa.edges[taken[-1]].target
         rounds.append(set(taken))
-    for_ever = set().union(*rounds[met[state] :])
-    return any(not for_ever & set(pair.fin) and for_ever & set(pair.inf) for pair in fspa.acceptance)
+    recurring = set().union(*rounds[first_rounds[state] :])
+    return any(not recurring & set(pair.fin) and recurring & set(pair.inf) for pair in fspa.acceptance)
 
 
 def lassos(fspa: Fspa, longest: int) -> list[tuple[tuple[Letter, ...], tuple[Letter, ...]]]:
-    """Every prefix and cycle, both together up to a length."""
+    """Return every lasso whose prefix and cycle together have at most ``longest`` letters."""
     possible = letters(fspa)
     return [
         (prefix, cycle)

@@ -1,4 +1,7 @@
-"""Goals, verdicts and the default judge, from their definitions: by every set of edges that a run may take for ever."""
+"""Goals, verdicts and the default judge agree with their definitions.
+
+The tests enumerate every set of edges that a run may take forever.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ marks = st.frozensets(st.integers(0, 2 * PAIRS - 1), max_size=3)
 
 @st.composite
 def graphs(draw: st.DrawFn) -> tuple[int, list[Edge]]:
-    """States that each have an edge at least, and what their edges are marked with."""
+    """Draw a number of states, and marked edges; every state has at least one edge."""
     states = draw(st.integers(1, 4))
     numbers = st.integers(0, states - 1)
     edges: list[Edge] = [(state, draw(numbers), draw(marks)) for state in range(states)]
@@ -25,10 +28,10 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Edge]]:
     return states, list(dict.fromkeys(edges))
 
 
-def for_ever(edges: list[Edge]) -> list[tuple[Edge, ...]]:
-    """Every set of edges that some run takes infinitely often, and no others."""
-    chosen = (some for size in range(1, len(edges) + 1) for some in combinations(edges, size))
-    return [some for some in chosen if _is_strongly_connected(some)]
+def recurring_sets(edges: list[Edge]) -> list[tuple[Edge, ...]]:
+    """Return every set of edges that is exactly what some run takes infinitely often."""
+    subsets = (subset for size in range(1, len(edges) + 1) for subset in combinations(edges, size))
+    return [subset for subset in subsets if _is_strongly_connected(subset)]
 
 
 def _is_strongly_connected(edges: tuple[Edge, ...]) -> bool:
@@ -36,14 +39,14 @@ def _is_strongly_connected(edges: tuple[Edge, ...]) -> bool:
     return all(states <= reached(state, edges) for state in states)
 
 
-def reached(state: int, edges: tuple[Edge, ...] | list[Edge]) -> set[int]:
-    found, queue = {state}, [state]
-    for each in queue:
+def reached(start: int, edges: tuple[Edge, ...] | list[Edge]) -> set[int]:
+    states, queue = {start}, [start]
+    for state in queue:
         for source, target, _ in edges:
-            if source == each and target not in found:
-                found.add(target)
+            if source == state and target not in states:
+                states.add(target)
                 queue.append(target)
-    return found
+    return states
 
 
 def accepted(edges: tuple[Edge, ...]) -> bool:
@@ -57,12 +60,12 @@ def touched(sets: list[tuple[Edge, ...]]) -> set[int]:
 
 @settings(max_examples=200, deadline=None)
 @given(graphs())
-def test_goals_verdicts_and_judge_are_what_runs_say(graph: tuple[int, list[Edge]]) -> None:
+def test_goals_verdicts_and_judge_match_their_definitions(graph: tuple[int, list[Edge]]) -> None:
     states, edges = graph
     analysis = Analysis(states, edges, PAIRS, Work(1_000_000))
-    cycles = for_ever(edges)
-    goals = touched([some for some in cycles if accepted(some)])
-    rejected = touched([some for some in cycles if not accepted(some)])
+    cycles = recurring_sets(edges)
+    goals = touched([cycle for cycle in cycles if accepted(cycle)])
+    rejected = touched([cycle for cycle in cycles if not accepted(cycle)])
     assert analysis.goals == goals
     verdicts = []
     for state in range(states):
@@ -75,13 +78,13 @@ def test_goals_verdicts_and_judge_are_what_runs_say(graph: tuple[int, list[Edge]
             verdicts.append("holding" if state in goals else "pending")
     assert [analysis.verdict(state) for state in range(states)] == verdicts
     alive = [edge for edge in edges if verdicts[edge[1]] != "violated"]
-    vain = touched([some for some in for_ever(alive) if not accepted(some)])
+    vain = touched([cycle for cycle in recurring_sets(alive) if not accepted(cycle)])
     staying_suffices = not any(reached(goal, alive) & vain for goal in goals)
     assert analysis.default_judge() == ("goal" if 0 not in goals and staying_suffices else "limit")
 
 
 @given(graphs())
-def test_successors_are_those_of_the_edges_in_their_order(graph: tuple[int, list[Edge]]) -> None:
+def test_targets_follow_the_order_of_the_edges(graph: tuple[int, list[Edge]]) -> None:
     states, edges = graph
     targets = Analysis(states, edges, PAIRS, Work(1_000_000)).targets
     for state in range(states):

@@ -1,4 +1,4 @@
-"""The automaton of a formula: its language, on lassos and exactly; its form; and how much work it may take."""
+"""The automaton of a formula: its language (on lassos, and exactly), its form, and its work budget."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ Groups = tuple[tuple[str, ...], ...]
 SEEDS = pytest.mark.parametrize("seed", range(10))
 GROUPS = [(("a", "b"),), (("a", "b", "c"),), (("a", "b"), ("b", "c"))]
 WORK = 300_000
-"""Formulas that need more steps are left out, to be quick."""
+"""Formulas that need more steps are skipped, to save time."""
 
 
 def made(formula: Formula, exclusive: Groups = ()) -> Rabin:
-    """The automaton of a formula over the atoms a, b and c."""
+    """Return the automaton of a formula over the atoms a, b and c."""
     with recursion_room():
         return rabin(formula, ABC, places(exclusive), WORK)
 
 
 def places(exclusive: Groups) -> list[list[int]]:
-    """Groups by the places of their atoms."""
+    """Return groups as the indices of their atoms."""
     return [[ABC.index(atom) for atom in group] for group in exclusive]
 
 
 def some_made(count: int, largest: int, seed: int, exclusive: Groups = ()) -> Iterator[tuple[Formula, Rabin]]:
-    """Random formulas and their automata, nearly all of so many."""
+    """Yield ``count`` random formulas with their automata, except up to two that need too much work."""
     left_out = 0
     for formula in some_formulas(count, largest, seed):
         try:
@@ -53,7 +53,7 @@ def some_made(count: int, largest: int, seed: int, exclusive: Groups = ()) -> It
 
 
 @SEEDS
-def test_accepts_what_the_formula_holds_of(seed: int) -> None:
+def test_accepts_the_lassos_on_which_the_formula_holds(seed: int) -> None:
     words = some_lassos(ABC, 20, seed)
     for formula, automaton in some_made(60, 10, seed):
         for word in words:
@@ -61,7 +61,7 @@ def test_accepts_what_the_formula_holds_of(seed: int) -> None:
 
 
 @SEEDS
-def test_accepts_what_the_formula_holds_of_where_atoms_exclude_each_other(seed: int) -> None:
+def test_accepts_the_right_lassos_with_exclusive_atoms(seed: int) -> None:
     groups = GROUPS[seed % len(GROUPS)]
     words = [allowed(word, groups) for word in some_lassos(ABC, 20, seed)]
     for formula, automaton in some_made(30, 10, seed, groups):
@@ -70,13 +70,13 @@ def test_accepts_what_the_formula_holds_of_where_atoms_exclude_each_other(seed: 
 
 
 @SEEDS
-def test_each_word_is_of_a_formula_or_of_its_negation(seed: int) -> None:
+def test_a_formula_or_its_negation_accepts_each_word(seed: int) -> None:
     for formula, automaton in some_made(20, 9, seed):
         assert opposite(automaton, made(not_(formula)), letters(3)), formula
 
 
 @SEEDS
-def test_exclusive_atoms_change_nothing_on_words_that_there_are(seed: int) -> None:
+def test_exclusive_atoms_change_nothing_on_possible_words(seed: int) -> None:
     groups = GROUPS[seed % len(GROUPS)]
     for formula, automaton in some_made(20, 8, seed):
         assert equal(made(formula, groups), automaton, letters(3, places(groups))), formula
@@ -99,15 +99,15 @@ def test_equal_formulas(one: str, other: str) -> None:
     assert not opposite(left, right, letters(3))
 
 
-def test_a_memory_is_not_taken_for_another_parts() -> None:
-    """A pair of obligations 1 and 0 once was one leaf with the pair of True and False, and the construction failed."""
+def test_a_pair_of_obligations_differs_from_a_pair_of_truth_values() -> None:
+    """The obligations (1, 0) and the pair (True, False) once shared a leaf, and the construction failed."""
     formula = read_formula("G X F F(!c & X !c R (c | X !b))")
     automaton = made(formula)
     for word in some_lassos(ABC, 50, 0):
         assert accepts(automaton, ABC, word) == holds_on_lasso(formula, *word)
 
 
-def test_comparison_tells_languages_apart() -> None:
+def test_comparison_distinguishes_languages() -> None:
     left, right = (rabin(read_formula(text), ABC) for text in ("G F a", "F G a"))
     assert not equal(left, right, letters(3))
     assert not opposite(left, right, letters(3))
@@ -117,14 +117,14 @@ def test_comparison_tells_languages_apart() -> None:
 
 
 @pytest.mark.parametrize("exclusive", [(), *GROUPS])
-def test_deterministic_complete_and_reached(exclusive: Groups) -> None:
-    there = set(letters(3, places(exclusive)))
+def test_automata_are_deterministic_complete_and_reachable(exclusive: Groups) -> None:
+    possible = set(letters(3, places(exclusive)))
     for _, automaton in some_made(40, 9, 1, exclusive):
         states = range(len(automaton.steps))
         for state in states:
             for letter in letters(3):
                 leaf = automaton.letters.at(automaton.steps[state], letter.__getitem__)
-                assert (leaf is None) == (letter not in there)
+                assert (leaf is None) == (letter not in possible)
                 if leaf is not None:
                     target, marks = leaf
                     assert target in states
@@ -135,7 +135,7 @@ def test_deterministic_complete_and_reached(exclusive: Groups) -> None:
         assert sorted(reached) == list(states)
 
 
-def test_a_label_says_what_the_rest_of_the_trace_must_meet() -> None:
+def test_a_state_accepts_the_lassos_on_which_its_label_holds() -> None:
     words = some_lassos(ABC, 12, 0)
     for _, automaton in some_made(100, 9, 2):
         for state, label in enumerate(automaton.labels):
@@ -163,7 +163,7 @@ def test_a_label_says_what_the_rest_of_the_trace_must_meet() -> None:
         ("F G(a | X X b) | F G(c | X X d)", 8, 1),
     ],
 )
-def test_small_ones(text: str, states: int, pairs: int) -> None:
+def test_small_automata(text: str, states: int, pairs: int) -> None:
     automaton = rabin(read_formula(text))
     assert (len(automaton.steps), automaton.pairs) == (states, pairs)
 
@@ -189,12 +189,12 @@ def test_a_formula_that_is_too_large_ends() -> None:
         rabin(read_formula(large), work=200_000)
 
 
-def test_more_work_than_is_needed_changes_nothing() -> None:
+def test_a_larger_budget_changes_nothing() -> None:
     formula = read_formula("G(a -> F b) & F G(c | X a)")
     assert _described(rabin(formula, work=2_000_000)) == _described(rabin(formula))
 
 
-def test_output_does_not_depend_on_the_order_of_hashes() -> None:
+def test_output_does_not_depend_on_the_hash_seed() -> None:
     program = """
 import tltlc
 from tests.automaton.infinite.test_automaton import SPECS, shown
@@ -227,7 +227,7 @@ spec fair { semantics infinite  require (G F a -> G F b) and G alive }
 
 
 def shown(text: str) -> str:
-    """All of the automaton of a formula."""
+    """Return a complete description of the automaton of a formula."""
     return repr(_described(rabin(read_formula(text))))
 
 

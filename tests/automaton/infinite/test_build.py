@@ -1,4 +1,4 @@
-"""The automata of specifications over infinite traces, against the definitions of semantics section 5."""
+"""The automata of specifications over infinite traces agree with the definitions in section 5 of the semantics."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ def labels(fspa: Fspa) -> list[str]:
 
 
 def judged(fspa: Fspa) -> list[tuple[str, str, int | None, bool]]:
-    def of(state: State) -> tuple[str, str, int | None, bool]:
+    def row(state: State) -> tuple[str, str, int | None, bool]:
         return state.label.ascii, state.verdict, state.distance, state.accepting
 
-    return list(map(of, fspa.states))
+    return list(map(row, fspa.states))
 
 
 # --- the work -------------------------------------------------------------------------------------
 
 
-def test_the_state_budget_is_one_of_work() -> None:
+def test_the_state_budget_limits_the_work() -> None:
     assert STEPS_PER_STATE * DEFAULT_STATE_BUDGET == DEFAULT_WORK
     text = "signal a: bool signal b: bool spec s { semantics infinite require G F a & G F b & F G (a | b) }"
     assert compile_text(text, options=CompileOptions(state_budget=DEFAULT_STATE_BUDGET // 100)) == compile_text(text)
@@ -49,7 +49,7 @@ def test_the_state_budget_is_one_of_work() -> None:
         compile_text(text, options=CompileOptions(state_budget=1))
 
 
-def test_a_component_may_take_more_where_more_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_larger_budget_allows_larger_components(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(construct, "_FOR_AN_ATTEMPT", 400)
     formula = read_formula(" & ".join(f"G(p{number} -> F q{number})" for number in range(3)))
     with pytest.raises(OutOfWork):
@@ -62,7 +62,7 @@ def test_a_component_may_take_more_where_more_is_allowed(monkeypatch: pytest.Mon
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL, GROUPS)
-def test_accepts_what_the_formula_holds_of(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
+def test_accepts_the_lassos_on_which_the_formula_holds(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     for prefix, cycle in lassos(fspa, 3):
         expected = holds_on_lasso(formula, named(fspa, prefix), named(fspa, cycle))
@@ -71,7 +71,7 @@ def test_accepts_what_the_formula_holds_of(formula: Formula, groups: tuple[tuple
 
 @settings(max_examples=60, deadline=None)
 @given(SMALL, GROUPS)
-def test_a_label_says_what_the_rest_of_the_trace_must_meet(
+def test_a_state_accepts_the_lassos_on_which_its_label_holds(
     formula: Formula, groups: tuple[tuple[str, ...], ...]
 ) -> None:
     fspa = compiled(formula, *groups)
@@ -101,8 +101,8 @@ def test_verdicts_and_goals_agree_with_each_other(formula: Formula) -> None:
         assert (state.verdict == "violated") == (state.distance is None)
         assert state.accepting == (state.distance == 0)
         if state.verdict in ("satisfied", "violated"):
-            found = {accepts(fspa, prefix, cycle, state.id) for prefix, cycle in lassos(fspa, 2)}
-            assert found == {state.verdict == "satisfied"}
+            answers = {accepts(fspa, prefix, cycle, state.id) for prefix, cycle in lassos(fspa, 2)}
+            assert answers == {state.verdict == "satisfied"}
     assert fspa.spec_size == max((state.distance or 0 for state in fspa.states), default=0)
 
 
@@ -118,7 +118,7 @@ def test_verdicts_and_goals_agree_with_each_other(formula: Formula) -> None:
         ("F(s1 & X F(s2 & X F(s3 & X F((r -> er) & (l -> el))))) & G p", 6),
     ],
 )
-def test_the_papers_formulas_have_the_shape_that_they_have_over_finite_traces(text: str, states: int) -> None:
+def test_the_papers_formulas_have_the_same_automaton_as_over_finite_traces(text: str, states: int) -> None:
     infinite, finite = compiled(text), build(spec_from_formula(read_formula(text)))
     assert len(infinite.states) == states
     assert judged(infinite) == judged(finite)
@@ -143,14 +143,14 @@ def test_labels_keep_the_operators_and_the_order_of_the_source() -> None:
         ("F(a & X F b)", "goal"),
         ("a U b", "goal"),
         ("X X a", "goal"),
-        # Once a has held, going on is enough.
+        # After a, every state that can be reached may stay accepting forever.
         ("a & G b", "goal"),
         ("G p", "limit"),
         ("G F a", "limit"),
         ("F G a", "limit"),
         ("G(a -> F b)", "limit"),
         ("G F a -> G F b", "limit"),
-        # The goal may be stayed in for ever in vain.
+        # A run may stay in the goal forever without being accepted.
         ("F a & G F b", "limit"),
     ],
 )
@@ -158,7 +158,7 @@ def test_default_judge(text: str, judge: str) -> None:
     assert compiled(text).judge == judge
 
 
-def test_a_clause_decides_when_a_spec_is_judged() -> None:
+def test_a_judge_clause_overrides_the_default() -> None:
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite judge at goal require G F a }")
     assert fspa.judge == "goal"
 
@@ -212,14 +212,14 @@ def test_an_unsatisfiable_spec_is_violated_from_the_start(text: str) -> None:
         ("keep weak_next false", "TLT0410", ["keep weak_next false"]),
         ("keep next true", "TLT0411", ["s"]),
         ("reach a or not a", "TLT0411", ["s"]),
-        # Each step has another one after it.
+        # Every step of an infinite trace has a next step.
         ("keep a then b", None, []),
     ],
 )
-def test_what_is_decided_from_the_start_is_warned_of(body: str, code: str | None, blamed: list[str]) -> None:
+def test_a_spec_that_is_decided_from_the_start_gets_a_warning(body: str, code: str | None, blamed: list[str]) -> None:
     text = f"signal a: bool signal b: bool spec s {{ semantics infinite {body} }}"
-    found = compile_source(SourceFile("s.tltl", text)).diagnostics
-    assert [diagnostic.code for diagnostic in found] == ([code] if code else [])
-    for diagnostic in found:
+    diagnostics = compile_source(SourceFile("s.tltl", text)).diagnostics
+    assert [diagnostic.code for diagnostic in diagnostics] == ([code] if code else [])
+    for diagnostic in diagnostics:
         assert [label.source.slice(label.span) for label in diagnostic.labels] == blamed
         assert "last" not in f"{diagnostic.title} {diagnostic.help}"

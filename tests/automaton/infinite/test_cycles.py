@@ -1,4 +1,4 @@
-"""The alternating cycle decomposition counts all that it does, so that a budget ends it."""
+"""The alternating cycle decomposition counts all of its work, so that a budget stops it."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ MOST_CALLS = 20 * BUDGET
 
 
 def ring(marks: Marks) -> list[Edge]:
-    """A cycle whose edges have these marks."""
+    """Return a cycle of ``SIZE`` edges that all have these marks."""
     return [(state, (state + 1) % SIZE, marks) for state in range(SIZE)]
 
 
 def spends(edges: list[Edge], clauses: list[Clause]) -> int:
-    """The calls of a decomposition that runs out of its budget."""
+    """Return the number of calls that a decomposition makes until it runs out of its budget."""
 
     def work() -> None:
         with pytest.raises(OutOfWork):
@@ -31,18 +31,18 @@ def spends(edges: list[Edge], clauses: list[Clause]) -> int:
     return calls(work)
 
 
-def test_clauses_that_no_edge_is_left_for_are_counted() -> None:
+def test_clauses_without_edges_count_as_work() -> None:
     clauses = [Clause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
     assert spends(ring(frozenset((0,))), clauses) < MOST_CALLS
 
 
-def test_sets_that_are_rejected_are_counted() -> None:
+def test_rejected_sets_count_as_work() -> None:
     marks = frozenset(range(2_000))
     clauses = [Clause(NONE, frozenset(range(2_000)))] * 1_000
     assert spends(ring(marks), clauses) < MOST_CALLS
 
 
-def test_a_comparison_counts_clauses_that_no_edge_is_left_for() -> None:
+def test_a_comparison_counts_clauses_without_edges() -> None:
     one = [Clause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
 
     def work() -> None:

@@ -1,4 +1,4 @@
-"""Where one prefix decides, infinite and finite mode agree: co-safety and safety formulas."""
+"""Infinite and finite mode agree on co-safety and safety formulas, which a finite prefix decides."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from tltlc.logic import formula as f
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula
 
-LITERALS = st.sampled_from([each for name in ABC for each in (f.atom(name), f.not_(f.atom(name)))])
+LITERALS = st.sampled_from([literal for name in ABC for literal in (f.atom(name), f.not_(f.atom(name)))])
 
 
 def _over(unary: Sequence[object], binary: Sequence[object]) -> st.SearchStrategy[Formula]:
     def grown(inner: st.SearchStrategy[Formula]) -> st.SearchStrategy[Formula]:
-        several = st.lists(inner, min_size=2, max_size=3)
+        operands = st.lists(inner, min_size=2, max_size=3)
         one = st.builds(lambda make, operand: make(operand), st.sampled_from(unary), inner)
         two = st.builds(lambda make, left, right: make(left, right), st.sampled_from(binary), inner, inner)
-        return one | two | several.map(lambda all_: f.and_(*all_)) | several.map(lambda all_: f.or_(*all_))
+        return one | two | operands.map(lambda all_: f.and_(*all_)) | operands.map(lambda all_: f.or_(*all_))
 
     return st.recursive(LITERALS, grown, max_leaves=6)
 
@@ -61,8 +61,9 @@ def _agree(formula: Formula, words: list[Lasso], verdict: str, *, if_met: bool) 
 
 
 def _meets(fspa: Fspa, word: Lasso, verdict: str) -> bool:
-    """Whether a prefix of the trace reaches a state of that verdict, for which it need not go round more often than
-    there are states.
+    """Whether a prefix of the trace reaches a state with that verdict.
+
+    Repeating the cycle once more than there are states is enough.
     """
     prefix, cycle = word
     state = 0
@@ -75,7 +76,7 @@ def _meets(fspa: Fspa, word: Lasso, verdict: str) -> bool:
 
 @given(CO_SAFETY, lassos())
 @settings(max_examples=200, deadline=None)
-def test_on_lassos_a_co_safety_formula_holds_of_a_prefix_that_is_long_enough(formula: Formula, word: Lasso) -> None:
+def test_a_co_safety_formula_holds_on_a_lasso_if_it_holds_on_a_long_prefix(formula: Formula, word: Lasso) -> None:
     prefix, cycle = word
     rounds = 1 + sum(1 for node in formula.walk() if node.is_temporal)
     trace = [*prefix, *cycle * rounds, *cycle]

@@ -1,4 +1,4 @@
-"""States of equal language: which cycles of letters each one accepts."""
+"""States with equal languages, which the cycles of letters that they accept tell apart."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tltlc.automaton.infinite.work import OutOfWork, Work
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_states_accept_the_cycles_that_runs_of_their_own_accept(seed: int) -> None:
-    chance = Random(seed)
+def test_the_accepting_states_of_a_cycle_match_single_runs(seed: int) -> None:
+    random = Random(seed)
     for formula, automaton in some_made(40, 10, seed):
         for _ in range(10):
-            cycle = [[chance.random() < 0.5 for _ in ABC] for _ in range(chance.randint(1, 3))]
+            cycle = [[random.random() < 0.5 for _ in ABC] for _ in range(random.randint(1, 3))]
             expected = [accepts_cycle(automaton, state, cycle) for state in range(len(automaton.steps))]
             assert accepting(automaton, cycle, Work(1_000)) == expected, formula
 

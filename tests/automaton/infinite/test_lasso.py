@@ -1,4 +1,4 @@
-"""The slow definition itself: cases by hand, and a yet slower one that unrolls the cycle."""
+"""The reference semantics on lassos: cases by hand, and a slower definition that unrolls the cycle."""
 
 from __future__ import annotations
 
@@ -70,12 +70,15 @@ def test_a_cycle_is_not_empty() -> None:
 
 @given(formulas(max_leaves=6), lassos())
 @settings(max_examples=400, deadline=None)
-def test_is_what_the_definitions_say_of_the_unrolled_trace(formula: Formula, word: Lasso) -> None:
+def test_agrees_with_the_definitions_on_the_unrolled_trace(formula: Formula, word: Lasso) -> None:
     assert holds_on_lasso(formula, *word) == _holds(formula, word, 0, {})
 
 
 def _holds(formula: Formula, word: Lasso, place: int, memo: dict[tuple[Formula, int], bool]) -> bool:
-    """By the definitions, where "some later place" is one of the next ``len(prefix) + len(cycle)``."""
+    """Whether a formula holds at ``place``, by the definitions.
+
+    "Some later place" is one of the next ``len(prefix) + len(cycle)`` places.
+    """
     prefix, cycle = word
     if place >= len(prefix):
         place = len(prefix) + (place - len(prefix)) % len(cycle)

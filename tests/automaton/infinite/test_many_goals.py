@@ -1,4 +1,4 @@
-"""Goals in any order: their automaton is given up before all sets of goals that are left are listed."""
+"""Goals in any order: the construction stops before it lists every set of remaining goals."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tltlc.automaton.infinite.work import OutOfWork, Work
 from tltlc.logic import formula as build
 
 
-def test_what_letters_lead_to_is_limited_by_the_work_that_is_left() -> None:
+def test_successors_are_limited_by_the_remaining_work() -> None:
     goals = [build.eventually(build.atom(f"a{number}")) for number in range(40)]
     formula = infinite_form(build.and_(*goals))
     most = 1_000

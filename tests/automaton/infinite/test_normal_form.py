@@ -1,4 +1,4 @@
-"""Normal form, negation and normalisation keep what a formula says of infinite traces, and have the form they claim."""
+"""Normal form, negation and normalisation are correct over infinite traces, and have the form that they promise."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SEEDS = pytest.mark.parametrize("seed", range(10))
 
 
 @SEEDS
-def test_the_normal_form_and_its_negation_say_the_same_and_the_opposite(seed: int) -> None:
+def test_the_normal_form_keeps_the_meaning_and_its_negation_inverts_it(seed: int) -> None:
     words = some_lassos(ABC, 12, seed)
     for formula in some_formulas(60, 10, seed):
         normal = infinite_form(formula)
@@ -40,19 +40,21 @@ def test_readable_formulas_have_no_constant_operands() -> None:
 
 @SEEDS
 @pytest.mark.parametrize("normalise", [delta_2, delta_2_dually])
-def test_normalisation_says_the_same_in_delta_2(normalise: Callable[[Formula], Formula], seed: int) -> None:
+def test_normalisation_keeps_the_meaning_and_reaches_delta_2(
+    normalise: Callable[[Formula], Formula], seed: int
+) -> None:
     words = some_lassos(ABC, 12, seed)
-    ended = 0
+    finished = 0
     for formula in some_formulas(40, 12, seed):
         try:
-            found = normalise(infinite_form(formula))
+            normalised = normalise(infinite_form(formula))
         except OutOfWork:
             continue
-        ended += 1
-        assert _is_delta_2(found)
+        finished += 1
+        assert _is_delta_2(normalised)
         for word in words:
-            assert holds_on_lasso(found, *word) == holds_on_lasso(formula, *word), formula
-    assert ended >= 38
+            assert holds_on_lasso(normalised, *word) == holds_on_lasso(formula, *word), formula
+    assert finished >= 38
 
 
 @pytest.mark.parametrize(
@@ -77,9 +79,9 @@ def test_normalisation_says_the_same_in_delta_2(normalise: Callable[[Formula], F
     ],
 )
 def test_rewrites(formula: str, normal: str) -> None:
-    words = infinite_form(read_formula(formula))
-    assert str(readable(words)) in (normal, str(readable(infinite_form(read_formula(normal)))))
-    assert words is infinite_form(readable(words))
+    form = infinite_form(read_formula(formula))
+    assert str(readable(form)) in (normal, str(readable(infinite_form(read_formula(normal)))))
+    assert form is infinite_form(readable(form))
 
 
 def test_an_exploding_normalisation_ends() -> None:
@@ -91,7 +93,10 @@ def test_an_exploding_normalisation_ends() -> None:
 
 
 def _is_normal(formula: Formula) -> bool:
-    """Over literals, ``and or X U W``, and rigid ``G F p`` and ``F G p`` with none below."""
+    """Whether a formula has only literals, ``and or X U W``, and rigid ``G F p`` and ``F G p``.
+
+    A rigid formula must not contain another one, and must not be an operand of ``X``, ``U`` or ``W``.
+    """
     inner_halves = {node.args[0] for node in formula.walk() if is_rigid(node) and node.op in ("G", "F")}
     for node in formula.walk():
         if node.op in ("G", "F"):
@@ -103,7 +108,7 @@ def _is_normal(formula: Formula) -> bool:
             if node.args[0].op != "atom":
                 return False
         elif node.op in ("X", "U", "W"):
-            if any(is_rigid(each) and each not in (TRUE, FALSE) for each in node.args):
+            if any(is_rigid(operand) and operand not in (TRUE, FALSE) for operand in node.args):
                 return False
         elif node.op not in ("true", "false", "atom", "and", "or"):
             return False
@@ -114,7 +119,7 @@ def _is_delta_2(formula: Formula) -> bool:
     stack, seen = [formula], {formula}
     for node in stack:
         if node.op in ("and", "or"):
-            stack += [each for each in node.args if each not in seen]
+            stack += [operand for operand in node.args if operand not in seen]
             seen.update(node.args)
         elif node.op in ("G", "F"):
             if has(node.args[0].args[0], "W" if node.op == "G" else "U"):

@@ -1,4 +1,4 @@
-"""Automata that are read in step."""
+"""Products of automata: cycles that one automaton accepts and the other rejects."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from tltlc.automaton.infinite.work import OutOfWork, Work
 
 START, OVER = (0, 0), (1, 1)
 ONE_FIN, ONE_INF, OTHER_FIN, OTHER_INF = range(4)
-"""The marks of two automata with a pair each."""
+"""The marks of two automata with one pair each."""
 
 
 def loops(*marks: set[int]) -> dict[Both, list[Leaf]]:
-    """Two states on one cycle with loops at the second, which have these marks."""
-    there = [(OVER, frozenset(each)) for each in marks]
-    return {START: [(OVER, frozenset())], OVER: [(START, frozenset()), *there]}
+    """Return two states on one cycle, with a loop at the second state for each set of marks."""
+    leaves = [(OVER, frozenset(loop_marks)) for loop_marks in marks]
+    return {START: [(OVER, frozenset())], OVER: [(START, frozenset()), *leaves]}
 
 
 @pytest.mark.parametrize(
@@ -31,21 +31,21 @@ def loops(*marks: set[int]) -> dict[Both, list[Leaf]]:
     ],
 )
 def test_cycles_that_one_accepts_and_the_other_does_not(graph: dict[Both, list[Leaf]], ways: tuple[bool, bool]) -> None:
-    these, those = conditions(1, 1)
-    asked: list[Both] = []
+    one, other = conditions(1, 1)
+    visited: list[Both] = []
 
     def leaves(both: Both) -> list[Leaf]:
-        asked.append(both)
+        visited.append(both)
         return graph[both]
 
-    for way, expected in zip(((these, those), (those, these)), ways, strict=True):
-        found = telling_apart([START], graph.__getitem__, [way], Work(1000))
-        assert (found is not None) == expected
-        for source, target, marks in found or ():
+    for way, expected in zip(((one, other), (other, one)), ways, strict=True):
+        cycle = telling_apart([START], graph.__getitem__, [way], Work(1000))
+        assert (cycle is not None) == expected
+        for source, target, marks in cycle or ():
             assert (target, marks) in graph[source]
-    either = telling_apart([START], leaves, [(these, those), (those, these)], Work(1000))
+    either = telling_apart([START], leaves, [(one, other), (other, one)], Work(1000))
     assert (either is not None) == any(ways)
-    assert sorted(asked) == [START, OVER], "each is asked once"
+    assert sorted(visited) == [START, OVER], "each is asked once"
 
 
 def test_work_is_bounded() -> None:

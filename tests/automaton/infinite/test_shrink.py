@@ -1,4 +1,4 @@
-"""States of a component that others take the place of."""
+"""Merging the states of a component: a state is removed where another one can replace it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ A, B, C = ("a",), ("b",), ("c",)
 
 
 def piece(letters: Letters[Any], *, pairs: int, marked: frozenset[Any]) -> Piece:
-    """``a`` goes to ``c`` on one letter, ``c`` to ``b``, and ``b`` to ``a``, whose loop has the marks."""
+    """Return a component: ``a`` goes to ``c`` on one letter, ``c`` to ``b``, ``b`` to ``a``; ``a`` also has a loop.
+
+    The loop has the marks ``marked``.
+    """
     taken = frozenset({(0, "inf")})
     loop = letters.node(0, letters.leaf((A, marked)), letters.leaf((C, taken)))
     steps = {A: loop, B: letters.leaf((A, taken)), C: letters.leaf((B, taken))}
@@ -23,22 +26,22 @@ def piece(letters: Letters[Any], *, pairs: int, marked: frozenset[Any]) -> Piece
 
 
 @pytest.mark.parametrize("pairs", [1, 600])
-def test_what_is_reached_through_a_state_goes_with_it(pairs: int) -> None:
+def test_states_reached_only_through_a_removed_state_are_removed(pairs: int) -> None:
     letters: Letters[Any] = Letters(Work(10**6))
-    found = shrunk(letters, piece(letters, pairs=pairs, marked=frozenset({(0, "inf")})), letters.work, 10**6)
-    assert list(found.steps) == [A]
+    small = shrunk(letters, piece(letters, pairs=pairs, marked=frozenset({(0, "inf")})), letters.work, 10**6)
+    assert list(small.steps) == [A]
 
 
-def test_what_counts_stays() -> None:
+def test_loops_with_other_marks_stay() -> None:
     letters: Letters[Any] = Letters(Work(10**6))
     whole = piece(letters, pairs=1, marked=frozenset())
-    found = shrunk(letters, whole, letters.work, 10**6)
-    marks = {marks for step in found.steps.values() for _, marks in letters.values(step)}
+    small = shrunk(letters, whole, letters.work, 10**6)
+    marks = {marks for step in small.steps.values() for _, marks in letters.values(step)}
     assert marks == {frozenset(), frozenset({(0, "inf")})}
 
 
 @pytest.mark.parametrize("pair", [0, 599])
-def test_marks_of_many_pairs_are_told_apart(pair: int) -> None:
+def test_marks_of_many_pairs_are_distinct(pair: int) -> None:
     letters: Letters[Any] = Letters(Work(10**6))
     accepted, rejected = frozenset({(pair, "inf")}), frozenset({(pair, "fin")})
     steps = {

@@ -1,4 +1,4 @@
-"""Labels over infinite traces: in the words of the source, short, and in English."""
+"""Labels over infinite traces use the operators of the source, are short, and have an English sentence."""
 
 from __future__ import annotations
 
@@ -37,32 +37,32 @@ def written(label: str, source: str) -> str:
         ("G F a & (b -> F G c)", "G F a & !b | G F a & F G c", "G F a & (b -> F G c)"),
         ("(F a | G b) & (F b | G c)", "F a & F b | F a & G c | G b & F b | G b & G c", "(F a | G b) & (F b | G c)"),
         ("G(a <-> X b) & c", "a & b & c | !a & !b & c", "(a & b | !a & !b) & c"),
-        # Shorter than the formula that was met, or than the diagram.
+        # Shorter than the formula of the construction, or than its diagram.
         ("G(b | F d)", "b & !d | d", "b | d"),
         ("F a & G b | F d & G c", "G b | (G b | F d) & G c", "G b | F d & G c"),
         ("F a & F b & F c", "a & b | !a & c | b & c", "a & b | !a & c"),
         ("F a & F b & F c", "(a | F b) & (a | F c) & (a | d)", "a | F b & F c & d"),
         ("(a | b) & (c | d)", "a & c | a & d | b & c | b & d", "(a | b) & (c | d)"),
         ("F a & (b | c & d | G e)", "F a & b | F a & c & d | F a & G e", "F a & (b | c & d | G e)"),
-        # What is said by another part is not said again.
+        # A part that another part implies is left out.
         ("G X b & F a", "G X b & X b & b", "G X b & b"),
         ("F(a & X F b) & c", "F(a & X F b) & F b & c", "F(a & X F b) & c"),
         ("a U (b U c)", "a U (b U c) | b U c", "a U b U c"),
-        # Constants are no words of what remains.
+        # No constants remain.
         ("G((a <-> (b & X true)) | X c)", "(a & b | !a & !b) & F c", "(a & b | !a & !b) & F c"),
     ],
 )
-def test_a_label_is_as_short_as_the_words_of_the_source_allow(source: str, label: str, expected: str) -> None:
+def test_a_label_is_as_short_as_the_operators_of_the_source_allow(source: str, label: str, expected: str) -> None:
     assert written(label, source) == expected
 
 
-def test_a_state_says_what_remains_of_each_clause() -> None:
+def test_a_label_shows_what_remains_of_each_clause() -> None:
     source = "F b & (F G !c | G F d)"
     assert {state.label.ascii for state in compiled(source).states} == {source, "F G !c | G F d"}
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_other_ways_to_write_a_formula_say_the_same(seed: int) -> None:
+def test_other_forms_of_a_formula_keep_its_meaning(seed: int) -> None:
     words = some_lassos(ABC, 12, seed)
     factoring = Factoring(ABC)
     for formula in some_formulas(60, 14, seed):
@@ -72,26 +72,26 @@ def test_other_ways_to_write_a_formula_say_the_same(seed: int) -> None:
                 assert holds_on_lasso(form, *word) == holds_on_lasso(formula, *word), (formula, form)
 
 
-def test_labels_say_the_same_as_the_construction_has_them_and_no_more() -> None:
+def test_labels_keep_their_meaning_and_get_no_longer() -> None:
     shorter = 0
     for entry in entries():
         if entry.steps > 20_000:
             continue
         writer, words = Writer(entry.formula), some_lassos(entry.formula.atoms(), 6, 0)
         for label in made(entry.formula).labels:
-            found = writer.formula(label)
+            short = writer.formula(label)
             for word in words:
-                assert holds_on_lasso(found, *word) == holds_on_lasso(label, *word), (entry.formula, label, found)
-            saved = len(ascii_text(readable(label))) - len(ascii_text(found))
-            assert saved >= 0, (entry.formula, found)
+                assert holds_on_lasso(short, *word) == holds_on_lasso(label, *word), (entry.formula, label, short)
+            saved = len(ascii_text(readable(label))) - len(ascii_text(short))
+            assert saved >= 0, (entry.formula, short)
             shorter += saved > 0
     assert shorter > 100
 
 
-def test_what_would_be_too_long_is_left_as_it_is() -> None:
-    # Neither way has fewer than 2⁶ terms.
+def test_a_form_that_would_be_too_long_is_not_built() -> None:
+    # Both the disjunctive and the conjunctive form have at least 2⁶ terms.
     half = [f"(a{i} & b{i} | c{i} & d{i})" for i in range(6)]
-    label = f"({' & '.join(half)}) | ({' & '.join(each.replace('a', 'e') for each in half)}) & g"
+    label = f"({' & '.join(half)}) | ({' & '.join(part.replace('a', 'e') for part in half)}) & g"
     normal = infinite_form(read_formula(label))
     assert list(Factoring(normal.atoms()).forms(normal)) == []
     assert ascii_text(Writer(read_formula(label)).formula(normal)) == ascii_text(read_formula(label))
@@ -126,17 +126,21 @@ def test_every_formula_has_a_sentence(formula: Formula) -> None:
     assert_sentence(text_of(formula).english)
 
 
-def test_a_sentence_says_one_thing_only() -> None:
-    """Small formulas with one sentence agree on lassos."""
+def test_a_sentence_has_one_meaning() -> None:
+    """Small formulas with the same sentence agree on lassos."""
     words = some_lassos("ab", 24, 0)
     meanings: dict[str, dict[tuple[bool, ...], Formula]] = defaultdict(dict)
     for formula in (*formulas_up_to(3), *formulas_of_size(4)[::7], *formulas_of_size(5)[::97]):
         truth = tuple(holds_on_lasso(formula, *word) for word in words)
         meanings[text_of(formula).english].setdefault(truth, formula)
-    ambiguous = {text: [str(x) for x in found.values()] for text, found in meanings.items() if len(found) > 1}
+    ambiguous = {
+        text: [str(x) for x in formulas_by_truth.values()]
+        for text, formulas_by_truth in meanings.items()
+        if len(formulas_by_truth) > 1
+    }
     assert not ambiguous
 
 
-def test_finite_sentences_are_told_apart_where_the_meaning_differs() -> None:
+def test_sentences_differ_from_finite_ones_where_the_meaning_does() -> None:
     for formula in map(read_formula, ("G F a", "N a", "G(a -> N b)")):
         assert english_text(formula) != text_of(formula).english
