@@ -1,4 +1,4 @@
-"""The automaton against the oracle, and every claim of semantics section 3 against brute force."""
+"""The automaton agrees with the oracle, and with brute force on every claim of section 3 of the semantics."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def labels(fspa: Fspa) -> list[str]:
 
 @given(SMALL)
 @settings(max_examples=300)
-def test_accepts_what_the_formula_holds_of(formula: Formula) -> None:
+def test_accepts_the_traces_on_which_the_formula_holds(formula: Formula) -> None:
     fspa = compiled(formula)
     for trace in traces(fspa, 4):
         assert fspa.states[run(fspa, trace)].accepting == oracle.holds(formula, named(fspa, trace)), trace
@@ -48,9 +48,7 @@ def test_accepts_what_the_formula_holds_of(formula: Formula) -> None:
 
 @given(WIDE, GROUPS)
 @settings(max_examples=150)
-def test_accepts_what_the_formula_holds_of_where_atoms_exclude_each_other(
-    formula: Formula, groups: tuple[tuple[str, ...], ...]
-) -> None:
+def test_accepts_the_right_traces_with_exclusive_atoms(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     for trace in islice(traces(fspa, 3), 600):
         assert fspa.states[run(fspa, trace)].accepting == oracle.holds(formula, named(fspa, trace)), trace
@@ -58,8 +56,8 @@ def test_accepts_what_the_formula_holds_of_where_atoms_exclude_each_other(
 
 @given(WIDE, GROUPS)
 @settings(max_examples=150)
-def test_complete_deterministic_and_minimal(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
-    """No automaton of this language is smaller, however the empty trace is judged (size convention)."""
+def test_automata_are_complete_deterministic_and_minimal(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
+    """No automaton of this language is smaller, whether or not it accepts the empty trace (size convention)."""
     fspa = compiled(formula, *groups)
     table(fspa)  # asserts that exactly one guard is true of each letter
     accepting = {state.id for state in fspa.states if state.accepting}
@@ -71,7 +69,7 @@ def test_complete_deterministic_and_minimal(formula: Formula, groups: tuple[tupl
 
 
 def _initial_split(fspa: Fspa) -> dict[int, list[int]]:
-    """The transition table with a fresh initial state, the last one, that moves as state 0 does."""
+    """Return the transition table with a new initial state, the last one, that has the moves of state 0."""
     moves = {state: list(row.values()) for state, row in table(fspa).items()}
     return moves | {len(fspa.states): moves[0]}
 
@@ -108,7 +106,7 @@ def test_the_initial_state_rejects_the_empty_trace_unless_that_costs_a_state(tex
         "(a U (b U F a)) & (G a | (b R G(a | b))) | F(a M (b & F a))",
     ],
 )
-def test_accepts_what_nested_formulas_that_imply_each_other_hold_of(text: str) -> None:
+def test_accepts_the_right_traces_for_nested_formulas_that_imply_each_other(text: str) -> None:
     fspa = compiled(text)
     for trace in traces(fspa, 5):
         assert fspa.states[run(fspa, trace)].accepting == oracle.holds(read_formula(text), named(fspa, trace)), trace
@@ -119,9 +117,7 @@ def test_accepts_what_nested_formulas_that_imply_each_other_hold_of(text: str) -
 
 @given(WIDE, GROUPS)
 @settings(max_examples=150)
-def test_distances_and_verdicts_are_what_reachability_says(
-    formula: Formula, groups: tuple[tuple[str, ...], ...]
-) -> None:
+def test_distances_and_verdicts_match_reachability(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     moves = table(fspa)
     for state in fspa.states:
@@ -159,7 +155,7 @@ def test_equal_input_gives_equal_output(formula: Formula) -> None:
     assert compiled(formula) == compiled(formula)
 
 
-def test_output_does_not_depend_on_the_order_of_hashes() -> None:
+def test_output_does_not_depend_on_the_hash_seed() -> None:
     program = """
 from tests.reference_formulas import corpus
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -182,9 +178,7 @@ print([build(spec_from_formula(formula)) for formula in small])
 
 @given(WIDE, GROUPS)
 @settings(max_examples=100)
-def test_guards_hold_all_primes_and_their_text_says_the_same(
-    formula: Formula, groups: tuple[tuple[str, ...], ...]
-) -> None:
+def test_guards_have_all_primes_and_an_equivalent_text(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
     fspa = compiled(formula, *groups)
     possible = letters(fspa)
     for edge in fspa.edges:
@@ -198,14 +192,14 @@ def test_guards_hold_all_primes_and_their_text_says_the_same(
 
 
 def _primes_by_brute_force(fspa: Fspa, taken: set[tuple[bool, ...]]) -> set[tuple[tuple[int, bool], ...]]:
-    """All cubes inside ``taken`` or the impossible letters, that meet a possible one, and are maximal so."""
+    """Return all maximal cubes that lie in ``taken`` or the impossible letters and contain a possible letter."""
     count = len(fspa.atoms)
     possible = set(letters(fspa))
     implicants = []
     for code in range(3**count):
         cube = tuple((atom, bool(code // 3**atom % 3 - 1)) for atom in range(count) if code // 3**atom % 3)
         inside = {letter for letter in possible if all(letter[atom] == polarity for atom, polarity in cube)}
-        # Contained in the guard or the impossible letters <=> its possible letters are in the guard.
+        # A cube lies in the guard or the impossible letters if and only if its possible letters are in the guard.
         if inside <= taken:
             implicants.append((cube, bool(inside)))
     prime = [(cube, meets) for cube, meets in implicants if not any(set(other) < set(cube) for other, _ in implicants)]
@@ -217,7 +211,7 @@ def _primes_by_brute_force(fspa: Fspa, taken: set[tuple[bool, ...]]) -> set[tupl
 
 @given(SMALL, st.sampled_from([(), (("a", "b"),)]))
 @settings(max_examples=150)
-def test_a_label_says_what_the_rest_of_the_trace_must_meet(
+def test_a_state_accepts_the_traces_on_which_its_label_holds(
     formula: Formula, groups: tuple[tuple[str, ...], ...]
 ) -> None:
     fspa = compiled(formula, *groups)
@@ -267,8 +261,8 @@ def test_labels_are_shortened_where_the_automaton_proves_it() -> None:
 
 
 @pytest.mark.parametrize("steps", [3, 10, 30, 60])
-def test_labels_of_a_long_sequence_say_the_rest_of_it(steps: int) -> None:
-    """Each state is reached with every earlier goal still open, too; the last goals alone say it all."""
+def test_labels_of_a_long_sequence_show_only_the_remaining_goals(steps: int) -> None:
+    """In each state earlier goals are still open too, but the remaining goals imply them."""
     sequence = [f"F a{steps}"]
     for number in range(steps - 1, 0, -1):
         sequence.append(f"F(a{number} & X {sequence[-1]})")
@@ -290,12 +284,12 @@ def test_labels_of_a_hundred_equal_goals() -> None:
         ("N false", "false", True, "The trace must end here."),
     ],
 )
-def test_where_going_on_decides_the_english_label_says_so(text: str, label: str, accepting: bool, said: str) -> None:
+def test_the_english_label_says_whether_the_trace_must_go_on(text: str, label: str, accepting: bool, said: str) -> None:
     state = next(state for state in compiled(text).states[1:] if state.accepting == accepting)
     assert (state.label.ascii, state.label.english) == (label, said)
 
 
-def test_a_group_that_names_an_atom_twice_says_nothing_more() -> None:
+def test_a_repeated_atom_in_a_group_changes_nothing() -> None:
     assert compiled("F a & F b", ("a", "b", "a", "b")).edges == compiled("F a & F b", ("a", "b")).edges
     assert compiled("F a", ("a", "a")).edges == compiled("F a").edges
 

@@ -20,7 +20,7 @@ GROUPS = st.sampled_from([(), (("a", "b"),)])
 
 
 def shape(fspa: Fspa) -> tuple[object, ...]:
-    """All but the labels, which may be written differently."""
+    """Return everything but the labels, which may be written differently."""
     states = tuple((state.accepting, state.verdict, state.distance) for state in fspa.states)
     return states, fspa.edges
 
@@ -39,7 +39,10 @@ def test_the_parts_give_the_same_automaton(
 
 
 def _isomorphic(one: Fspa, other: Fspa) -> bool:
-    """Whether a renumbering maps one automaton to the other: their guards decide it from the initial states on."""
+    """Whether a renumbering of the states maps one automaton to the other.
+
+    Starting at the initial states, the guards determine the renumbering.
+    """
     if len(one.states) != len(other.states) or len(one.edges) != len(other.edges):
         return False
     number, queue = {0: 0}, [0]
@@ -58,7 +61,7 @@ def _isomorphic(one: Fspa, other: Fspa) -> bool:
 
 
 def test_settled_states_of_the_parts_settle_the_product(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also where the letters are restricted: what is met takes no further part."""
+    """A part that is satisfied leaves the product, even if the letters are restricted."""
     monkeypatch.setattr(composition, "WHOLE_STEPS", 0)
     fspa = build(spec_from_formula(read_formula("F a & F b & F c"), exclusive=[("a", "b", "c")]))
     assert {state.label.ascii for state in fspa.states} == {
@@ -68,7 +71,7 @@ def test_settled_states_of_the_parts_settle_the_product(monkeypatch: pytest.Monk
     }
 
 
-def test_labels_of_a_product_are_those_of_its_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_labels_of_a_product_come_from_its_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(composition, "WHOLE_STEPS", 0)
     fspa = build(spec_from_formula(read_formula("F(a & X F b) & G p")))
     assert {state.label.ascii for state in fspa.states} == {"F(a & X F b) & G p", "F b & G p", "G p", "false"}

@@ -1,4 +1,4 @@
-"""Which parts of a spec that no trace satisfies contradict each other."""
+"""Which parts of an unsatisfiable spec contradict each other."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def blamed(*texts: str, exclusive: tuple[tuple[str, ...], ...] = ()) -> list[str
     return [str(part.formula) for part in contradiction(spec)]
 
 
-def test_only_what_contradicts_is_blamed() -> None:
+def test_only_contradicting_parts_are_blamed() -> None:
     assert blamed("G a", "F b", "F !a", "G c") == ["G a", "F !a"]
     assert blamed("F b", "G F(a & X F b)") == ["G F(a & X F b)"]
     assert blamed("F(a & b)", "F a", exclusive=(("a", "b"),)) == ["F(a & b)"]
@@ -36,7 +36,7 @@ def test_only_what_contradicts_is_blamed() -> None:
 
 @given(st.lists(formulas(max_leaves=4), min_size=1, max_size=4))
 @settings(max_examples=150, deadline=None)
-def test_what_is_blamed_is_unsatisfiable_and_no_less_of_it(parts: list[Formula]) -> None:
+def test_the_blamed_parts_are_a_minimal_unsatisfiable_set(parts: list[Formula]) -> None:
     if is_unsatisfiable(parts):
         core = [part.formula for part in contradiction(spec_of(parts))]
         assert is_unsatisfiable(core)

@@ -1,4 +1,4 @@
-"""Automaton sizes on the reference corpus, on which two other tools agree."""
+"""The automata of the reference corpus have the sizes on which two other tools agree."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ CORPUS = list(corpus())
 SMALL = [entry for entry in CORPUS if entry.states is not None and entry.states <= 40]
 
 
-def test_the_corpus_is_there() -> None:
+def test_the_corpus_is_complete() -> None:
     assert len(CORPUS) == 223
     assert len({entry.family for entry in CORPUS}) == 22
 
 
 @pytest.mark.parametrize("entry", [e for e in CORPUS if e.states is not None], ids=lambda entry: entry.name)
-def test_size(entry: Entry) -> None:
+def test_the_minimal_automaton_has_the_size_of_the_corpus(entry: Entry) -> None:
     successors, machine, _ = minimal_machine(entry.formula, entry.formula.atoms(), 50_000)
     assert len(state_leaves(machine, successors.diagrams)) == entry.states
     if entry.transition_based_states is not None:
@@ -25,7 +25,7 @@ def test_size(entry: Entry) -> None:
 
 
 @pytest.mark.parametrize("entry", SMALL, ids=lambda entry: entry.name)
-def test_the_whole_automaton_has_that_size(entry: Entry) -> None:
+def test_the_built_automaton_has_the_size_of_the_corpus(entry: Entry) -> None:
     fspa = build(spec_from_formula(entry.formula))
     assert len(fspa.states) == entry.states
     assert {edge.source for edge in fspa.edges} == {state.id for state in fspa.states}

@@ -1,4 +1,4 @@
-"""Products that are certainly too large are refused before they are made, and no other."""
+"""A product is rejected before it is built only if it is certain to be too large."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def machines(
 ) -> tuple[Diagrams, list[Machine]]:
     diagrams = Diagrams()
     successors = Successors(atoms, diagrams)
-    made = _Composition(successors, 1_000, allowed_letters(diagrams, exclusive))
-    return diagrams, [made.minimal(negation_normal_form(part)) for part in parts]
+    composition = _Composition(successors, 1_000, allowed_letters(diagrams, exclusive))
+    return diagrams, [composition.minimal(negation_normal_form(part)) for part in parts]
 
 
 @given(
@@ -39,16 +39,18 @@ def machines(
     st.sampled_from([[], [[0, 1]], [[0, 1, 2]]]),
 )
 @settings(max_examples=300, deadline=None)
-def test_what_is_said_to_be_too_large_is(parts: list[Formula], conjunction: bool, exclusive: list[list[int]]) -> None:
-    diagrams, made = machines(parts, exclusive, ATOMS)
+def test_the_estimate_never_rejects_a_product_that_fits(
+    parts: list[Formula], conjunction: bool, exclusive: list[list[int]]
+) -> None:
+    diagrams, machines_ = machines(parts, exclusive, ATOMS)
     whole = and_(*parts) if conjunction else or_(*parts)
     _, product, _ = minimal_machine(whole, ATOMS, 100_000, exclusive)
     for budget in range(len(product.transitions), len(product.transitions) + 3):
-        assert not Estimate(diagrams, 1_000_000).exceeds(made, conjunction, budget)
+        assert not Estimate(diagrams, 1_000_000).exceeds(machines_, conjunction, budget)
 
 
 def chain(number: int) -> Formula:
-    """Two goals of its own, one after the other."""
+    """Return two goals in order, over atoms of their own."""
     return eventually(and_(atom(f"a{number}"), next_(eventually(atom(f"b{number}")))))
 
 
@@ -60,9 +62,9 @@ def test_parts_that_multiply_are_counted(
 ) -> None:
     parts = [part(number) if conjunction else negated(part(number)) for number in range(6)]
     atoms = tuple(name for number in range(6) for name in (f"a{number}", f"b{number}"))
-    diagrams, made = machines(parts, [list(range(12))] if exclusive else [], atoms)
-    assert Estimate(diagrams, 1_000_000).exceeds(made, conjunction, states**6 - 1)
-    assert not Estimate(diagrams, 1_000_000).exceeds(made, conjunction, states**6)
+    diagrams, machines_ = machines(parts, [list(range(12))] if exclusive else [], atoms)
+    assert Estimate(diagrams, 1_000_000).exceeds(machines_, conjunction, states**6 - 1)
+    assert not Estimate(diagrams, 1_000_000).exceeds(machines_, conjunction, states**6)
 
 
 def negated(formula: Formula) -> Formula:
@@ -71,36 +73,36 @@ def negated(formula: Formula) -> Formula:
 
 def test_parts_that_contradict_each_other_are_not_counted() -> None:
     parts = [*(eventually(atom(name)) for name in names(6)), always(not_(atom("a0")))]
-    diagrams, made = machines(parts, [], tuple(names(6)))
-    assert not Estimate(diagrams, 1_000_000).exceeds(made, True, 1)
+    diagrams, machines_ = machines(parts, [], tuple(names(6)))
+    assert not Estimate(diagrams, 1_000_000).exceeds(machines_, True, 1)
 
 
-def test_no_count_takes_more_steps_than_it_may() -> None:
-    diagrams, made = machines([eventually(atom(name)) for name in names(10)], [], tuple(names(10)))
-    assert Estimate(diagrams, 1_000_000).exceeds(made, True, 500)
-    assert not Estimate(diagrams, 1_000).exceeds(made, True, 500)
+def test_the_estimate_stops_at_its_step_limit() -> None:
+    diagrams, machines_ = machines([eventually(atom(name)) for name in names(10)], [], tuple(names(10)))
+    assert Estimate(diagrams, 1_000_000).exceeds(machines_, True, 500)
+    assert not Estimate(diagrams, 1_000).exceeds(machines_, True, 500)
 
 
 @pytest.mark.parametrize("goals", [16, 30, 60])
-def test_many_places_in_any_order_are_refused_before_a_product_is_made(
+def test_many_goals_in_any_order_are_rejected_before_a_product_is_built(
     goals: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Thirty took eleven seconds and 670 MB: 16,384 states of the first half were made first."""
-    made: list[int] = []
+    """Without the estimate, thirty goals take eleven seconds and 670 MB, for 16,384 states of the first half."""
+    sizes: list[int] = []
     machine = _Composition._machine
 
     def counted(composition: _Composition, obligation: int) -> Machine:
-        found = machine(composition, obligation)
-        made.append(len(found.transitions))
-        return found
+        result = machine(composition, obligation)
+        sizes.append(len(result.transitions))
+        return result
 
     monkeypatch.setattr(_Composition, "_machine", counted)
     spec = spec_from_formula(any_order(goals), exclusive=[names(goals)])
     assert refusal(spec, 50_000).title == "the automaton of `spec` needs more than 50000 states"
-    assert made == [2] * goals
+    assert sizes == [2] * goals
 
 
-def test_places_within_the_budget_compile(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_goals_within_the_budget_compile(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(composition, "WHOLE_STEPS", 0)
     spec = spec_from_formula(any_order(7), exclusive=[names(7)])
     assert len(build(spec, state_budget=128).states) == 128

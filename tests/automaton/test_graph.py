@@ -1,4 +1,4 @@
-"""The networkx view, and with it distances and verdicts against networkx's own algorithms."""
+"""The networkx graph of an automaton; its distances and traps agree with networkx's own algorithms."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltlc.automaton.graph import to_networkx
 from tltlc.logic.formula import Formula
 
 
-def test_edges_that_only_pairs_tell_apart_are_one() -> None:
+def test_parallel_edges_become_one() -> None:
     (fspa,) = compile_text("signal a: bool signal b: bool spec s { semantics infinite reach a require G F b }")
     graph = to_networkx(fspa)
     assert list(graph.edges(data="indices")) == [(0, 0, (0,)), (0, 1, (1,)), (1, 1, (2, 3))]
@@ -30,6 +30,6 @@ def test_networkx_finds_the_same_distances_and_traps(formula: Formula) -> None:
         (edge.source, edge.target): edge.guard.primes for edge in fspa.edges
     }
     goals = {state.id for state in fspa.states if state.accepting}
-    found = networkx.multi_source_dijkstra_path_length(graph.reverse(), goals) if goals else {}
-    assert {state.id: state.distance for state in fspa.states} == {s.id: found.get(s.id) for s in fspa.states}
+    distances = networkx.multi_source_dijkstra_path_length(graph.reverse(), goals) if goals else {}
+    assert {state.id: state.distance for state in fspa.states} == {s.id: distances.get(s.id) for s in fspa.states}
     assert networkx.descendants(graph, graph.graph["initial"]) | {0} == set(graph.nodes)

@@ -1,4 +1,4 @@
-"""Guard robustness: the signed L-infinity distance to the guard's border, however the guard is written."""
+"""Guard robustness is the signed L-infinity distance to the border of the guard, however the guard is written."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ VALUES = st.tuples(*[st.floats(-1, 1).filter(lambda x: x != 0)] * len(ATOMS))
 
 
 def guard_of(formula: Formula) -> Guard | None:
-    """The guard under which a one-sample trace meets the formula, None where none does."""
-    # All atoms are mentioned, in order, so that indices are those of ATOMS.
+    """Return the guard under which a trace of one sample satisfies the formula, or None if none does."""
+    # Mention all atoms, in order, so that their indices match ATOMS.
     mentioned = [or_(atom(name), not_(atom(name))) for name in ATOMS]
     fspa = build(spec_from_formula(and_(*mentioned, formula)))
     assert [a.name for a in fspa.atoms] == list(ATOMS)
     goal = [state.id for state in fspa.states if state.accepting]
-    found = [edge.guard for edge in fspa.edges_from(0) if edge.target in goal]
-    return found[0] if found else None
+    goal_guards = [edge.guard for edge in fspa.edges_from(0) if edge.target in goal]
+    return goal_guards[0] if goal_guards else None
 
 
 def robustness(guard: Guard | None, values: Sequence[float]) -> float:
-    """Max over primes of min over literals; true is 1 and false -1 (semantics, section 3)."""
+    """The max over primes of the min over literals; true is 1 and false -1 (semantics, section 3)."""
     if guard is None:
         return -1.0
     return max(
@@ -44,7 +44,7 @@ def robustness(guard: Guard | None, values: Sequence[float]) -> float:
 
 
 def signed_distance(formula: Formula, values: Sequence[float]) -> float:
-    """How far the nearest letter with the other truth value lies, by brute force over letters."""
+    """The distance to the nearest letter with the other truth value, by brute force over letters."""
     here = tuple(value > 0 for value in values)
     true = {
         letter
@@ -67,7 +67,7 @@ def test_robustness_is_the_signed_distance_to_the_border(formula: Formula, value
 @given(state_formulas(ATOMS, max_leaves=6))
 @settings(max_examples=100)
 def test_robustness_does_not_depend_on_how_the_guard_is_written(formula: Formula) -> None:
-    """Shannon's expansion, which min and max do not respect, leaves the primes as they are."""
+    """Shannon's expansion can change min and max, but keeps the prime implicants."""
     split = or_(and_(atom("a"), formula), and_(not_(atom("a")), formula))
     one, other = guard_of(formula), guard_of(split)
     assert (one is None) == (other is None)
@@ -75,7 +75,7 @@ def test_robustness_does_not_depend_on_how_the_guard_is_written(formula: Formula
         assert one == other
 
 
-def test_a_guard_with_too_many_primes_names_the_part(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_guard_with_too_many_primes_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guards, "PRIME_LIMIT", 3)
     parity = iff(atom("a"), iff(atom("b"), atom("c")))
     with pytest.raises(TltlError) as raised:
@@ -83,14 +83,14 @@ def test_a_guard_with_too_many_primes_names_the_part(monkeypatch: pytest.MonkeyP
     assert raised.value.diagnostics[0].code == "TLT0502"
 
 
-def test_all_guards_with_too_many_primes_together(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_guards_with_too_many_primes_together_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guards, "TOTAL_PRIME_LIMIT", 3)
     with pytest.raises(TltlError) as raised:
         build(spec_from_formula(iff(atom("a"), atom("b"))))
     assert raised.value.diagnostics[0].title == "all guards of `spec` have more than 3 prime implicants"
 
 
-def test_a_guard_with_too_many_products_ends_soon() -> None:
+def test_a_guard_with_too_many_products_is_an_error() -> None:
     """The parity of 25 atoms is a diagram of 49 nodes and a sum of 2^24 products."""
     parity = atom("a0")
     for number in range(1, 25):

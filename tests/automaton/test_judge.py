@@ -1,4 +1,4 @@
-"""When a spec is judged that does not say so itself (semantics, section 4)."""
+"""The default judge of a spec without a ``judge`` clause (semantics, section 4)."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_default_judge(text: str, judge: str) -> None:
         ("require a", "limit"),
     ],
 )
-def test_a_bound_does_not_change_when_a_spec_is_judged(clauses: str, judge: str) -> None:
+def test_bounds_keep_the_default_judge(clauses: str, judge: str) -> None:
     assert judged(clauses) == judge
 
 
@@ -76,10 +76,10 @@ OPERANDS = ("F a", "G a", "F G b", "G F b", "F (a & G c)", "G (a -> F c)", "a", 
 
 
 @given(st.lists(st.sampled_from(OPERANDS), min_size=1, max_size=5), st.sampled_from(["|", "&", "->"]), st.data())
-def test_a_formula_is_judged_as_the_one_without_bounds(operands: list[str], sign: str, data: st.DataObject) -> None:
+def test_a_formula_has_the_same_judge_without_bounds(operands: list[str], sign: str, data: st.DataObject) -> None:
     plain = f" {sign} ".join(f"({operand})" for operand in operands)
-    written = "".join(data.draw(st.sampled_from((each, *BOUNDS.get(each, ())))) for each in plain)
-    assert judged(f"require {written}") == judged(f"require {plain}")
+    bounded = "".join(data.draw(st.sampled_from((character, *BOUNDS.get(character, ())))) for character in plain)
+    assert judged(f"require {bounded}") == judged(f"require {plain}")
 
 
 def test_the_bounds_of_a_let_count_in_every_clause_that_uses_it() -> None:
@@ -87,7 +87,7 @@ def test_the_bounds_of_a_let_count_in_every_clause_that_uses_it() -> None:
 
 
 def judged(clauses: str) -> str:
-    """When a spec of these clauses is judged."""
+    """Return the judge of a spec with these clauses."""
     text = f"""
         clock 10 Hz
         {SIGNALS}

@@ -1,4 +1,4 @@
-"""How long the labels of states take."""
+"""The work that the labels of states take."""
 
 from __future__ import annotations
 
@@ -22,6 +22,6 @@ def equal_parts(count: int) -> Spec:
 
 
 @pytest.mark.parametrize("spec", [chain, equal_parts])
-def test_labels_of_twice_as_many_parts_take_less_than_four_times_as_long(spec: Callable[[int], Spec]) -> None:
+def test_labels_of_twice_as_many_parts_take_less_than_four_times_the_work(spec: Callable[[int], Spec]) -> None:
     small, large = spec(100), spec(200)
     assert calls(lambda: build(large)) < 3.5 * calls(lambda: build(small))

@@ -1,4 +1,4 @@
-"""Another order of the atoms makes large diagrams small, and changes nothing else."""
+"""A better order of the atoms makes large diagrams small, and changes nothing else."""
 
 from __future__ import annotations
 
@@ -21,18 +21,20 @@ ATOMS = ("a", "b", "c", "d")
 
 
 def pairs(count: int) -> Spec:
-    """As many pairs that must be equal; in the order of the atoms all first ones come first."""
+    """Return a spec with ``count`` pairs of atoms that must be equal; all first atoms precede all second ones."""
     first = [atom(f"a{number}") for number in range(count)]
     second = [atom(f"b{number}") for number in range(count)]
     equal = and_(*map(iff, first, second))
     return spec_from_formula(or_(eventually(and_(*first)), eventually(equal)))
 
 
-def test_atoms_that_belong_together_lie_side_by_side() -> None:
+def test_the_atoms_of_a_pair_become_neighbours() -> None:
     spec = pairs(9)
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     assert order is not None
-    assert [spec.atoms[index].name for index in order] == [f"{each}{number}" for number in range(9) for each in "ab"]
+    assert [spec.atoms[index].name for index in order] == [
+        f"{letter}{number}" for number in range(9) for letter in "ab"
+    ]
 
 
 @pytest.mark.parametrize("text", ["F a", "a <-> b", "F(a & b) & F(c & d)", "G(a -> F b) & G(c -> F d)", "true"])
@@ -43,25 +45,27 @@ def test_a_good_order_is_kept(text: str) -> None:
 
 @given(formulas(atoms=ATOMS, max_leaves=8), st.permutations(range(4)), st.sampled_from([(), (ATOMS[:2],)]))
 @settings(max_examples=100, deadline=None)
-def test_the_automaton_is_the_same(formula: Formula, order: list[int], groups: tuple[tuple[str, ...], ...]) -> None:
+def test_another_order_gives_the_same_automaton(
+    formula: Formula, order: list[int], groups: tuple[tuple[str, ...], ...]
+) -> None:
     spec = spec_from_formula(or_(formula, and_(*map(atom, ATOMS))), exclusive=groups)
     order = [index for index in order if index < len(spec.atoms)]
-    found, wanted = restored(build(reordered(spec, order)), spec, order), build(spec)
-    assert (found.atoms, found.exclusive) == (wanted.atoms, wanted.exclusive)
-    assert _isomorphic(found, wanted)
+    reordered_back, expected = restored(build(reordered(spec, order)), spec, order), build(spec)
+    assert (reordered_back.atoms, reordered_back.exclusive) == (expected.atoms, expected.exclusive)
+    assert _isomorphic(reordered_back, expected)
 
 
 def test_pairs_compile_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Twelve took fourteen seconds, and thirteen were refused after twenty-three, with a gigabyte in memory."""
-    made: list[Diagrams] = []
-    monkeypatch.setattr(build_module, "Diagrams", lambda: made.append(Diagrams()) or made[-1])
+    """In the given order, twelve pairs take fourteen seconds; thirteen fail after 23 s and a gigabyte of memory."""
+    diagrams: list[Diagrams] = []
+    monkeypatch.setattr(build_module, "Diagrams", lambda: diagrams.append(Diagrams()) or diagrams[-1])
     fspa = build(pairs(13))
     assert len(fspa.states) == 2
     assert [atom.name for atom in fspa.atoms] == [*(f"a{n}" for n in range(13)), *(f"b{n}" for n in range(13))]
-    assert sum(len(each.atom) for each in made) < 400_000
+    assert sum(len(diagram.atom) for diagram in diagrams) < 400_000
 
 
-def test_what_takes_few_steps_keeps_its_order(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_spec_that_takes_few_steps_keeps_its_order(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(build_module, "restored", None)
     assert build(pairs(6))
     monkeypatch.setitem(WORK, "steps in the given order of atoms", 10)
@@ -70,6 +74,6 @@ def test_what_takes_few_steps_keeps_its_order(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_another_order_gives_the_same_automaton_of_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    wanted = build(pairs(6))
+    expected = build(pairs(6))
     monkeypatch.setitem(WORK, "steps in the given order of atoms", 10)
-    assert _isomorphic(build(pairs(6)), wanted)
+    assert _isomorphic(build(pairs(6)), expected)
