@@ -1,4 +1,4 @@
-"""How much work something is, in calls: the same on every machine, however busy."""
+"""Measure work as a number of function calls, which does not depend on the machine or its load."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 def calls(work: Callable[[], object]) -> int:
-    """How many functions ``work`` calls in this thread: those of Python and those that are written in C."""
+    """Return how many functions ``work`` calls in this thread, in Python and in C."""
     count = 0
 
     def note(_: FrameType, event: str, __: Any) -> None:

@@ -1,4 +1,4 @@
-"""What holds for every test."""
+"""Settings and checks for all tests."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-# How long an example takes, or how long it takes to draw, says more of what else the machine does than of the code.
+# The time of an example, and of drawing it, depends more on the load of the machine than on the code.
 settings.register_profile("any", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("fuzz", settings.get_profile("any"), print_blob=True)
-# The same examples in every run, so that a change is judged by what it changes; `make fuzz` draws others.
+# Draw the same examples in every run, so that a new failure comes from a change of the code; `make fuzz` draws others.
 settings.register_profile("tests", settings.get_profile("any"), derandomize=True)
 settings.load_profile("tests")
 
@@ -24,7 +24,7 @@ LEFT_OUT = (
     *("RAY_ADDRESS", "WORLD_SIZE", "RANK", "LOCAL_RANK", "MASTER_ADDR", "MASTER_PORT", "OMP_NUM_THREADS"),
     *("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_OBJECT_DIRECTORY", "PYTHONWARNINGS", "PYTHONOPTIMIZE"),
 )
-"""Variables by which the programs would behave otherwise than the tests expect."""
+"""Environment variables that would change the behaviour that the tests expect."""
 
 HANDLERS: dict[signal.Signals, Any] = {
     getattr(signal, name): handler
@@ -35,19 +35,19 @@ HANDLERS: dict[signal.Signals, Any] = {
     ]
     if hasattr(signal, name)
 }
-"""The handlers that Python has at its start; processes that tests start inherit them."""
+"""The handlers with which Python starts; child processes of the tests inherit them."""
 
-_answers = tempfile.mkdtemp(prefix="tltlc-tests-")
+_cache = tempfile.mkdtemp(prefix="tltlc-tests-")
 
 
 def pytest_configure() -> None:
-    """Leave nothing of the person's environment to the tests and to the processes that they start."""
+    """Isolate the tests, and the processes that they start, from the user's environment."""
     for name in LEFT_OUT:
         os.environ.pop(name, None)
     os.environ.update(GIT_CONFIG_GLOBAL=os.devnull, GIT_CONFIG_NOSYSTEM="1")
-    # Not even the answers that earlier runs, and tests beside this one, remember.
-    os.environ["TLTLC_CACHE_DIR"] = _answers
-    # Every process that is started in the background of a shell ignores Ctrl-C, and under `nohup` SIGHUP.
+    # Use a cache of our own, not the results of earlier runs or of tests in other processes.
+    os.environ["TLTLC_CACHE_DIR"] = _cache
+    # A process in the background of a shell ignores Ctrl-C, and one under `nohup` ignores SIGHUP.
     for number, handler in HANDLERS.items():
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, handler)
@@ -55,7 +55,7 @@ def pytest_configure() -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_teardown() -> Iterator[None]:
-    """Report a test, or an import, that leaves another handler behind: a later test would end the whole process."""
+    """Fail a test or an import that changes a signal handler, with which a later test could end the whole process."""
     yield
     changed = [number for number, handler in HANDLERS.items() if signal.getsignal(number) != handler]
     for number in changed:
@@ -64,4 +64,4 @@ def pytest_runtest_teardown() -> Iterator[None]:
 
 
 def pytest_unconfigure() -> None:
-    shutil.rmtree(_answers, ignore_errors=True)
+    shutil.rmtree(_cache, ignore_errors=True)

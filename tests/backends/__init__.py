@@ -1,1 +1,1 @@
-"""Tests of the targets."""
+"""Tests of the backends."""

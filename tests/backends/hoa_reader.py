@@ -1,7 +1,7 @@
 """A strict reader of the Hanoi omega-automata format, version 1, after http://adl.github.io/hoaf/.
 
-It takes one automaton that is deterministic or not, without universal branching, with explicit labels on edges, and
-raises ValueError at whatever the format does not allow, or does not allow so.
+It reads one automaton, deterministic or not, without universal branching and with explicit labels on edges.  It
+raises ValueError for everything that the format does not allow.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class State:
 
 @dataclass
 class Hoa:
-    """An automaton: what the header says, and the states by number."""
+    """An automaton: the items of the header, and the states by number."""
 
     starts: list[int] = field(default_factory=list)
     atoms: list[str] = field(default_factory=list)
@@ -59,12 +59,12 @@ class Hoa:
     comments: list[str] = field(default_factory=list)
 
     def taken(self, state: int, letter: Letter) -> list[tuple[int, frozenset[int]]]:
-        """Where a letter leads, and the sets that are met on the way."""
+        """Return the targets of the edges that a letter takes, each with its acceptance sets."""
         here = self.states[state]
         return [(edge.target, edge.sets | here.sets) for edge in here.edges if edge.label(letter)]
 
     def run(self, trace: Iterable[Letter]) -> int | None:
-        """The state at the end of the one run on a finite trace, None where there is none."""
+        """Return the last state of the only run on a finite trace, or None if there is no run."""
         (state,) = self.starts
         for letter in trace:
             taken = self.taken(state, letter)
@@ -74,12 +74,12 @@ class Hoa:
         return state
 
     def accepts_lasso(self, prefix: Sequence[Letter], cycle: Sequence[Letter]) -> bool:
-        """Whether the one run on ``prefix`` and then ``cycle`` for ever is there and meets the acceptance."""
+        """Whether a run on ``prefix`` and then ``cycle`` forever exists and satisfies the acceptance condition."""
         state = self.run(prefix)
         rounds: list[frozenset[int]] = []
-        met: dict[int, int] = {}
-        while state is not None and state not in met:
-            met[state] = len(rounds)
+        first_rounds: dict[int, int] = {}
+        while state is not None and state not in first_rounds:
+            first_rounds[state] = len(rounds)
             marks: frozenset[int] = frozenset()
             for letter in cycle:
                 taken = self.taken(state, letter)
@@ -90,12 +90,12 @@ class Hoa:
             rounds.append(marks)
         if state is None:
             return False
-        for_ever = frozenset().union(*rounds[met[state] :])
-        return self.accepts([each in for_ever for each in range(self.sets)])
+        recurring = frozenset().union(*rounds[first_rounds[state] :])
+        return self.accepts([number in recurring for number in range(self.sets)])
 
 
 def read(text: str) -> Hoa:
-    """The one automaton that is the whole text."""
+    """Parse a text that is exactly one automaton."""
     return _Reader(text).automaton()
 
 
@@ -136,8 +136,8 @@ class _Reader:
         return self.tokens[self.at]
 
     def take(self, kind: str, text: str | None = None) -> str:
-        found, token = self.tokens[self.at]
-        if found != kind or (text is not None and token != text):
+        actual, token = self.tokens[self.at]
+        if actual != kind or (text is not None and token != text):
             raise ValueError(f"{token!r} where {text or kind} should be")
         self.at += 1
         return token
@@ -184,39 +184,39 @@ class _Reader:
         return self.found
 
     def _item(self, name: str) -> None:
-        found = self.found
+        hoa = self.found
         match name:
             case "States:":
-                found.count = self.number()
+                hoa.count = self.number()
             case "Start:":
-                found.starts.append(self.number())
+                hoa.starts.append(self.number())
             case "AP:":
-                found.atoms = [self.string() for _ in range(self.number())]
-                if len(set(found.atoms)) < len(found.atoms):
+                hoa.atoms = [self.string() for _ in range(self.number())]
+                if len(set(hoa.atoms)) < len(hoa.atoms):
                     raise ValueError("two atoms of one name")
             case "Alias:":
                 alias = self.take("alias")
-                if alias in found.aliases:
+                if alias in hoa.aliases:
                     raise ValueError(f"{alias} twice")
-                found.aliases[alias] = self.expression(self._atom)
+                hoa.aliases[alias] = self.expression(self._atom)
             case "Acceptance:":
-                found.sets = self.number()
+                hoa.sets = self.number()
                 start = self.at
-                found.accepts = self.expression(self._set)
-                found.acceptance = "".join(token for _, token in self.tokens[start : self.at])
+                hoa.accepts = self.expression(self._set)
+                hoa.acceptance = "".join(token for _, token in self.tokens[start : self.at])
             case "acc-name:":
-                found.acceptance_name = " ".join([self.take("word"), *self._values("int", "word")])
+                hoa.acceptance_name = " ".join([self.take("word"), *self._values("int", "word")])
             case "properties:":
-                found.properties += self._values("word")
+                hoa.properties += self._values("word")
             case "tool:" | "name:":
-                found.strings[name] = [self.string()]
+                hoa.strings[name] = [self.string()]
                 if name == "tool:" and self.peek()[0] == "string":
-                    found.strings[name].append(self.string())
+                    hoa.strings[name].append(self.string())
             case _:
-                found.strings[name] = []
+                hoa.strings[name] = []
                 while self.peek()[0] in ("int", "word", "string"):
                     text = self.string() if self.peek()[0] == "string" else self._values("int", "word")[0]
-                    found.strings[name].append(text)
+                    hoa.strings[name].append(text)
 
     def _values(self, *kinds: str) -> list[str]:
         values = []
@@ -264,7 +264,7 @@ class _Reader:
         self.take("sign", "(")
         number = self.number(self.found.sets)
         self.take("sign", ")")
-        return lambda met: met[number] == (kind == "Inf")
+        return lambda sets: sets[number] == (kind == "Inf")
 
     # --- the body ---
 
@@ -291,10 +291,10 @@ class _Reader:
         return frozenset(numbers)
 
     def _whole(self) -> None:
-        """All states are there, and only those are spoken of."""
-        found = self.found
-        if set(found.states) != set(range(len(found.states))) or found.count not in (None, len(found.states)):
+        """Raise ValueError unless all states are defined, and only they are referred to."""
+        hoa = self.found
+        if set(hoa.states) != set(range(len(hoa.states))) or hoa.count not in (None, len(hoa.states)):
             raise ValueError("a state is missing, or there is one too many")
-        targets = {edge.target for state in found.states.values() for edge in state.edges}
-        if not targets.union(found.starts) <= set(found.states):
+        targets = {edge.target for state in hoa.states.values() for edge in state.edges}
+        if not targets.union(hoa.starts) <= set(hoa.states):
             raise ValueError("there is no such state")

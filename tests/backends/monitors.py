@@ -1,4 +1,4 @@
-"""What tests of monitors in other languages share: what a program is to print, and traces for it."""
+"""Helpers for tests of monitors in other languages: the expected output of a program, and its traces."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ Sample = Mapping[str, float]
 
 
 class Programs:
-    """The programs of several automata, built as one, so that their files also lie side by side."""
+    """The programs of several automata, built together, so that their files share a folder."""
 
     def __init__(self, runner: Runner, folder: Path, fspas: Sequence[Fspa]) -> None:
         self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
         self._run = built(runner, self.fspas, folder)
 
     def run(self, *runs: tuple[int, str]) -> list[Outcome]:
-        """What they do with ``--full``, by the number of the automaton and the trace."""
+        """Run programs with ``--full``, each given by the number of its automaton and its trace."""
         return self._run([(self.fspas[number].name, trace.encode()) for number, trace in runs])
 
 
 def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:
-    """The samples as CSV.  The names are quoted, since a trace that begins with `{` is JSON."""
+    """Return the samples as CSV.  The names are quoted, since a trace that begins with `{` is read as JSON."""
     text = io.StringIO()
     csv.writer(text, quoting=csv.QUOTE_ALL).writerow([*names, "unused"])
     csv.writer(text).writerows([*(repr(sample[name]) for name in names), "-"] for sample in samples)
@@ -54,7 +54,7 @@ def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:
 
 
 def expected(fspa: Fspa, samples: Sequence[Sample]) -> Outcome:
-    """What the program is to print."""
+    """Return the expected status, output and errors of the program."""
     monitor, text, status, errors = Monitor(fspa), io.StringIO(), 0, ""
     rows = csv.writer(text, lineterminator="\n")
     for sample in samples:

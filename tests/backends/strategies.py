@@ -1,4 +1,4 @@
-"""Automata for property tests of the targets: real ones, and ones with hostile names and texts."""
+"""Automata for property tests of the backends: real ones, and ones with hostile names and texts."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ EXCLUSIVE = (("a", "b"), ("a", "b", "c"), ("b", "c"))
 
 
 def automata() -> st.SearchStrategy[Fspa]:
-    """Automata of random formulas over a, b, c, some with atoms that are exclusive."""
+    """Automata of random formulas over a, b, c, some with exclusive atoms."""
     groups = st.lists(st.sampled_from(EXCLUSIVE), max_size=2, unique=True)
     specs = st.builds(
         lambda formula, exclusive: spec_from_formula(
@@ -59,7 +59,7 @@ def automata() -> st.SearchStrategy[Fspa]:
 
 
 def infinite_automata() -> st.SearchStrategy[Fspa]:
-    """The same over infinite traces: with edges that only pairs tell apart."""
+    """Automata over infinite traces, some with parallel edges that differ only in their acceptance pairs."""
     specs = st.builds(
         lambda formula, exclusive: replace(
             spec_from_formula(formula, exclusive=[group for group in exclusive if set(group) <= set(formula.atoms())]),
@@ -76,7 +76,7 @@ def finite() -> st.SearchStrategy[float]:
 
 
 def expressions() -> st.SearchStrategy[Expression]:
-    """Expressions with every operator, over the signals and the param of the fixture."""
+    """Expressions with every operator, over the signals and the parameter of the Cover and Hide fixture."""
     leaves = st.one_of(
         st.builds(Const, finite()),
         st.sampled_from([Signal("distance(s1)"), Signal("health"), Param("level_size")]),
@@ -106,7 +106,7 @@ def _operations(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expre
 
 @st.composite
 def hostile_automata(draw: st.DrawFn) -> Fspa:
-    """The Cover and Hide automaton with hostile texts wherever a spec or an artefact can put one."""
+    """The Cover and Hide automaton with hostile texts in every place that a spec or an artefact can fill."""
     fspa = cover_and_hide()
     names = draw(st.lists(hostile_texts.filter(bool), min_size=4, max_size=4, unique=True))
     text = st.builds(Text, hostile_texts, hostile_texts, hostile_texts)

@@ -1,4 +1,4 @@
-"""The generated header, compiled as C and as C++, is :class:`tltlc.monitor.Monitor`, whatever the names in the spec."""
+"""The generated header, compiled as C and as C++, agrees with :class:`tltlc.monitor.Monitor`, whatever the names."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def header_of(fspa: Fspa) -> str:
 
 
 def programs_of(folder: Path, compiler: str, fspas: Sequence[Fspa]) -> Programs:
-    """Their programs; those that ``gcc`` makes have sanitizers, which take long to compile."""
+    """Build the programs of automata; only ``gcc`` adds sanitizers, which take long to compile."""
     command = (*COMPILERS[compiler], *STRICT, *(SANITIZED if compiler == "gcc" else ()))
     (runner,) = (runner for runner in RUNNERS if runner.name == ("c" if compiler == "gcc" else "c++"))
     programs = Programs(replace(runner, build_all=partial(linked, command)), folder, fspas)
@@ -68,16 +68,15 @@ def check(programs: Programs, traces: Sequence[Sequence[Sample]]) -> None:
         for fspa, samples in zip(programs.fspas, traces, strict=True)
     ]
     outcomes = programs.run(*enumerate(texts))
-    for fspa, samples, trace, found in zip(programs.fspas, traces, texts, outcomes, strict=True):
-        wanted = expected(fspa, samples)
-        assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2])), trace
+    for fspa, samples, trace, outcome in zip(programs.fspas, traces, texts, outcomes, strict=True):
+        expected_outcome = expected(fspa, samples)
+        assert (*outcome[:2], comparable(outcome[2])) == (*expected_outcome[:2], comparable(expected_outcome[2])), trace
 
 
 def comparable(text: str) -> str:
-    """Messages without what may differ.
+    """Return the messages without the parts that may differ.
 
-    C and Python do not agree where an exponent begins.  Of an atom that has no value for two reasons C leaves open
-    which operation comes first.
+    C and Python write exponents for different numbers.  If an atom has no value for two reasons, C may report either.
     """
     text = re.sub(
         r" (divides by zero|is too large to compute|takes a root or power that does not exist)", " fails", text
@@ -91,7 +90,7 @@ def comparable(text: str) -> str:
 @compilers
 @batches
 @given(data=st.data())
-def test_the_same_steps_on_random_automata(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
+def test_steps_agree_with_the_monitor_on_random_automata(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
     fspas = [data.draw(automata()) for _ in range(8)]
     traces = []
     for fspa in fspas:
@@ -104,8 +103,8 @@ def test_the_same_steps_on_random_automata(compiler: str, tmp_path: Path, data: 
 @compilers
 @batches
 @given(data=st.data())
-def test_the_same_values_of_atoms(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
-    """Values, clamped values with their notices, and failures."""
+def test_values_of_atoms_agree_with_the_monitor(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
+    """This includes clamped values with their notices, and failures."""
     fspas, traces = [], []
     whole = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b")))))
     for _ in range(14):
@@ -126,7 +125,7 @@ def test_the_same_values_of_atoms(compiler: str, tmp_path: Path, data: st.DataOb
 
 
 @compilers
-def test_the_same_on_special_cases(compiler: str, tmp_path: Path) -> None:
+def test_special_cases_agree_with_the_monitor(compiler: str, tmp_path: Path) -> None:
     number, holds = spec.Signal("x", "number", None, None), spec.Signal("open", "bool", 0.0, 1.0)
     x = Signal("x")
     deep: Expression = x
@@ -162,12 +161,12 @@ def test_the_same_on_special_cases(compiler: str, tmp_path: Path) -> None:
         fspas.append((one_atom(deep, number), [{"x": 0.5}]))
     programs = programs_of(tmp_path, compiler, [fspa for fspa, _ in fspas])
     traces = [trace_of(samples, [signal.name for signal in fspa.signals]) for fspa, samples in fspas]
-    for fspa, (_, samples), found in zip(programs.fspas, fspas, programs.run(*enumerate(traces)), strict=True):
+    for fspa, (_, samples), outcome in zip(programs.fspas, fspas, programs.run(*enumerate(traces)), strict=True):
         status, out, err = expected(fspa, samples)
-        # The program reads cells, and says what stood there.
+        # The program reads cells of a file, and quotes them in its messages.
         err = err.replace("step 3: the signal `open` is 0.5, not", "line 4: the signal `open` is `0.5`, not")
         err = err.replace("the signal `x` is inf, not a finite number", "no finite number for the signal `x`")
-        assert found == (status, out, err)
+        assert outcome == (status, out, err)
 
 
 # --- names and texts ------------------------------------------------------------------------------
@@ -187,22 +186,22 @@ NAMES = (
 def test_hostile_texts_are_no_code(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
     fspas = [data.draw(hostile_automata()) for _ in range(6)]
     programs = programs_of(tmp_path, compiler, fspas)
-    # A program is sure to find a column whose name is its own first signal's.
+    # Each trace lacks the first signal of its program.
     assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(6)))} == {1}
     for number, fspa in enumerate(programs.fspas):
         if fspa.signals[0].name.strip() and "\0" not in fspa.signals[0].name:
             samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)]
             trace = '"{}",health\n'.format(fspa.signals[0].name.replace('"', '""'))
             trace += "".join(f"{sample[fspa.signals[0].name]},1.0\n" for sample in samples)
-            (found,), wanted = programs.run((number, trace)), expected(fspa, samples)
-            assert found[0] == wanted[0]
-            assert found[1] == wanted[1]
-            assert found[2] == wanted[2].replace("\0", "")
+            (outcome,), expected_outcome = programs.run((number, trace)), expected(fspa, samples)
+            assert outcome[0] == expected_outcome[0]
+            assert outcome[1] == expected_outcome[1]
+            assert outcome[2] == expected_outcome[2].replace("\0", "")
 
 
 @compilers
-def test_hostile_names_stay_apart(compiler: str, tmp_path: Path) -> None:
-    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+def test_hostile_names_stay_distinct(compiler: str, tmp_path: Path) -> None:
+    """Each atom reads a signal of the same awkward name; in each sample a different atom must be the limiting one."""
     names = [name for name in dict.fromkeys(NAMES) if "\0" not in name]
     atoms = [f"v{index}" for index in range(len(names))]
     fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
@@ -224,16 +223,16 @@ MACROS = ("M_PI", "M_E", "MAXFLOAT", "EXIT_SUCCESS", "FD_SETSIZE", "L_tmpnam", "
 
 
 @compilers
-def test_names_of_macros(compiler: str, tmp_path: Path) -> None:
-    """Whatever the headers define that a monitor includes, on this machine, and some of engines."""
+def test_names_of_macros_are_avoided(compiler: str, tmp_path: Path) -> None:
+    """The names are all macros of the headers that a monitor includes on this machine, and some of game engines."""
     includes = "".join(f"{line}\n" for line in header_of(cover_and_hide()).splitlines() if line.startswith("#include"))
     (tmp_path / "includes.h").write_text(includes)
-    found = set(MACROS)
+    macros = set(MACROS)
     for standard in ("-std=gnu17", "-std=c99") if compiler == "gcc" else ("-std=gnu++17", "-std=c++17"):
         command = [*COMPILERS[compiler], standard, "-dM", "-E", "includes.h"]
         text = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-        found |= set(re.findall(r"^#define ([A-Za-z]\w*) ", text, re.MULTILINE))
-    names = sorted(found)
+        macros |= set(re.findall(r"^#define ([A-Za-z]\w*) ", text, re.MULTILINE))
+    names = sorted(macros)
     fspa = replace(
         build(spec_from_formula(f.eventually(f.atom("p")))),
         name="all",
@@ -248,15 +247,15 @@ def test_names_of_macros(compiler: str, tmp_path: Path) -> None:
 
 
 def test_names_of_headers_do_not_clash() -> None:
-    """That of no spec with one ending is that of another spec with another ending."""
-    found = set(re.findall(r"\bZ_(\w+)", header_of(replace(cover_and_hide(), name="Z"))))
-    assert {"monitor", "step", "verdict_name"} <= found
-    for name in found:
-        assert not [other for other in found if name.endswith(f"_{other}")], name
+    """The name of a spec with one suffix never equals the name of another spec with another suffix."""
+    suffixes = set(re.findall(r"\bZ_(\w+)", header_of(replace(cover_and_hide(), name="Z"))))
+    assert {"monitor", "step", "verdict_name"} <= suffixes
+    for name in suffixes:
+        assert not [other for other in suffixes if name.endswith(f"_{other}")], name
 
 
 @compilers
-def test_specs_whose_names_resemble_each_other(compiler: str, tmp_path: Path) -> None:
+def test_specs_with_similar_names_compile_together(compiler: str, tmp_path: Path) -> None:
     lines, names = ["#define TLTL_MAIN"], ("a", "a_signal", "A", "int", "_x", "a_read")
     for number, name in enumerate(names):
         (tmp_path / f"{number}.h").write_text(header_of(replace(cover_and_hide(), name=name)))
@@ -378,8 +377,8 @@ double judged_@(@_monitor *monitor, const @_signals *samples, int count) {
 
 @compilers
 @pytest.mark.parametrize("level", ["-O2", "-O3", "-Os"])
-def test_no_warnings_where_compilers_look_closest(compiler: str, level: str, tmp_path: Path) -> None:
-    """A result is used only where a step was taken, which optimizers must see, lest they warn."""
+def test_optimizing_compilers_give_no_warnings(compiler: str, level: str, tmp_path: Path) -> None:
+    """A result is used only after a step; an optimizer that does not see this warns of uninitialized values."""
     hosts, programs = "", "#define TLTL_MAIN\n"
     for name in HOSTED:
         (tmp_path / f"{name}_monitor.h").write_text(header_of(CASES[name]().fspa))

@@ -13,7 +13,7 @@ values = st.lists(st.floats(-1, 1), min_size=5, max_size=5)
 
 @given(terms, values)
 @example(["ac", "ad", "bc", "bd"], [0.5, -0.5, 0.25, -0.25, 0.0])
-def test_the_value_stays_the_same(terms: list[list[str]], values: list[float]) -> None:
+def test_clauses_keep_the_value(terms: list[list[str]], values: list[float]) -> None:
     value = dict(zip("abcde", values, strict=True))
     clauses = shorter(terms)
     if clauses is not None:
@@ -22,21 +22,21 @@ def test_the_value_stays_the_same(terms: list[list[str]], values: list[float]) -
         assert min(max(value[literal] for literal in clause) for clause in clauses) == greatest
 
 
-def test_literals_stand_in_the_order_of_the_terms() -> None:
+def test_literals_follow_the_order_of_the_terms() -> None:
     assert shorter(["ac", "ad", "bc", "bd"]) == [["a", "b"], ["c", "d"]]
     assert shorter(["db", "da", "cb", "ca"]) == [["d", "c"], ["b", "a"]]
     assert shorter(["ab", "abc", "ad"]) == [["a"], ["b", "d"]]
 
 
-def test_what_is_short_stays() -> None:
+def test_short_terms_are_not_converted() -> None:
     assert shorter(["ab", "cd"]) is None
     assert shorter(["abc"]) is None
 
 
-def test_as_many_clauses_as_are_followed_up() -> None:
+def test_the_number_of_candidate_clauses_is_limited() -> None:
     def groups(count: int) -> list[tuple[int, ...]]:
         return [tuple(range(3 * group, 3 * group + 3)) for group in range(count)]
 
     assert shorter([*product(*groups(5))]) == [[*group] for group in groups(5)]
-    # 32 sets of one literal of each term.
+    # There are 32 sets with one literal of each term.
     assert shorter([(2 * number, 2 * number + 1) for number in range(5)]) is None

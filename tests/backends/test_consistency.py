@@ -26,7 +26,7 @@ def messages(fspa: Fspa) -> list[str]:
 
 
 def changed(table: str, index: int, **values: Any) -> Fspa:
-    """The Cover and Hide automaton with other values in one row of one of its tables."""
+    """Return the Cover and Hide automaton with other values in one row of one of its tables."""
     fspa = cover_and_hide()
     rows = list(getattr(fspa, table))
     rows[index] = replace(rows[index], **values)
@@ -35,7 +35,7 @@ def changed(table: str, index: int, **values: Any) -> Fspa:
 
 @settings(max_examples=100, deadline=None)
 @given(automata() | infinite_automata())
-def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
+def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
     assert messages(fspa) == []
 
 
@@ -79,17 +79,20 @@ def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
         ),
     ],
 )
-def test_a_contradiction_is_named(fspa: Fspa, expected: str) -> None:
+def test_an_inconsistency_is_reported(fspa: Fspa, expected: str) -> None:
     assert expected in messages(fspa)
 
 
 def again_and_again(**values: Any) -> Fspa:
-    """``F a & G F b`` over infinite traces, with other values: a first state, and a goal with two loops."""
+    """Return the automaton of ``F a & G F b`` over infinite traces, with other values.
+
+    It has an initial state, and a goal with two loops.
+    """
     (fspa,) = compile_text("signal a: bool signal b: bool spec s { semantics infinite reach a require G F b }")
     return replace(fspa, **values)
 
 
-def test_the_automaton_that_the_next_tests_damage() -> None:
+def test_the_automaton_of_the_next_tests_is_consistent() -> None:
     fspa = again_and_again()
     assert messages(fspa) == []
     assert [(state.accepting, state.verdict, state.distance) for state in fspa.states] == [
@@ -145,7 +148,7 @@ def with_state(index: int, **values: Any) -> Fspa:
         (with_state(1, accepting=False), ["state 1 lies on an accepted cycle, and is not accepting"]),
     ],
 )
-def test_a_contradiction_to_what_cycles_say_is_named(fspa: Fspa, expected: list[str]) -> None:
+def test_an_inconsistency_with_accepted_cycles_is_reported(fspa: Fspa, expected: list[str]) -> None:
     assert messages(fspa) == expected
 
 
@@ -155,15 +158,15 @@ def test_cycles_are_followed_only_up_to_the_work_limit(monkeypatch: pytest.Monke
     assert messages(broken) == []
 
 
-def test_a_state_that_no_state_before_it_leads_to_is_found() -> None:
+def test_a_state_without_an_edge_from_an_earlier_state_is_reported() -> None:
     fspa = cover_and_hide()
     edges = tuple(edge for edge in fspa.edges if (edge.source, edge.target) != (1, 3))
     assert messages(replace(fspa, edges=edges)) == ["state 3 cannot be reached from a state before it"]
 
 
-def test_another_numbering_than_breadth_first_is_found() -> None:
+def test_a_numbering_that_is_not_breadth_first_is_reported() -> None:
     fspa = cover_and_hide()
-    # State 2, the trap, is met first from state 3; state 3 already from state 1.
+    # Breadth-first search reaches state 3 from state 1, and the trap, state 2, only from state 3.
     edges = tuple(edge for edge in fspa.edges if (edge.source, edge.target) not in {(0, 2), (1, 2)})
     swapped = sorted(
         (Edge({2: 3, 3: 2}.get(e.source, e.source), {2: 3, 3: 2}.get(e.target, e.target), e.guard) for e in fspa.edges),
@@ -188,7 +191,7 @@ def holds(primes: tuple[tuple[tuple[int, bool], ...], ...], sample: tuple[bool, 
 
 
 def all_primes(guard: set[tuple[bool, ...]]) -> set[tuple[tuple[int, bool], ...]]:
-    """By definition: the products of literals inside the guard from which no literal can be dropped."""
+    """Return the prime implicants by definition: implicants from which no literal can be dropped."""
     inside = set()
     for choice in itertools.product((None, False, True), repeat=4):
         product = tuple((atom, polarity) for atom, polarity in enumerate(choice) if polarity is not None)
@@ -218,7 +221,7 @@ def test_exactly_the_complete_sets_of_primes_pass(terms: list[tuple[tuple[int, b
 
 @settings(max_examples=100, deadline=None)
 @given(automata(), st.data())
-def test_a_guard_that_covers_too_little_or_too_much_is_found(fspa: Fspa, data: st.DataObject) -> None:
+def test_a_guard_that_covers_too_little_or_too_much_is_reported(fspa: Fspa, data: st.DataObject) -> None:
     index = data.draw(st.integers(0, len(fspa.edges) - 1))
     edge = fspa.edges[index]
     names = len(fspa.atoms)
@@ -258,24 +261,24 @@ def test_a_guard_that_covers_too_little_or_too_much_is_found(fspa: Fspa, data: s
 def test_a_large_group_of_exclusive_atoms_takes_little_memory() -> None:
     count = 3_000
     fspa = cover_and_hide()
-    more = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(count))
+    extra_atoms = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(count))
     fspa = replace(
-        fspa, atoms=(*fspa.atoms, *more), exclusive=(tuple(range(len(fspa.atoms), len(fspa.atoms) + count)),)
+        fspa, atoms=(*fspa.atoms, *extra_atoms), exclusive=(tuple(range(len(fspa.atoms), len(fspa.atoms) + count)),)
     )
     tracemalloc.start()
     try:
         assert not list(guards.guard_problems(fspa))
-        most = tracemalloc.get_traced_memory()[1]
+        peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert most < 10_000_000
+    assert peak < 10_000_000
 
 
-def test_guards_beside_many_exclusive_atoms_are_counted() -> None:
+def test_work_on_guards_beside_many_exclusive_atoms_is_limited() -> None:
     fspa = cover_and_hide()
-    more = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(200))
+    extra_atoms = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(200))
     group = tuple(range(len(fspa.atoms), len(fspa.atoms) + 200))
     states = tuple(State(number, fspa.states[0].label, False, "pending", None) for number in range(2_000))
     edges = tuple(Edge(number, number, Guard("alive", (((3, True),),))) for number in range(2_000))
-    fspa = replace(fspa, atoms=(*fspa.atoms, *more), exclusive=(group,), states=states, edges=edges)
+    fspa = replace(fspa, atoms=(*fspa.atoms, *extra_atoms), exclusive=(group,), states=states, edges=edges)
     assert calls(lambda: list(guards.guard_problems(fspa))) < 10 * guards.WORK_LIMIT

@@ -1,4 +1,4 @@
-"""The generated C# is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the rest."""
+"""The generated C# agrees with :class:`tltlc.monitor.Monitor`, whatever the names; the corpus tests more."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
             assert programs.run((number, trace_of(samples, [name, "health"]))) == [expected(fspa, samples)]
 
 
-def test_hostile_names_stay_apart(tmp_path: Path) -> None:
-    """Every atom is its own signal; awkward names, and all names of the file itself."""
+def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
+    """Each atom reads a signal of the same name; the names are awkward ones, and all words of the generated file."""
     own = re.findall(r"\w+", written(cover_and_hide(), tmp_path))
     names = [name for name in dict.fromkeys([*NAMES, *own]) if "\0" not in name]
     atoms = [f"v{index}" for index in range(len(names))]
@@ -287,7 +287,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("culture", ["de_DE.UTF-8", "tr_TR.UTF-8", "ar_SA.UTF-8"])
 def test_program_in_other_cultures(program: Path, culture: str) -> None:
-    """Numbers with commas, and an i that has a dot as a capital."""
+    """Some cultures write numbers with commas, or a capital i with a dot."""
     samples = [{**FAR, "distance(s1)": 0.25}, {**FAR, "distance(s2)": 7.5}, {**FAR, "health": -1.5}]
     done = subprocess.run(
         ["mono", "cover_and_hide_monitor.exe", "--full", "-"],
@@ -300,7 +300,7 @@ def test_program_in_other_cultures(program: Path, culture: str) -> None:
 
 
 def test_public_members_have_comments(tmp_path: Path) -> None:
-    """Of signals and params of which the spec says nothing, too."""
+    """This includes signals and params without a doc in the spec."""
     fspa = cover_and_hide()
     fspa = replace(
         fspa,
@@ -336,7 +336,7 @@ internal static class Numbers
 
 
 def test_decimals_are_exact(program: Path) -> None:
-    """Halves of the last digit, powers of two and ten, and what Mono's own functions miss by a bit."""
+    """Ties in the last digit, powers of two and ten, and numbers that Mono's own functions round wrongly."""
     values = [0.5**power for power in range(0, 1075, 7)] + [10.0**power for power in range(-323, 309)]
     values += [(2 * odd + 1) / 2.0**power for power in range(1, 60) for odd in (3, 5461, 131071, 200003)]
     values += [numerator / 97 for numerator in range(98)] + [0.00454510748386383, 3.220574384798567e-232, 5e-324]

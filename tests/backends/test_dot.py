@@ -29,7 +29,7 @@ def parsed(text: str) -> pygraphviz.AGraph:
 
 
 def words_of(label: str) -> str:
-    """The text that an HTML-like label shows."""
+    """Return the text that an HTML-like label shows."""
     return html.unescape(re.sub(r"<[^>]*>", " ", label.replace("<BR/>", " ")))
 
 
@@ -39,7 +39,7 @@ def test_loops_of_final_states_are_on_the_right_where_no_edge_arrives() -> None:
     assert on_the_right == [str(state.id) for state in cover_and_hide().states if state.verdict == "violated"]
 
 
-def test_the_picture_shows_what_the_figure_of_the_paper_shows() -> None:
+def test_the_picture_matches_the_figure_of_the_paper() -> None:
     fspa, drawn = cover_and_hide(), parsed(emitted(cover_and_hide()))
     assert len(drawn.nodes()) == 1 + len(fspa.states)
     assert drawn.has_edge("start", "0")
@@ -100,8 +100,8 @@ def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
         assert attributes["color"] == LINES[state.verdict]
 
 
-def test_edges_that_pairs_tell_apart_share_an_arrow_with_the_pairs() -> None:
-    """Labels of two loops of a state would cross."""
+def test_parallel_edges_share_an_arrow_that_shows_their_pairs() -> None:
+    """The labels of two loops at one state would overlap."""
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
     drawn = parsed(emitted(replace(fspa, acceptance=(Pair((0,), (1,)), Pair((), (0,))))))
     (loop,) = (edge for edge in drawn.edges() if edge[0] == edge[1])
@@ -109,7 +109,7 @@ def test_edges_that_pairs_tell_apart_share_an_arrow_with_the_pairs() -> None:
     assert words_of(loop.attr["label"]).split() == "¬a [fin 0] [inf 1] a [inf 0]".split()
 
 
-def test_of_very_many_guards_some_are_counted() -> None:
+def test_an_arrow_with_very_many_guards_counts_the_rest() -> None:
     fspa = cover_and_hide()
     edges = tuple(replace(fspa.edges[0], guard=Guard(f"p{index}", ())) for index in range(MOST_GUARDS + 3))
     drawn = parsed(emitted(replace(fspa, edges=edges)))
@@ -136,7 +136,7 @@ def test_of_very_many_guards_some_are_counted() -> None:
         ("F (a & !a)", ""),
     ],
 )
-def test_the_legend_says_what_pairs_mean(formula: str, legend: str) -> None:
+def test_the_legend_explains_the_pairs(formula: str, legend: str) -> None:
     (fspa,) = compile_text(f"signal a: bool signal b: bool spec s {{ semantics infinite require {formula} }}")
     drawn = parsed(emitted(fspa))
     title = " ".join(words_of(drawn.graph_attr["label"]).split())
@@ -151,7 +151,7 @@ def test_the_legend_says_what_pairs_mean(formula: str, legend: str) -> None:
         ("a & !a", "Corner: distance to a goal, ∞ if none can be reached."),
     ],
 )
-def test_the_legend_says_what_is_there(formula: str, legend: str) -> None:
+def test_the_legend_explains_only_what_is_drawn(formula: str, legend: str) -> None:
     (fspa,) = compile_text(f"signal a: bool spec s = {formula}")
     drawn = parsed(emitted(fspa))
     assert " ".join(words_of(drawn.graph_attr["label"]).split()) == f"s {legend}"
@@ -163,7 +163,7 @@ def test_a_sketch_has_no_guards() -> None:
     assert not drawn.get_edge("0", "1").attr["label"]
 
 
-def test_guards_may_be_left_to_the_tooltips() -> None:
+def test_guards_can_be_shown_only_in_tooltips() -> None:
     drawn = parsed(graph(cover_and_hide(), Options(), detail="labels"))
     assert words_of(drawn.get_node("3").attr["label"]).split() == ["1", "◇near(exit)", "∧", "□alive"]
     edge = drawn.get_edge("0", "1")
@@ -171,7 +171,7 @@ def test_guards_may_be_left_to_the_tooltips() -> None:
 
 
 @pytest.mark.parametrize("character", ["p", "漢", "\u202e", "\\", '"', "<"])
-def test_texts_of_any_length_can_be_read_by_graphviz(character: str) -> None:
+def test_graphviz_can_read_texts_of_any_length(character: str) -> None:
     fspa = cover_and_hide()
     text = 10_000 * f"{character}{character} "
     edges = tuple(replace(edge, guard=replace(edge.guard, text=text)) for edge in fspa.edges)
@@ -199,7 +199,7 @@ def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
     assert wrapped("a - b + c > 0", 4) == ["a - b +", "c > 0"], "no longer than two widths"
 
 
-def test_names_of_atoms_are_kept_whatever_operators_stand_in_them() -> None:
+def test_operators_inside_names_of_atoms_are_kept() -> None:
     fspa = cover_and_hide()
     atoms = tuple(replace(a, name=n) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True))
     guards = Guards(replace(fspa, atoms=atoms), "unicode")

@@ -36,24 +36,24 @@ COUNTING = (
 
 
 def counting() -> st.SearchStrategy[Fspa]:
-    """Automata of formulas with bounds."""
+    """Automata of formulas with bounds, over finite traces."""
     return st.builds(lambda text, n: automaton(text.format(n=n)), st.sampled_from(COUNTING), st.integers(1, 12))
 
 
 def endless() -> st.SearchStrategy[Fspa]:
     """Automata of the same formulas over infinite traces."""
 
-    def made(text: str, n: int) -> Fspa:
+    def compiled(text: str, n: int) -> Fspa:
         signals = "clock 1 Hz signal a: bool signal b: bool signal c: bool"
         (fspa,) = compile_text(f"{signals} spec s {{ semantics infinite require {text.format(n=n)} }}")
         return fspa
 
-    return st.builds(made, st.sampled_from(COUNTING), st.integers(1, 12))
+    return st.builds(compiled, st.sampled_from(COUNTING), st.integers(1, 12))
 
 
 @st.composite
 def chains(draw: st.DrawFn) -> Fspa:
-    """States in a row, with few guards and targets, so that runs begin, end and are entered anywhere."""
+    """States in a row, with few guards and targets, so that runs begin, end and have entrances anywhere."""
     size = draw(st.integers(2, 14))
     states = tuple(
         replace(cover_and_hide().states[draw(st.sampled_from([0, 0, 0, 0, 4]))], id=index) for index in range(size)
@@ -73,7 +73,7 @@ def edges_of(fspa: Fspa, state: int) -> set[tuple[Guard, int]]:
 
 
 def check(fspa: Fspa) -> Drawing:
-    """What folding promises, by definition."""
+    """Assert by definition what folding promises, and return the drawing."""
     drawing = folded(fspa)
     fspa = marked(fspa)
     inner = [state.id for run in drawing.folded.values() for state in run]
@@ -91,16 +91,16 @@ def check(fspa: Fspa) -> Drawing:
 
 
 def check_run(fspa: Fspa, drawing: Drawing, run: list[int]) -> None:
-    """The path is entered at its start alone, and nothing but its way on differs between its states."""
+    """Assert that the run is entered only at its start, and that its states differ only in their next state."""
     entering = {state: [edge for edge in fspa.edges if edge.target == state] for state in run}
     assert all(len(edges) == 1 for edges in entering.values())
     path = [entering[run[0]][0].source, *run]
     (guard,) = {entering[state][0].guard for state in run}
     assert [entering[state][0].source for state in run] == path[:-1]
-    (last,) = (target for given, target in edges_of(fspa, run[-1]) - common(fspa, run) if given == guard)
+    (last,) = (target for label, target in edges_of(fspa, run[-1]) - common(fspa, run) if label == guard)
     path.append(last)
     assert len({(fspa.states[state].verdict, fspa.states[state].accepting) for state in path}) == 1
-    (beyond,) = {target for given, target in edges_of(fspa, last) - common(fspa, run) if given == guard}
+    (beyond,) = {target for label, target in edges_of(fspa, last) - common(fspa, run) if label == guard}
     assert beyond != last
     for state, following in zip(path, [*path[1:], beyond], strict=True):
         assert edges_of(fspa, state) == common(fspa, run) | {(guard, following)}
@@ -114,7 +114,7 @@ def common(fspa: Fspa, run: list[int]) -> set[tuple[Guard, int]]:
 
 @settings(max_examples=60, deadline=None)
 @given(counting() | endless() | automata() | infinite_automata())
-def test_runs_are_folded_and_nothing_else(fspa: Fspa) -> None:
+def test_only_runs_are_folded(fspa: Fspa) -> None:
     for run in check(fspa).folded.values():
         distances = [state.distance for state in run]
         steps = {None if a is None or b is None else a - b for a, b in pairwise(distances)}
@@ -129,32 +129,32 @@ def test_any_artefact_is_folded_by_the_same_rule(fspa: Fspa) -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(chains() | counting())
-def test_no_run_is_left_unfolded(fspa: Fspa) -> None:
-    """Every path of five states that could be folded is."""
+def test_every_run_is_folded(fspa: Fspa) -> None:
+    """Every path of five states that can be folded is folded."""
     inner = {state.id for run in folded(fspa).folded.values() for state in run}
     for edge in fspa.edges:
         path = [edge.source]
-        others = edges_of(fspa, edge.source) - {(edge.guard, edge.target)}
-        while len(path) < LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, others):
-            path += [target for guard, target in edges_of(fspa, path[-1]) - others if guard == edge.guard]
-        if len(path) == LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, others):
+        shared = edges_of(fspa, edge.source) - {(edge.guard, edge.target)}
+        while len(path) < LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, shared):
+            path += [target for guard, target in edges_of(fspa, path[-1]) - shared if guard == edge.guard]
+        if len(path) == LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, shared):
             assert inner.issuperset(path[1:-1])
 
 
-def continues(fspa: Fspa, path: list[int], guard: Guard, others: set[tuple[Guard, int]]) -> bool:
-    """Whether a path of states that agree may be one longer than without its last state."""
-    ways = [way for way in edges_of(fspa, path[-1]) - others if way[0] == guard]
+def continues(fspa: Fspa, path: list[int], guard: Guard, shared: set[tuple[Guard, int]]) -> bool:
+    """Whether the last state of a path agrees with the others, so that the path may go on through it."""
+    next_edges = [way for way in edges_of(fspa, path[-1]) - shared if way[0] == guard]
     first, last = fspa.states[path[0]], fspa.states[path[-1]]
     entered = all(
         state and [edge.source for edge in fspa.edges if edge.target == state] == [before]
         for before, state in pairwise(path[:-1])
     )
     return (
-        len(ways) == 1
-        and edges_of(fspa, path[-1]) == others | set(ways)
+        len(next_edges) == 1
+        and edges_of(fspa, path[-1]) == shared | set(next_edges)
         and (first.verdict, first.accepting) == (last.verdict, last.accepting)
         and entered
-        and ways[0][1] not in path
+        and next_edges[0][1] not in path
     )
 
 
@@ -169,7 +169,7 @@ def continues(fspa: Fspa, path: list[int], guard: Guard, others: set[tuple[Guard
         ("G[0,12] a", [10], 15),
     ],
 )
-def test_how_much_is_folded(formula: str, inner: list[int], states: int) -> None:
+def test_the_number_of_folded_states(formula: str, inner: list[int], states: int) -> None:
     fspa = automaton(formula)
     assert len(fspa.states) == states
     assert [len(run) for run in folded(fspa).folded.values()] == inner
@@ -185,13 +185,13 @@ def test_an_entrance_from_outside_ends_a_run() -> None:
     assert middle not in inner
 
 
-def test_without_runs_the_graph_is_the_whole_one() -> None:
+def test_an_automaton_without_runs_is_drawn_whole() -> None:
     fspa = cover_and_hide()
     assert folded(fspa) == whole(fspa)
     assert graph(fspa, Options(), folded(fspa)) == graph(fspa, Options())
 
 
-def test_ranges_of_numbers() -> None:
+def test_ranges_of_numbers_in_labels() -> None:
     assert span("F[0,39] p", "F[0,2] p") == "F[0,39…2] p"
     assert span("p2", "p2") == "p2"
     assert span("F[0,2] p", "p | X p") == "F[0,2] p … p | X p"

@@ -1,6 +1,6 @@
-"""The generated scripts, run by Godot 3, are :class:`tltlc.monitor.Monitor`, whatever the names in the spec.
+"""The generated scripts, run by Godot 3, agree with :class:`tltlc.monitor.Monitor`, whatever the names in the spec.
 
-Those for Godot 4 are parsed, where gdtoolkit's ``gdparse`` is found, and differ from the others in few lines.
+The scripts for Godot 4 are parsed if gdtoolkit's ``gdparse`` is installed; they differ from the others in few lines.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def write(folder: Path, fspa: Fspa, target: str = "gdscript3") -> None:
 
 
 def run(folder: Path, script: str, *arguments: str, stdin: bytes = b"") -> Outcome:
-    """What a script prints, without what the engine says of itself."""
+    """Run a script, and return its outcome without the banner of the engine."""
     command = ["godot3-server", "--path", ".", "-s", script, *arguments]
     environment = {**os.environ, "LANG": "en"}
     done = subprocess.run(command, cwd=folder, input=stdin, capture_output=True, env=environment, timeout=HANG_S)
@@ -74,20 +74,23 @@ def monitored(folder: Path, fspa: Fspa, trace: str) -> Outcome:
 
 
 def comparable(text: str) -> str:
-    """Messages without numbers, of which Godot 3 writes six digits, and what names cannot hold."""
+    """Return the messages without the parts that may differ.
+
+    Godot 3 writes numbers with six digits, and names cannot contain a null character.
+    """
     text = re.sub(r" is -?(\d|inf|nan)[^\n]*, outside [^\n]*", " is outside", text)
     text = re.sub(r"the signal (`[^`]*`) is -?inf, not a finite number", r"no finite number for the signal \1", text)
     return text.replace("\0", "")
 
 
 def check(folder: Path, *cases: tuple[Fspa, Sequence[Sample]]) -> None:
-    """Automata, run by one engine over a trace each."""
+    """Run each automaton on its trace, all in one engine, and compare with the monitor."""
     programs = Programs(*RUNNERS, folder, [fspa for fspa, _ in cases])
     traces = [trace_of(samples, [signal.name for signal in fspa.signals]) for fspa, samples in cases]
     outcomes = programs.run(*enumerate(traces))
-    for fspa, (_, samples), trace, found in zip(programs.fspas, cases, traces, outcomes, strict=True):
-        wanted = expected(fspa, samples)
-        assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2])), trace
+    for fspa, (_, samples), trace, outcome in zip(programs.fspas, cases, traces, outcomes, strict=True):
+        expected_outcome = expected(fspa, samples)
+        assert (*outcome[:2], comparable(outcome[2])) == (*expected_outcome[:2], comparable(expected_outcome[2])), trace
 
 
 # --- equality -------------------------------------------------------------------------------------
@@ -96,7 +99,7 @@ def check(folder: Path, *cases: tuple[Fspa, Sequence[Sample]]) -> None:
 @runs
 @batches
 @given(data=st.data())
-def test_the_same_steps_on_random_automata(tmp_path: Path, data: st.DataObject) -> None:
+def test_steps_agree_with_the_monitor_on_random_automata(tmp_path: Path, data: st.DataObject) -> None:
     cases = []
     for _ in range(6):
         fspa = data.draw(automata())
@@ -109,8 +112,8 @@ def test_the_same_steps_on_random_automata(tmp_path: Path, data: st.DataObject) 
 @runs
 @batches
 @given(data=st.data())
-def test_the_same_values_of_atoms(tmp_path: Path, data: st.DataObject) -> None:
-    """Values, clamped values with their notices, and failures."""
+def test_values_of_atoms_agree_with_the_monitor(tmp_path: Path, data: st.DataObject) -> None:
+    """This includes clamped values with their notices, and failures."""
     cases = []
     whole = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b")))))
     for _ in range(14):
@@ -133,7 +136,7 @@ X = Signal("x")
 
 
 @runs
-def test_the_same_on_special_cases(tmp_path: Path) -> None:
+def test_special_cases_agree_with_the_monitor(tmp_path: Path) -> None:
     holds = spec.Signal("open", "bool", 0.0, 1.0)
     deep: Expression = X
     for _ in range(100):
@@ -190,7 +193,7 @@ def test_numbers_are_read_and_printed_exactly(tmp_path: Path) -> None:
 
 
 def half_way(odd: int, power: int) -> list[str]:
-    """The number ``odd * 2**power``, which lies half way between two doubles, and its next neighbours in decimals."""
+    """Return ``odd * 2**power``, which lies halfway between two doubles, and its nearest neighbours, as decimals."""
     with localcontext() as context:
         context.prec = 1200
         tie = format(Decimal(odd) * Decimal(2) ** power, "f")
@@ -199,37 +202,37 @@ def half_way(odd: int, power: int) -> list[str]:
 
 @runs
 def test_many_digits_and_ties_are_read_exactly(tmp_path: Path) -> None:
-    """Ties at ends of a power of two, at odd and even doubles, and among subnormal numbers."""
+    """Ties next to powers of two, at odd and even doubles, and among subnormal numbers."""
     ties = [(2**54 - 1, -54), (2**54 - 3, -54), (2**53 + 1, -54), (2**53 + 3, -54), (2**54 - 1, -55), (2**54 + 2, -55)]
     ties += [(2**53 + 11, -201), (7, -1075), (9, -1075), (2**53 - 1, -1075), (2**53 + 1, -1075), (1, -1075), (3, -1075)]
     cells = [cell for tie in ties for cell in half_way(*tie)]
-    # A value above 0 would end in the goal, after which no value shows.
+    # A value above 0 would reach the goal, after which no value is printed.
     cells += ["-0.1000000000000000055511151231257827021181583404541015625"]
     cells += ["-" + "9" * 40 + "e-40", "-1" + "0" * 30 + "E-31", "-2.4703282292062328e-324"]
     cells += ["-0." + "0" * 1_040_000 + "25e1040000", "-25" + "0" * 1_040_000 + "e-1040002"]
-    # The last one is no finite number, and ends the trace.
+    # The last one is not finite, and ends the trace.
     cells += ["-1.7976931348623157e308", "-1.7976931348623158e308", "-1e-9999999999", "-179769313486231580793e289"]
     samples = [{"x": float(cell)} for cell in cells]
     fspa = one_atom(X, NUMBER)
-    found = monitored(tmp_path, fspa, "\n".join(["x", *cells, ""]))
-    wanted = expected(fspa, samples)
-    assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2]))
+    outcome = monitored(tmp_path, fspa, "\n".join(["x", *cells, ""]))
+    expected_outcome = expected(fspa, samples)
+    assert (*outcome[:2], comparable(outcome[2])) == (*expected_outcome[:2], comparable(expected_outcome[2]))
 
 
 @runs
 def test_literals_are_exact(tmp_path: Path) -> None:
-    found = [*_values(), 1e22, 1e23, 1.7976931348623157e308, 123456789012345678.0, 1 / 30, 5 / 7, 1 / 365]
+    values = [*_values(), 1e22, 1e23, 1.7976931348623157e308, 123456789012345678.0, 1 / 30, 5 / 7, 1 / 365]
     lines = ["extends SceneTree", "func _init():"]
-    lines += [f"\tprint(var2bytes({number(value)}).hex_encode())" for value in found]
+    lines += [f"\tprint(var2bytes({number(value)}).hex_encode())" for value in values]
     (tmp_path / "numbers.gd").write_text("\n".join([*lines, "\tquit()", ""]))
     (tmp_path / "project.godot").touch()
     _, out, _ = run(tmp_path, "numbers.gd")
-    for value, text in zip(found, out.splitlines(), strict=True):
+    for value, text in zip(values, out.splitlines(), strict=True):
         data = bytes.fromhex(text)
         assert struct.unpack("<d" if len(data) == 12 else "<f", data[4:])[0] == value, number(value)
 
 
-def test_literals_are_read_by_people_where_they_can() -> None:
+def test_literals_are_readable_where_possible() -> None:
     assert [number(value) for value in (20.0, 0.1, 1e-5, 2 / 13)] == ["20.0", "0.1", "1e-05", "(2.0 / 13.0)"]
     assert math.pi == eval(number(math.pi))
 
@@ -247,7 +250,7 @@ NAMES = (
 
 
 def awkward() -> Fspa:
-    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+    """Return an automaton in which each atom reads a signal of the same awkward name."""
     names = [name for name in dict.fromkeys(NAMES) if "\0" not in name]
     atoms = [f"v{index}" for index in range(len(names))]
     fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
@@ -260,13 +263,13 @@ def awkward() -> Fspa:
 
 
 @runs
-def test_hostile_names_stay_apart(tmp_path: Path) -> None:
+def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     fspa = awkward()
     names = [signal.name for signal in fspa.signals]
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
-    found = monitored(tmp_path, fspa, trace_of(samples, names))
-    assert found[:2] == expected(fspa, samples)[:2], found[2]
-    assert [row["limiting"] for row in csv.DictReader(io.StringIO(found[1], newline=""))] == names
+    outcome = monitored(tmp_path, fspa, trace_of(samples, names))
+    assert outcome[:2] == expected(fspa, samples)[:2], outcome[2]
+    assert [row["limiting"] for row in csv.DictReader(io.StringIO(outcome[1], newline=""))] == names
 
 
 @runs
@@ -287,10 +290,10 @@ def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
     )
 
 
-def test_capitals_are_left_to_the_engine() -> None:
-    found = snake_case(["Node", "near", "isOpen", "is_open", "Sin"])
-    assert found == {"Node": "node", "isOpen": "is_open_1", "Sin": "sin_1"}
-    assert not set(found.values()) & RESERVED
+def test_names_with_capitals_become_snake_case() -> None:
+    new_names = snake_case(["Node", "near", "isOpen", "is_open", "Sin"])
+    assert new_names == {"Node": "node", "isOpen": "is_open_1", "Sin": "sin_1"}
+    assert not set(new_names.values()) & RESERVED
 
 
 # --- the version for Godot 4 ----------------------------------------------------------------------
@@ -302,37 +305,37 @@ WORDS = (
     (r"\bArray\[\w+\]", "Array"),
     (r"(?<=: )(Verdict|Problem)(?=[,)]| = )", "int"),
 )
-"""What Godot 3 has in the place of words of Godot 4."""
+"""Words of Godot 4, and the words of Godot 3 that replace them."""
 
 
-def test_the_versions_differ_only_in_words() -> None:
-    """No test runs Godot 4: what it is given is what Godot 3 is run on, but for names of types and of functions."""
+def test_the_versions_differ_only_in_keywords() -> None:
+    """No test runs Godot 4, but its scripts differ from those of Godot 3 only in names of types and functions."""
     for fspa in (cover_and_hide(), awkward(), *(make().fspa for make in [*CASES.values()][::8])):
-        own_functions = replace(gdscript.DIALECT, functions=gdscript3.DIALECT.functions, swapped=frozenset())
+        dialect_4 = replace(gdscript.DIALECT, functions=gdscript3.DIALECT.functions, swapped=frozenset())
         new, old = (
-            "\n".join(map(str, source.files(fspa, dialect).values())) for dialect in (own_functions, gdscript3.DIALECT)
+            "\n".join(map(str, source.files(fspa, dialect).values())) for dialect in (dialect_4, gdscript3.DIALECT)
         )
         for word, older in WORDS:
             new = re.sub(word, older, new)
-        # What the engine gives the program is its own matter.
+        # The part that adapts to the engine may differ.
         new, old = (
-            re.sub(r"# --- what the engine gives ---.*?# ---", "", each, flags=re.DOTALL) for each in (new, old)
+            re.sub(r"# --- what the engine gives ---.*?# ---", "", script, flags=re.DOTALL) for script in (new, old)
         )
-        new, old = (re.sub(r"^#     godot .*\n", "", each, flags=re.MULTILINE) for each in (new, old))
-        differ = [line for line in difflib.ndiff(new.splitlines(), old.splitlines()) if line[0] in "+-"]
-        assert not [line for line in differ if "integer_division" not in line and "\\U" not in line]
+        new, old = (re.sub(r"^#     godot .*\n", "", script, flags=re.MULTILINE) for script in (new, old))
+        differences = [line for line in difflib.ndiff(new.splitlines(), old.splitlines()) if line[0] in "+-"]
+        assert not [line for line in differences if "integer_division" not in line and "\\U" not in line]
 
 
-def test_functions_of_godot_4_take_the_first_of_equal_values() -> None:
-    """``minf(x, y)`` is ``x if x < y else y`` there."""
+def test_only_godot_4_uses_built_in_min_and_max() -> None:
+    """In Godot 4, ``minf(x, y)`` is ``x if x < y else y``."""
     fspa = one_atom(Op("min", (X, Op("max", (Const(0.5), X)))), NUMBER)
     assert "minf(maxf(x, 0.5), x)" in str(emit("gdscript", fspa)[f"{fspa.name}_monitor.gd"])
     assert "_min(x, (x if x > 0.5 else 0.5))" in str(emit("gdscript3", fspa)[f"{fspa.name}_monitor.gd"])
 
 
 @parses
-def test_those_for_godot_4_are_parsed(tmp_path: Path) -> None:
-    """Those of the corpus, and hostile ones; of the programs, which are alike, a few."""
+def test_scripts_for_godot_4_are_parsed(tmp_path: Path) -> None:
+    """Parse the scripts of the corpus and of hostile automata, and a few of the main programs, which are alike."""
     fspas = [cover_and_hide(), awkward(), build(spec_from_formula(f.TRUE)), *(make().fspa for make in CASES.values())]
     for fspa in fspas:
         write(tmp_path, fspa, "gdscript")

@@ -41,51 +41,51 @@ def emitted(fspa: Fspa) -> str:
 
 
 def check(fspa: Fspa) -> Hoa:
-    """The whole file is of the format and says, letter by letter, what the automaton says."""
+    """Assert that the file is valid and agrees with the automaton letter by letter; return the parsed file."""
     text = emitted(fspa)
-    found = read(text)
+    parsed = read(text)
     infinite = fspa.semantics == "infinite"
     assert text.startswith("HOA: v1\n")
     assert all(visible(line) == line for line in text.split("\n"))
-    assert found.starts == [0]
-    assert found.atoms == [atom.name for atom in fspa.atoms]
-    assert [found.states[state.id].name for state in fspa.states] == [state.label.ascii for state in fspa.states]
-    assert found.count == len(found.states) == len(fspa.states)
-    assert found.strings["name:"] == [fspa.name]
-    assert found.strings["tool:"] == ["tltlc", __version__]
-    # No header of others that begins with a capital, but for the one that says how to read the automaton.
-    capital = {name: values for name, values in found.strings.items() if name[0].isupper()}
+    assert parsed.starts == [0]
+    assert parsed.atoms == [atom.name for atom in fspa.atoms]
+    assert [parsed.states[state.id].name for state in fspa.states] == [state.label.ascii for state in fspa.states]
+    assert parsed.count == len(parsed.states) == len(fspa.states)
+    assert parsed.strings["name:"] == [fspa.name]
+    assert parsed.strings["tool:"] == ["tltlc", __version__]
+    # The only own header that begins with a capital, and so must be understood, states the semantics.
+    capital = {name: values for name, values in parsed.strings.items() if name[0].isupper()}
     assert capital == ({} if infinite else {"Tltlc-semantics:": ["finite"]})
     pairs = range(len(fspa.acceptance))
     terms = [f"Fin({2 * pair})&Inf({2 * pair + 1})" for pair in pairs]
     canonical = {0: "f", 1: "".join(terms)}.get(len(terms), "|".join(f"({term})" for term in terms))
     expected = (f"Rabin {len(terms)}", 2 * len(terms), canonical) if infinite else ("Buchi", 1, "Inf(0)")
-    assert (found.acceptance_name, found.sets, found.acceptance) == expected
-    same_letters(fspa, found)
-    return found
+    assert (parsed.acceptance_name, parsed.sets, parsed.acceptance) == expected
+    same_letters(fspa, parsed)
+    return parsed
 
 
-def same_letters(fspa: Fspa, found: Hoa) -> None:
-    """From each state each letter leads to the same state with the same marks; one that is not allowed nowhere."""
+def same_letters(fspa: Fspa, parsed: Hoa) -> None:
+    """Assert that each letter has the same target and marks in both, and that impossible letters have no edge."""
     infinite, allowed = fspa.semantics == "infinite", set(letters(fspa))
-    every = list(itertools.product((False, True), repeat=len(fspa.atoms)))
+    all_letters = list(itertools.product((False, True), repeat=len(fspa.atoms)))
     sets = [frozenset[int]() for _ in fspa.edges]
     for index, pair in enumerate(fspa.acceptance):
         for number, edges in ((2 * index, pair.fin), (2 * index + 1, pair.inf)):
-            for edge in edges:
-                sets[edge] |= {number}
+            for position in edges:
+                sets[position] |= {number}
     for state in fspa.states:
-        here = found.states[state.id]
-        leaving = [(each, marks) for each, marks in zip(fspa.edges, sets, strict=True) if each.source == state.id]
-        assert len(here.edges) == len(leaving)
-        assert here.sets == ({0} if not infinite and state.accepting else set())
-        for letter in every:
-            expected = [(each.target, marks | here.sets) for each, marks in leaving if holds(each, letter)]
-            assert found.taken(state.id, letter) == (expected if letter in allowed else [])
+        hoa_state = parsed.states[state.id]
+        leaving = [(edge, marks) for edge, marks in zip(fspa.edges, sets, strict=True) if edge.source == state.id]
+        assert len(hoa_state.edges) == len(leaving)
+        assert hoa_state.sets == ({0} if not infinite and state.accepting else set())
+        for letter in all_letters:
+            expected = [(edge.target, marks | hoa_state.sets) for edge, marks in leaving if holds(edge, letter)]
+            assert parsed.taken(state.id, letter) == (expected if letter in allowed else [])
             assert len(expected) == 1 or letter not in allowed
-    complete = ["complete"] if len(every) == len(allowed) else []
+    complete = ["complete"] if len(all_letters) == len(allowed) else []
     marks = "trans-acc" if infinite else "state-acc"
-    assert found.properties == ["trans-labels", "explicit-labels", marks, "deterministic", *complete]
+    assert parsed.properties == ["trans-labels", "explicit-labels", marks, "deterministic", *complete]
 
 
 @st.composite
@@ -141,60 +141,62 @@ def test_an_automaton_over_finite_traces() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(specs("infinite", 5), st.data())
-def test_over_infinite_traces_the_format_accepts_what_the_formula_says(spec: Spec, data: st.DataObject) -> None:
+def test_over_infinite_traces_the_file_accepts_the_lassos_of_the_formula(spec: Spec, data: st.DataObject) -> None:
     fspa = build_infinite(spec)
-    found = check(fspa)
+    parsed = check(fspa)
     for _ in range(10):
         prefix, cycle = data.draw(words(fspa)), data.draw(words(fspa, 1))
         expected = holds_on_lasso(spec.formula, named(fspa, prefix), named(fspa, cycle))
-        assert found.accepts_lasso(prefix, cycle) == expected
+        assert parsed.accepts_lasso(prefix, cycle) == expected
 
 
 @settings(max_examples=60, deadline=None)
 @given(specs("finite", 6), st.data())
-def test_over_finite_traces_the_last_state_says_what_the_formula_says(spec: Spec, data: st.DataObject) -> None:
+def test_over_finite_traces_the_last_state_accepts_the_traces_of_the_formula(spec: Spec, data: st.DataObject) -> None:
     fspa = build(spec)
-    found = check(fspa)
+    parsed = check(fspa)
     for _ in range(10):
         trace = data.draw(words(fspa, 1))
-        last = found.run(trace)
+        last = parsed.run(trace)
         assert last is not None
-        assert (found.states[last].sets == {0}) == oracle.holds(spec.formula, named(fspa, trace))
+        assert (parsed.states[last].sets == {0}) == oracle.holds(spec.formula, named(fspa, trace))
 
 
 @pytest.mark.parametrize(
     ("formula", "name", "acceptance"),
     [("a and not a", "Rabin 0", "f"), ("a or not a", "Rabin 1", "Fin(0)&Inf(1)")],
 )
-def test_what_nothing_and_what_everything_meets(formula: str, name: str, acceptance: str) -> None:
+def test_unsatisfiable_and_valid_formulas(formula: str, name: str, acceptance: str) -> None:
     (fspa,) = compile_text(f"signal a: bool spec constant {{ semantics infinite  require {formula} }}")
-    found = check(fspa)
-    assert (found.acceptance_name, found.acceptance) == (name, acceptance)
+    parsed = check(fspa)
+    assert (parsed.acceptance_name, parsed.acceptance) == (name, acceptance)
 
 
-def test_a_trace_with_a_letter_that_is_not_allowed_is_not_accepted() -> None:
+def test_a_trace_with_an_impossible_letter_is_rejected() -> None:
     (fspa,) = compile_text(
         "signal a: bool signal b: bool exclusive a, b spec one { semantics infinite  require G F a or G F b }"
     )
-    found = check(fspa)
+    parsed = check(fspa)
     both, first = (True, True), (True, False)
-    assert found.accepts_lasso([], [first])
-    assert not found.accepts_lasso([both], [first])
-    assert not found.accepts_lasso([first], [both, first])
+    assert parsed.accepts_lasso([], [first])
+    assert not parsed.accepts_lasso([both], [first])
+    assert not parsed.accepts_lasso([first], [both, first])
 
 
-def test_an_edge_in_many_sets() -> None:
+def test_an_edge_can_be_in_many_sets() -> None:
     (fspa,) = compile_text("signal a: bool spec again { semantics infinite  require G F a }")
     fspa = replace(fspa, acceptance=(Pair((), (1,)), Pair((0,), (1,)), Pair((1, 1), (0,))))
-    # A set that names an edge twice stands once.
+    # A set that contains an edge twice is written once.
     assert "[!0] 0 {2 5}\n[0] 0 {1 3 4}\n" in emitted(fspa)
     check(fspa)
 
 
-def test_a_label_follows_from_the_primes_and_never_from_the_text() -> None:
+def test_labels_come_from_the_primes_not_from_the_text() -> None:
     fspa = cover_and_hide()
-    lied = replace(fspa, edges=tuple(replace(edge, guard=Guard("t] 0 [t", edge.guard.primes)) for edge in fspa.edges))
-    assert emitted(lied) == emitted(fspa)
+    misleading = replace(
+        fspa, edges=tuple(replace(edge, guard=Guard("t] 0 [t", edge.guard.primes)) for edge in fspa.edges)
+    )
+    assert emitted(misleading) == emitted(fspa)
 
 
 @settings(max_examples=40, deadline=None)
@@ -202,13 +204,13 @@ def test_a_label_follows_from_the_primes_and_never_from_the_text() -> None:
 def test_a_guard_too_large_for_a_short_label_is_the_sum_of_its_primes(fspa: Fspa) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hoa, "Diagrams", lambda: Diagrams(step_limit=0))
-        found = read(emitted(replace(fspa, exclusive=())))
+        parsed = read(emitted(replace(fspa, exclusive=())))
     for state, letter in itertools.product(fspa.states, itertools.product((False, True), repeat=len(fspa.atoms))):
         expected = [edge.target for edge in fspa.edges_from(state.id) if holds(edge, letter)]
-        assert [target for target, _ in found.taken(state.id, letter)] == expected
+        assert [target for target, _ in parsed.taken(state.id, letter)] == expected
 
 
-def test_an_edge_that_no_letter_takes() -> None:
+def test_an_edge_that_no_letter_takes_has_a_false_label() -> None:
     fspa = cover_and_hide()
     at = [(edge.source, edge.target) for edge in fspa.edges].index((2, 2))
     edges = (*fspa.edges[:at], Edge(2, 0, Guard("false", ())), *fspa.edges[at:])
@@ -221,11 +223,11 @@ def test_an_edge_that_no_letter_takes() -> None:
 def test_hostile_texts_stay_texts(fspa: Fspa, doc: str, infinite: bool) -> None:
     if infinite:
         fspa = replace(fspa, semantics="infinite", acceptance=(Pair((0,), (11,)),))
-    found = check(replace(fspa, doc=doc))
-    assert len(found.comments) == 1 + (not infinite) + bool(doc.strip())
+    parsed = check(replace(fspa, doc=doc))
+    assert len(parsed.comments) == 1 + (not infinite) + bool(doc.strip())
 
 
-def test_characters_that_are_not_seen_are_escapes_as_in_c() -> None:
+def test_invisible_characters_are_escaped_as_in_c() -> None:
     names = ["\ud800", "\\ud800", "\U000e0001", "\u200b\n"]
     pairs = zip(cover_and_hide().atoms, names, strict=True)
     atoms = tuple(replace(atom, base=name, arguments=()) for atom, name in pairs)
@@ -285,12 +287,12 @@ def test_the_reader_is_strict(old: str, new: str) -> None:
         read(GOOD.replace(old, new, 1))
 
 
-def test_the_reader_knows_what_a_lasso_is() -> None:
-    found = read(GOOD)
-    assert found.accepts_lasso([(True, True)], [(False, False)])
-    assert not found.accepts_lasso([], [(False, False)])
-    assert found.strings["name:"] == ['it " stays']
-    assert found.run([(False, True)]) == 0
+def test_the_reader_decides_lassos() -> None:
+    parsed = read(GOOD)
+    assert parsed.accepts_lasso([(True, True)], [(False, False)])
+    assert not parsed.accepts_lasso([], [(False, False)])
+    assert parsed.strings["name:"] == ['it " stays']
+    assert parsed.run([(False, True)]) == 0
 
 
 def test_a_file_that_could_not_be_imported_again_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -301,4 +303,4 @@ def test_a_file_that_could_not_be_imported_again_is_not_written(monkeypatch: pyt
     monkeypatch.setattr("tltlc.artefact.size.ARTEFACT", Limit(len(text.encode()) - 1))
     with pytest.raises(TltlError) as caught:
         backends.emit("hoa", cover_and_hide())
-    assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]

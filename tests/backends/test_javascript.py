@@ -1,4 +1,4 @@
-"""The generated module is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus holds the rest."""
+"""The generated module agrees with :class:`tltlc.monitor.Monitor`, whatever the names; the corpus tests more."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ Outcome = tuple[int, str, str]
 
 
 def written(fspa: Fspa, folder: Path) -> Path:
-    """The module, and its types beside it."""
+    """Write the module and its types, and return the path of the module."""
     files = emit("javascript", fspa)
     assert list(files) == [f"{fspa.name}_monitor.mjs", f"{fspa.name}_monitor.d.mts"]
     for name, text in files.items():
@@ -70,20 +70,20 @@ def trace_of(samples: Sequence[Mapping[str, float]]) -> bytes:
 
 
 def rows(fspa: Fspa, samples: Sequence[Mapping[str, float]]) -> list[list[str]]:
-    """What the program is to print with ``--full``, below the header."""
-    monitor, found = Monitor(fspa), []
+    """Return the rows that the program must print with ``--full``, without the header."""
+    monitor, rows_ = Monitor(fspa), []
     for number, sample in enumerate(samples, start=1):
         step = monitor.step(sample)
         flags = [str(flag).lower() for flag in (step.accepting, step.done)]
         figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
-        found.append([str(number), str(step.state), step.verdict, *flags, *figures, step.limiting or ""])
-    return found
+        rows_.append([str(number), str(step.state), step.verdict, *flags, *figures, step.limiting or ""])
+    return rows_
 
 
 def printed(out: str) -> list[list[str]]:
-    header, *found = csv.reader(io.StringIO(out, newline=""), strict=True)
+    header, *rows_ = csv.reader(io.StringIO(out, newline=""), strict=True)
     assert header == "step,state,verdict,accepting,done,progress,reward,robustness,limiting".split(",")
-    return found
+    return rows_
 
 
 # --- names and texts ------------------------------------------------------------------------------
@@ -105,8 +105,8 @@ def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
     assert printed(out) == rows(fspa, samples)
 
 
-def test_hostile_names_stay_apart(tmp_path: Path) -> None:
-    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
+    """Each atom reads a signal of the same awkward name; in each sample a different atom must be the limiting one."""
     fspa, samples = awkward(NAMES)
     status, out, err = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
@@ -115,7 +115,7 @@ def test_hostile_names_stay_apart(tmp_path: Path) -> None:
 
 
 def awkward(given: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
-    """An automaton with these names of signals, params and atoms; in each sample another atom is false."""
+    """Return an automaton whose signals, params and atoms have these names; each sample makes another atom false."""
     names = list(dict.fromkeys(given))
     fspa = build(spec_from_formula(f.eventually(f.and_(*(f.atom(f"v{index}") for index in range(len(names)))))))
     fspa = replace(
@@ -128,7 +128,7 @@ def awkward(given: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
     return fspa, [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
 
 
-def test_nothing_ends_a_comment_of_the_types(tmp_path: Path) -> None:
+def test_docs_cannot_close_a_comment_of_the_types(tmp_path: Path) -> None:
     fspa = cover_and_hide()
     signals = (*fspa.signals[:3], replace(fspa.signals[3], doc="*/ export const x = 1; /*"))
     text = written(replace(fspa, signals=signals), tmp_path).with_suffix(".d.mts").read_text()
@@ -139,7 +139,7 @@ def test_nothing_ends_a_comment_of_the_types(tmp_path: Path) -> None:
 
 
 def test_numbers_are_printed_as_c_prints_them(tmp_path: Path) -> None:
-    """The robustness of an edge is the value of a signal, to the last digit; ties are rounded to even."""
+    """The robustness of an edge equals the signal to the last digit; ties are rounded to even."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", Signal("x")),))
     values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
@@ -212,7 +212,7 @@ def test_module(tmp_path: Path) -> None:
 
 
 def test_a_boolean_is_a_bool_and_a_number(tmp_path: Path) -> None:
-    """As in Python, true counts as 1; nothing else is taken for a number."""
+    """As in Python, true counts as 1; no other type is accepted as a number."""
     expression = Op("-", (Op("*", (Signal("x"), Signal("seen"))), Const(0.5)))
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     signals = (spec.Signal("x", "number", None, None), spec.Signal("seen", "bool", 0.0, 1.0))
@@ -228,9 +228,9 @@ for (const [x, seen] of [[1, true], [true, 1], [1, false], [1, 0.5], ["1", 1], [
 }}
 """)
     _, out, err = ran(tmp_path / "use.mjs")
-    wrong = ["seen` is 0.5, not true or false", "x` is no number", "x` is no number", "seen` is no number"]
-    said = [f"step 1: the signal `{each}" for each in [*wrong, "x` is no number"]]
-    assert out.splitlines() == ["0.5", "0.5", "0.5", *said], err
+    problems = ["seen` is 0.5, not true or false", "x` is no number", "x` is no number", "seen` is no number"]
+    messages = [f"step 1: the signal `{message}" for message in [*problems, "x` is no number"]]
+    assert out.splitlines() == ["0.5", "0.5", "0.5", *messages], err
 
 
 # --- for TypeScript -------------------------------------------------------------------------------
@@ -275,7 +275,7 @@ types = pytest.mark.skipif(not TSC, reason="there is no TypeScript compiler (tsc
 
 
 def compiled(folder: Path, files: Sequence[str], **options: object) -> str:
-    """What TypeScript's compiler says of the files."""
+    """Return the messages of the TypeScript compiler for the files."""
     strict = {"strict": True, "noEmit": True, "target": "es2022", "lib": ["es2022", "dom"], "types": []}
     (folder / "tsconfig.json").write_text(json.dumps({"compilerOptions": strict | options, "files": files}))
     return subprocess.run([str(TSC), "-p", "."], cwd=folder, capture_output=True, text=True).stdout
@@ -283,7 +283,7 @@ def compiled(folder: Path, files: Sequence[str], **options: object) -> str:
 
 @types
 @pytest.mark.parametrize(("module", "resolution"), [("nodenext", "nodenext"), ("esnext", "bundler")])
-def test_types_are_found_and_right(tmp_path: Path, module: str, resolution: str) -> None:
+def test_types_are_found_and_correct(tmp_path: Path, module: str, resolution: str) -> None:
     written(cover_and_hide(), tmp_path)
     written(build(spec_from_formula(f.TRUE, "again")), tmp_path)
     (tmp_path / "use.mts").write_text(TYPED_USE)
@@ -292,12 +292,12 @@ def test_types_are_found_and_right(tmp_path: Path, module: str, resolution: str)
 
 
 @types
-def test_the_code_itself_has_types(tmp_path: Path) -> None:
-    """Some modules of the corpus, and hostile ones; parameters of helpers are taken for any."""
+def test_the_code_passes_the_type_checker(tmp_path: Path) -> None:
+    """Some modules of the corpus, and hostile ones; untyped parameters of helpers count as ``any``."""
     fspas = [*(make().fspa for make in [*CASES.values()][::5]), awkward(NAMES)[0], build(spec_from_formula(f.TRUE))]
     modules = [written(fspa, tmp_path).name for fspa in fspas]
     (tmp_path / "node.d.ts").write_text("declare const process: any;\n")
-    found = compiled(
+    messages = compiled(
         tmp_path,
         ["node.d.ts", *modules],
         module="nodenext",
@@ -309,7 +309,7 @@ def test_the_code_itself_has_types(tmp_path: Path) -> None:
         noImplicitReturns=True,
         noFallthroughCasesInSwitch=True,
     )
-    assert found == ""
+    assert messages == ""
 
 
 # --- for bundlers ---------------------------------------------------------------------------------
@@ -325,19 +325,19 @@ console.log(new Monitor().step(far).verdict);
 @pytest.mark.parametrize("platform", ["browser", "node"])
 @pytest.mark.parametrize("layout", ["esm", "iife", "cjs"])
 def test_bundles(tmp_path: Path, platform: str, layout: str) -> None:
-    """Nothing is missed or warned of, and the bundle is not taken for the monitor's own program."""
+    """Bundling gives no error or warning, and the bundle does not run the monitor's own program."""
     written(cover_and_hide(), tmp_path)
     (tmp_path / "use.mjs").write_text(BUNDLED_USE)
     bundle = "use.bundle." + ("mjs" if layout == "esm" else "cjs")
-    wanted = ["--bundle", f"--format={layout}", f"--platform={platform}", "--target=es2022", f"--outfile={bundle}"]
-    command = [str(ESBUILD), "use.mjs", *wanted, "--log-level=warning"]
+    options = ["--bundle", f"--format={layout}", f"--platform={platform}", "--target=es2022", f"--outfile={bundle}"]
+    command = [str(ESBUILD), "use.mjs", *options, "--log-level=warning"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert ran(tmp_path / bundle) == (0, "pending\n", "")
 
 
 def test_the_module_imports_nothing() -> None:
-    """Bundlers for browsers would look for Node's modules."""
+    """A bundler for browsers would fail to resolve Node's modules."""
     text = emit("javascript", cover_and_hide())["cover_and_hide_monitor.mjs"]
     assert isinstance(text, str)
     code = re.sub(r"^//.*|/\*.*?\*/", "", text, flags=re.MULTILINE | re.DOTALL)

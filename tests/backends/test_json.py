@@ -32,19 +32,19 @@ def emitted(fspa: Fspa) -> str:
     return text
 
 
-def test_what_was_written_is_read() -> None:
+def test_cover_and_hide_is_read_back() -> None:
     assert read(emitted(cover_and_hide()), "x.fspa.json") == cover_and_hide()
 
 
 @settings(max_examples=60, deadline=None)
 @given(automata() | infinite_automata())
-def test_automata_are_read_as_they_were_written(fspa: Fspa) -> None:
+def test_automata_are_read_back_unchanged(fspa: Fspa) -> None:
     assert read(emitted(fspa), "x.fspa.json") == fspa
 
 
 @settings(max_examples=60, deadline=None)
 @given(hostile_automata())
-def test_hostile_texts_are_read_as_they_were_written(fspa: Fspa) -> None:
+def test_hostile_texts_are_read_back_unchanged(fspa: Fspa) -> None:
     text = emitted(fspa)
     assert read(text, "x.fspa.json") == fspa
     assert "</" not in text
@@ -54,7 +54,7 @@ def test_hostile_texts_are_read_as_they_were_written(fspa: Fspa) -> None:
     ]
 
 
-def test_whatever_does_not_show_is_escaped() -> None:
+def test_invisible_characters_are_escaped() -> None:
     unseen = [chr(code) for code in range(sys.maxunicode + 1) if unicodedata.category(chr(code)) in ("Cc", "Cf", "Cs")]
     text = emitted(replace(cover_and_hide(), doc="".join(unseen)))
     assert not {*text} & {*unseen} - {"\n"}
@@ -63,7 +63,7 @@ def test_whatever_does_not_show_is_escaped() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(expressions())
-def test_expressions_are_read_as_they_were_written(expression: Expression) -> None:
+def test_expressions_are_read_back_unchanged(expression: Expression) -> None:
     fspa = cover_and_hide()
     fspa = replace(fspa, atoms=(Atom("near(s1)", expression), *fspa.atoms[1:]))
     assert read(emitted(fspa), "x.fspa.json") == fspa
@@ -78,7 +78,7 @@ def test_numbers_keep_every_digit(number: float) -> None:
     assert repr(atom.expression.value) == repr(number)
 
 
-def test_fields_of_others_are_ignored_and_whole_numbers_may_have_a_point() -> None:
+def test_unknown_fields_are_ignored_and_integers_may_have_a_decimal_point() -> None:
     document = json.loads(emitted(cover_and_hide()))
     document["generator"] = {"name": "another"}
     document["states"][0]["colour"] = "blue"
@@ -113,7 +113,7 @@ def test_a_non_finite_number_is_never_written() -> None:
         ('{"format": "fspa", "version": 1}', "TLT0603", "the artefact lacks `atoms`, `edges`"),
     ],
 )
-def test_what_is_no_artefact_is_refused(text: str, code: str, title: str) -> None:
+def test_invalid_artefacts_are_rejected(text: str, code: str, title: str) -> None:
     with pytest.raises(TltlError) as caught:
         read(text, "x.fspa.json")
     (error,) = caught.value.diagnostics
@@ -121,7 +121,7 @@ def test_what_is_no_artefact_is_refused(text: str, code: str, title: str) -> Non
     assert title in error.title
 
 
-def test_pairs_are_there_over_infinite_traces_and_only_then() -> None:
+def test_an_artefact_has_pairs_only_over_infinite_traces() -> None:
     document = json.loads(emitted(cover_and_hide()))
     with pytest.raises(TltlError, match="TLT0603: the artefact lacks `acceptance`"):
         read(json.dumps({**document, "semantics": "infinite"}), "x.fspa.json")
@@ -141,7 +141,7 @@ def test_an_error_points_at_the_value() -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(st.data())
-def test_damaged_texts_never_give_anything_but_an_error(data: st.DataObject) -> None:
+def test_damaged_texts_raise_only_errors_of_artefacts(data: st.DataObject) -> None:
     text = emitted(cover_and_hide())
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, min(len(text), start + 30)))
@@ -169,7 +169,7 @@ def test_lines_are_short_unless_a_text_is_long() -> None:
     assert len(lines) < 250
 
 
-def test_what_could_not_be_read_again_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_artefact_that_is_too_large_to_read_back_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     text = emitted(cover_and_hide())
     size, values = len(text.encode()), text.count(",") + 1
     monkeypatch.setattr(sizes, "ARTEFACT", Limit(size, 900, values))
@@ -178,23 +178,23 @@ def test_what_could_not_be_read_again_is_not_written(monkeypatch: pytest.MonkeyP
         monkeypatch.setattr(sizes, "ARTEFACT", limit)
         with pytest.raises(TltlError) as caught:
             emitted(cover_and_hide())
-        (found,) = caught.value.diagnostics
-        assert found.code == code
-        assert found.title.startswith("the artefact of `cover_and_hide` would ")
-        assert "declare atoms that never hold together `exclusive`" in str(found.help)
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.code == code
+        assert diagnostic.title.startswith("the artefact of `cover_and_hide` would ")
+        assert "declare atoms that never hold together `exclusive`" in str(diagnostic.help)
 
 
-def test_an_artefact_of_very_many_edges_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_artefact_with_very_many_edges_is_rejected_before_it_is_encoded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.backends.json.encode", None)
     fspa = cover_and_hide()
     with pytest.raises(TltlError) as caught:
         emitted(replace(fspa, edges=fspa.edges * 500_000))
-    assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]
 
 
 @settings(max_examples=60, deadline=None)
 @given(automata() | infinite_automata())
-def test_an_artefact_is_never_smaller_than_what_is_counted(fspa: Fspa) -> None:
+def test_the_estimated_size_is_a_lower_bound(fspa: Fspa) -> None:
     text = emitted(fspa)
     size, commas = sizes.least_size(fspa)
     assert size <= len(text.encode())
@@ -208,7 +208,7 @@ def test_an_artefact_is_never_smaller_than_what_is_counted(fspa: Fspa) -> None:
         max_leaves=90,
     )
 )
-def test_a_value_stands_on_one_line_exactly_where_it_fits(value: object) -> None:
+def test_a_value_is_on_one_line_if_and_only_if_it_fits(value: object) -> None:
     text = "".join(layout({"key": value}))
     flat = json.dumps(value, ensure_ascii=False)
     one_line = not isinstance(value, (dict, list)) or not value or len('  "key": ' + flat) < WIDTH
@@ -220,17 +220,17 @@ BELOW = Condition("<", (X, Const(0.5)))
 
 
 def nested(level: Callable[[Expression], Expression], count: int) -> Expression:
-    """An expression in which so many levels stand in each other."""
-    found = X
+    """Return an expression with ``count`` nested levels."""
+    expression = X
     for _ in range(count):
-        found = level(found)
-    return found
+        expression = level(expression)
+    return expression
 
 
 def with_arithmetic(expression: Expression) -> Fspa:
     fspa = cover_and_hide()
-    first, *others = fspa.atoms
-    return replace(fspa, atoms=(replace(first, expression=expression), *others))
+    first, *rest = fspa.atoms
+    return replace(fspa, atoms=(replace(first, expression=expression), *rest))
 
 
 LEVELS: dict[str, tuple[int, Callable[[Expression], Expression]]] = {
@@ -246,7 +246,7 @@ LEVELS: dict[str, tuple[int, Callable[[Expression], Expression]]] = {
 
 
 @pytest.mark.parametrize("name", LEVELS)
-def test_all_that_reads_an_automaton_has_room_for_the_deepest_arithmetic(name: str) -> None:
+def test_every_reader_of_an_automaton_handles_the_deepest_arithmetic(name: str) -> None:
     nodes, level = LEVELS[name]
     text = emitted(with_arithmetic(nested(level, (ARITHMETIC.compared - 1) // nodes)))
     one, other = read(text, "x.fspa.json"), read(text, "x.fspa.json")
@@ -259,7 +259,7 @@ def test_all_that_reads_an_automaton_has_room_for_the_deepest_arithmetic(name: s
 
 
 @pytest.mark.parametrize("name", LEVELS)
-def test_arithmetic_that_is_deeper_is_refused(name: str) -> None:
+def test_deeper_arithmetic_is_rejected(name: str) -> None:
     nodes, level = LEVELS[name]
     text = json.dumps(encode(with_arithmetic(nested(level, ARITHMETIC.compared // nodes + 1))))
     with pytest.raises(TltlError) as caught:
@@ -275,7 +275,7 @@ def test_arithmetic_that_is_deeper_is_refused(name: str) -> None:
     ],
     ids=["arguments", "cases"],
 )
-def test_one_part_has_a_limit_too(wide: Callable[[int], Expression]) -> None:
+def test_wide_arithmetic_is_rejected(wide: Callable[[int], Expression]) -> None:
     fspa = read(emitted(with_arithmetic(wide(ARITHMETIC.parts))), "x.fspa.json")
     compile_expressions([fspa.atoms[0].expression], [signal.name for signal in fspa.signals], {"level_size": 20.0})
     with pytest.raises(TltlError) as caught:

@@ -1,4 +1,4 @@
-"""The generated module is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus holds the rest."""
+"""The generated module agrees with :class:`tltlc.monitor.Monitor`, whatever the names; the corpus tests more."""
 
 from __future__ import annotations
 
@@ -83,8 +83,8 @@ def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
 
 
 @interpreters
-def test_hostile_names_stay_apart(interpreter: str, tmp_path: Path) -> None:
-    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+def test_hostile_names_stay_distinct(interpreter: str, tmp_path: Path) -> None:
+    """Each atom reads a signal of the same awkward name; in each sample a different atom must be the limiting one."""
     fspa, samples = awkward([*LUA_NAMES, *NAMES])
     status, out, err = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
@@ -92,12 +92,12 @@ def test_hostile_names_stay_apart(interpreter: str, tmp_path: Path) -> None:
     assert [row[-1] for row in printed(out)] == [*samples[0]]
 
 
-# --- what Lua has little room for -----------------------------------------------------------------
+# --- limits of Lua --------------------------------------------------------------------------------
 
 
 @interpreters
 def test_many_signals_and_long_guards(interpreter: str, tmp_path: Path) -> None:
-    """More of them than a function may have local variables, and than calls may nest."""
+    """There are more signals than a function may have local variables, and than calls may nest."""
     names = [f"a{index}" for index in range(400)]
     fspa = build(spec_from_formula(f.eventually(f.or_(*map(f.atom, names)))))
     draw = random.Random(5)
@@ -110,7 +110,7 @@ def test_many_signals_and_long_guards(interpreter: str, tmp_path: Path) -> None:
 
 @interpreters
 def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
-    """More parts than a function may have local variables."""
+    """A predicate has more parts than a function may have local variables."""
     x: Expression = Signal("x")
     total: Expression = Const(0.0)
     for part in range(300):
@@ -120,17 +120,17 @@ def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
     fspa = replace(fspa, signals=(spec.Signal("x", "number", 0.0, 1.0),), atoms=(spec.Atom("p", total),))
     samples = [{"x": value / 10} for value in range(11)]
     with recursion_room():
-        right = rows(fspa, samples)
+        expected = rows(fspa, samples)
         module = written(fspa, tmp_path)
     status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == right
+    assert printed(out) == expected
 
 
 @interpreters
 @pytest.mark.parametrize("within", [False, True])
-def test_cases_in_cases(interpreter: str, tmp_path: Path, within: bool) -> None:
-    """More blocks in each other than a parser takes: in values, with and without something to do behind them."""
+def test_deeply_nested_cases(interpreter: str, tmp_path: Path, within: bool) -> None:
+    """Cases nest deeper than the blocks that a parser allows, with and without a computation after the inner value."""
     x = Signal("x")
     value: Expression = Const(0.5)
     for depth in range(300):
@@ -140,16 +140,16 @@ def test_cases_in_cases(interpreter: str, tmp_path: Path, within: bool) -> None:
     fspa = replace(fspa, signals=(spec.Signal("x", "number", 0.0, 1.0),), atoms=(spec.Atom("p", value),))
     samples = [{"x": sample / 10} for sample in (0, 3, 7, 10)]
     with recursion_room():
-        right = rows(fspa, samples)
+        expected = rows(fspa, samples)
         module = written(fspa, tmp_path)
     status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
-    assert printed(out) == right
+    assert printed(out) == expected
 
 
 @interpreters
 def test_tanh(interpreter: str, tmp_path: Path) -> None:
-    """Newer versions of Lua have none; what the module has in place of it keeps signs and small values."""
+    """Newer versions of Lua have no tanh; the replacement in the module keeps signs and small values."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     atom = spec.Atom("p", Op("tanh", (Signal("x"),)))
     fspa = replace(fspa, signals=(spec.Signal("x", "number", None, None),), atoms=(atom,))
@@ -157,14 +157,14 @@ def test_tanh(interpreter: str, tmp_path: Path) -> None:
     samples = [{"x": sign * size} for size in sizes for sign in (-1.0, 1.0)]
     status, out, _ = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert status == 0
-    for found, right in zip(printed(out), rows(fspa, samples), strict=True):
-        assert found[:5] == right[:5]
-        assert float(found[7]) == pytest.approx(float(right[7]), rel=1e-15, abs=0.0)
+    for row, expected in zip(printed(out), rows(fspa, samples), strict=True):
+        assert row[:5] == expected[:5]
+        assert float(row[7]) == pytest.approx(float(expected[7]), rel=1e-15, abs=0.0)
 
 
 @interpreters
 def test_numbers_are_printed_as_c_prints_them(interpreter: str, tmp_path: Path) -> None:
-    """The robustness of an edge is the value of a signal, to the last digit; ties are rounded to even."""
+    """The robustness of an edge equals the signal to the last digit; ties are rounded to even."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", Signal("x")),))
     values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]

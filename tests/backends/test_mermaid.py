@@ -26,12 +26,12 @@ def emitted(fspa: Fspa) -> str:
 
 
 def words(text: str) -> list[str]:
-    """What Mermaid makes of a text, whose lines may be broken anywhere between words."""
+    """Return the words that Mermaid shows for a text, whatever its line breaks."""
     return unescape(re.sub(r"#(\d+);", r"&#\1;", text.replace("<br/>", " "))).split()
 
 
 def check(fspa: Fspa) -> None:
-    """Every line is one of the few forms that may occur, and each state and arrow drawn stands in exactly one."""
+    """Assert that every line has one of the allowed forms, and that each drawn state and arrow has exactly one line."""
     drawing = shown(fspa)
     lines = emitted(fspa).splitlines()
     assert lines[:2] == ["stateDiagram-v2", "    direction LR"]
@@ -68,8 +68,8 @@ def test_the_diagram_of_cover_and_hide() -> None:
     assert "    class s4 holding\n" in text
 
 
-def test_edges_that_pairs_tell_apart_share_an_arrow_with_the_pairs() -> None:
-    """Of two loops of a state, Mermaid draws one."""
+def test_parallel_edges_share_an_arrow_that_shows_their_pairs() -> None:
+    """Mermaid draws only one of two loops at a state."""
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
     assert [line for line in emitted(fspa).splitlines() if EDGE.fullmatch(line)] == [
         "    s0 --> s0: ¬a#59;<br/>a #91;inf 0#93;",
@@ -90,7 +90,7 @@ def test_runs_are_folded() -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(automata() | infinite_automata())
-def test_automata(fspa: Fspa) -> None:
+def test_random_automata(fspa: Fspa) -> None:
     check(fspa)
 
 

@@ -21,7 +21,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def collect(goals: int) -> Fspa:
-    """Goals in any order: 2^n states, 3^n edges."""
+    """Return an automaton of goals in any order, with 2^n states and 3^n edges."""
     return build(spec_from_formula(and_(*(eventually(atom(f"g{i}")) for i in range(goals))), "collect"))
 
 
@@ -36,7 +36,7 @@ def shown(picture: ET.Element) -> str:
 
 
 def title(element: ET.Element) -> str:
-    """What a tooltip shows and screen readers say."""
+    """Return the title, which tooltips show and screen readers read."""
     return element.findtext(f"{SVG}title") or ""
 
 
@@ -70,7 +70,7 @@ def within_40_steps() -> Fspa:
     return fspa
 
 
-def test_runs_are_folded_and_the_picture_says_so() -> None:
+def test_folded_runs_are_marked_in_the_picture() -> None:
     picture = drawn(within_40_steps(), Options(report=lambda note: pytest.fail(note.title)))
     assert "Dashed: 39 of the 43 states, folded." in shown(picture)
     nodes = [group for group in picture.iter(f"{SVG}g") if group.get("class") == "node"]
@@ -90,7 +90,7 @@ def test_runs_that_count_in_step_are_folded() -> None:
     assert "98 more like these ◇[0,99…2] a ∧ ◇[0,99…2] b" in shown(picture)
 
 
-def test_a_picture_its_states_and_its_edges_have_titles_in_words() -> None:
+def test_a_picture_its_states_and_its_edges_have_titles() -> None:
     picture = drawn(cover_and_hide())
     assert picture.get("role") == "group"
     assert title(picture) == "The automaton of cover_and_hide"
@@ -103,9 +103,9 @@ def test_a_picture_its_states_and_its_edges_have_titles_in_words() -> None:
 
 
 def test_texts_are_centred_in_their_shapes() -> None:
-    """Begun on the left, they would leave them on the right in wider fonts."""
+    """Texts that are aligned to the left would overflow on the right in wider fonts."""
     for group in drawn(cover_and_hide()).iter(f"{SVG}g"):
-        shapes = [extent(each) for each in group if each.get("fill") not in (None, "none") and each.get("stroke")]
+        shapes = [extent(shape) for shape in group if shape.get("fill") not in (None, "none") and shape.get("stroke")]
         for text in group.findall(f"{SVG}text"):
             if group.get("class") != "graph":
                 assert text.get("text-anchor") == "middle"
@@ -114,12 +114,12 @@ def test_texts_are_centred_in_their_shapes() -> None:
 
 
 def extent(shape: ET.Element) -> tuple[float, float]:
-    """Its least and greatest x."""
+    """Return the smallest and largest x of a shape."""
     numbers = re.findall(r"-?\d+(?:\.\d+)?", shape.get("d") or shape.get("points") or shape.get("cx") or "")
     return min(map(float, numbers[::2])), max(map(float, numbers[::2]))
 
 
-def test_without_a_picture_in_time_the_graph_is_whole() -> None:
+def test_the_graph_is_not_folded_if_the_layout_times_out() -> None:
     fspa = within_40_steps()
     files = backends.emit("svg", fspa, Options(layout_limit_s=0.0001))
     assert files == backends.emit("dot", fspa)
@@ -127,38 +127,38 @@ def test_without_a_picture_in_time_the_graph_is_whole() -> None:
     assert "dashed" not in str(text)
 
 
-def test_tangled_graphs_are_sketched_and_that_is_said() -> None:
+def test_a_tangled_graph_is_sketched_with_a_note() -> None:
     notes: list[Diagnostic] = []
     picture = drawn(collect(6), Options(report=notes.append))
     assert [(note.code, note.severity) for note in notes] == [("TLT0711", "note")]
     assert "g0" not in shown(picture)
 
 
-def test_many_edges_are_drawn_without_guards_and_that_is_said() -> None:
+def test_many_edges_are_drawn_without_guards_with_a_note() -> None:
     notes: list[Diagnostic] = []
     picture = drawn(collect(5), Options(report=notes.append))
     assert [(note.code, note.severity) for note in notes] == [("TLT0711", "note")]
     assert "◇g0" in shown(picture)
     assert "¬g0" not in shown(picture)
     titles = [title(group) for group in picture.iter(f"{SVG}g") if group.get("data-source")]
-    assert any(each.endswith(": ¬g0 ∧ ¬g1") for each in titles)
+    assert any(edge_title.endswith(": ¬g0 ∧ ¬g1") for edge_title in titles)
 
 
-def test_without_a_picture_in_time_there_is_the_graph() -> None:
+def test_the_graph_is_emitted_if_the_layout_times_out() -> None:
     notes: list[Diagnostic] = []
     files = backends.emit("svg", cover_and_hide(), Options(layout_limit_s=0.0001, report=notes.append))
     assert files == backends.emit("dot", cover_and_hide())
     assert [(note.code, note.help) for note in notes] == [("TLT0711", "other tools may draw it")]
 
 
-def test_what_the_layout_complains_of_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_of_the_layout_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(layout, "graph", lambda *_, **__: "digraph {")
     with pytest.raises(TltlError) as caught:
         backends.emit("svg", cover_and_hide())
     assert [error.code for error in caught.value.diagnostics] == ["TLT0712"]
 
 
-def test_a_missing_component_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pygraphviz", None)
     with pytest.raises(TltlError) as caught:
         backends.emit("svg", cover_and_hide())

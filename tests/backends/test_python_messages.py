@@ -1,4 +1,4 @@
-"""How messages about traces begin, in CSV and in JSON lines: with the line or the step, as `docs/traces.md` says."""
+"""Messages about traces in CSV and JSON lines begin with the line or the step, as `docs/traces.md` says."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 
 @pytest.mark.parametrize("name", backends.targets())
-def test_every_target_says_what_it_is_and_emits_files_of_that_kind(name: str) -> None:
+def test_every_target_emits_files_with_its_endings(name: str) -> None:
     target = backends.target(name)
     assert target.name == name
     files = backends.emit(name, cover_and_hide())
@@ -32,7 +32,7 @@ def test_output_is_the_same_for_the_same_input(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "way_out"), [("jsn", "did you mean `json`?"), ("cobol", "there are: "), ("", "there are")]
 )
-def test_an_unknown_target_is_an_error_with_a_way_out(name: str, way_out: str) -> None:
+def test_an_unknown_target_is_an_error_with_a_suggestion(name: str, way_out: str) -> None:
     with pytest.raises(TltlError) as caught:
         backends.emit(name, cover_and_hide())
     (error,) = caught.value.diagnostics
@@ -41,13 +41,13 @@ def test_an_unknown_target_is_an_error_with_a_way_out(name: str, way_out: str) -
 
 
 @pytest.mark.parametrize("name", ["artefact", "drawing", "json.decoder", "..pipeline", "os"])
-def test_a_module_that_is_no_target_cannot_be_named_as_one(name: str) -> None:
+def test_only_targets_can_be_loaded_by_name(name: str) -> None:
     with pytest.raises(TltlError):
         backends.emit(name, cover_and_hide())
 
 
 @pytest.mark.parametrize("name", ["../../evil", "a b", "a.b", "", "naïve"])
-def test_a_name_that_would_not_name_a_file_is_refused(name: str) -> None:
+def test_a_name_that_is_no_plain_file_name_is_rejected(name: str) -> None:
     with pytest.raises(ValueError, match="plain name"):
         backends.emit("dot", replace(cover_and_hide(), name=name))
 

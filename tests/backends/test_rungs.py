@@ -1,4 +1,4 @@
-"""Ladders of runs that count in step: what is folded agrees, and nothing of the automaton is lost."""
+"""Several runs that count down together fold like a ladder: folded states agree, and no edge is lost."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ IN_STEP = (
 
 
 def in_step() -> st.SearchStrategy[Fspa]:
-    """Automata of formulas with several bounds, mostly of one length."""
+    """Automata of formulas with several bounds, mostly of equal length."""
     bounds = st.integers(3, 9).flatmap(lambda n: st.tuples(st.just(n), st.sampled_from([n, n, n + 2])))
     return st.builds(
         lambda text, bounds: automaton(text.format(n=bounds[0], m=bounds[1])), st.sampled_from(IN_STEP), bounds
@@ -37,7 +37,7 @@ GUARDS = [Guard(name, (((index, True),),)) for index, name in enumerate("pqrs")]
 
 @st.composite
 def ladders(draw: st.DrawFn) -> Fspa:
-    """Rungs of three states, which go on in their own run or in another, and a few things that are different."""
+    """Rungs of three states, whose edges lead to the same run or to another one, with a few irregularities."""
     rungs = draw(st.integers(4, 9))
     ways = st.permutations(range(3)).flatmap(lambda way: st.integers(1, 3).map(lambda length: way[:length]))
     ahead = {0: [0, 1, 2], 1: draw(ways), 2: draw(ways)}
@@ -62,7 +62,7 @@ ANY = in_step() | ladders() | counting() | endless() | chains() | automata() | i
 
 
 @given(ANY)
-def test_every_edge_is_drawn_or_is_one_along_a_run(fspa: Fspa) -> None:
+def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
     drawing = folded_in_step(fspa)
     fspa = marked(fspa)
     first = {state.id: run for run, states in drawing.folded.items() for state in states}
@@ -79,12 +79,12 @@ def test_every_edge_is_drawn_or_is_one_along_a_run(fspa: Fspa) -> None:
         for end in targets[source, edge.guard]:
             if end == target:
                 break
-            if source == target:  # along a run, which leads to its end
+            if source == target:  # an edge along a run, drawn as an edge to the end of the run
                 assert end not in drawing.folded
                 break
-            # From the last inner rung to the one behind it.
+            # An edge from the last inner rung to the rung after it.
             if end in drawing.folded and edge.target in {
-                each.target for each in fspa.edges if each.source == drawing.folded[end][-1].id
+                way.target for way in fspa.edges if way.source == drawing.folded[end][-1].id
             }:
                 break
         else:
@@ -92,7 +92,7 @@ def test_every_edge_is_drawn_or_is_one_along_a_run(fspa: Fspa) -> None:
 
 
 @given(ANY)
-def test_states_that_are_folded_agree(fspa: Fspa) -> None:
+def test_folded_states_agree(fspa: Fspa) -> None:
     drawing = folded_in_step(fspa)
     fspa = marked(fspa)
     inner = {state.id for run in drawing.folded.values() for state in run}
@@ -104,25 +104,25 @@ def test_states_that_are_folded_agree(fspa: Fspa) -> None:
         assert len({(state.verdict, state.accepting, frozenset(guards[state.id])) for state in run}) == 1
 
 
-def test_ladders_of_the_tests_are_folded() -> None:
+def test_some_random_ladder_is_folded() -> None:
     assert folded_in_step(find(ladders(), lambda fspa: len(folded_in_step(fspa).folded) == 3))
 
 
 @given(counting() | in_step())
-def test_at_least_what_a_run_alone_would_fold_is_folded(fspa: Fspa) -> None:
+def test_folding_ladders_draws_no_more_states_than_folding_runs(fspa: Fspa) -> None:
     assert len(folded_in_step(fspa).states) <= len(folded(fspa).states)
 
 
 @given(ANY)
-def test_pictures_show_what_leaves_fewer_states_and_say_how_many_are_folded(fspa: Fspa) -> None:
+def test_pictures_use_the_drawing_with_fewer_states_and_count_the_folded_ones(fspa: Fspa) -> None:
     drawing = shown(fspa)
-    ways = [folded(fspa), folded_in_step(fspa)]
-    assert drawing in ways
-    assert len(drawing.states) == min(len(each.states) for each in ways)
+    drawings = [folded(fspa), folded_in_step(fspa)]
+    assert drawing in drawings
+    assert len(drawing.states) == min(len(candidate.states) for candidate in drawings)
     hidden = len(fspa.states) - len(drawing.states)
-    said = [note for note in notes(fspa, drawing) if note.startswith("Dashed")]
+    dashed_notes = [note for note in notes(fspa, drawing) if note.startswith("Dashed")]
     inside = hidden + len(drawing.folded)
-    assert said == ([f"Dashed: {inside} of the {len(fspa.states)} states, folded."] if hidden else [])
+    assert dashed_notes == ([f"Dashed: {inside} of the {len(fspa.states)} states, folded."] if hidden else [])
 
 
 @pytest.mark.parametrize(
@@ -135,12 +135,12 @@ def test_pictures_show_what_leaves_fewer_states_and_say_how_many_are_folded(fspa
         ("G(a -> F[0,9] b) & G(b -> F[0,9] c)", [], 56),
     ],
 )
-def test_how_much_is_folded(formula: str, inner: list[int], states: int) -> None:
+def test_the_number_of_folded_states(formula: str, inner: list[int], states: int) -> None:
     drawing = folded_in_step(automaton(formula))
     assert [len(run) for run in drawing.folded.values()] == inner
     assert len(drawing.states) == states
 
 
 @pytest.mark.parametrize("formula", ["F[0,40] a", "G[0,12] a", "G(a -> G[0,10] b)", "F a & F b"])
-def test_a_run_alone_is_folded_as_ever(formula: str) -> None:
+def test_a_single_run_is_folded_as_without_ladders(formula: str) -> None:
     assert folded_in_step(automaton(formula)) == folded(automaton(formula))

@@ -1,4 +1,4 @@
-"""The generated Rust is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the rest."""
+"""The generated Rust agrees with :class:`tltlc.monitor.Monitor`, whatever the names; the corpus tests more."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
             assert programs.run((number, trace_of(samples, [name, "health"]))) == [expected(fspa, samples)]
 
 
-def test_hostile_names_stay_apart(tmp_path: Path) -> None:
-    """Every atom is its own signal; awkward names, and all names of the file itself."""
+def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
+    """Each atom reads a signal of the same name; the names are awkward ones, and all words of the generated file."""
     own = re.findall(r"\w+", written(cover_and_hide(), tmp_path))
     names = [name for name in dict.fromkeys([*NAMES, *own]) if "\0" not in name]
     atoms = [f"v{index}" for index in range(len(names))]
@@ -146,7 +146,7 @@ def test_library(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("edition", ["2018", "2021"])
 def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
-    """Alone, or with the functions that `core` does not have; in crates that ask for much."""
+    """With and without functions that `core` lacks, in crates that deny many lints."""
     x = Signal("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
     written(replace(one_atom(value, spec.Signal("x", "number", None, None)), name="much"), tmp_path)
@@ -160,7 +160,7 @@ def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
     assert (tmp_path / "libbare.rlib").stat().st_size > 0
 
 
-def test_a_sample_of_which_nothing_is_read(tmp_path: Path) -> None:
+def test_a_monitor_that_reads_no_signal(tmp_path: Path) -> None:
     fspa = one_atom(Const(0.5), spec.Signal("open", "bool", 0.0, 1.0))
     fspa = replace(fspa, name="blind", atoms=(replace(fspa.atoms[0], doc="Of each sample.  The same."),))
     written(fspa, tmp_path)
@@ -172,7 +172,7 @@ def test_a_sample_of_which_nothing_is_read(tmp_path: Path) -> None:
 @pytest.mark.skipif(not shutil.which("rustdoc"), reason="there is no rustdoc here")
 @pytest.mark.parametrize("text", ["~~~ " + "x " * 60, "``` " + "x " * 60, "```", "~~~", "<script>alert(1)</script>"])
 def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
-    """Code in it would be run by the tests of a host, HTML by readers."""
+    """Code in the documentation would run in the doctests of a host crate, and HTML in the browser."""
     fspa = cover_and_hide()
     fspa = replace(
         fspa,
@@ -196,16 +196,16 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
 
 
 def test_program_of_any_edition(tmp_path: Path) -> None:
-    """With all that `core` does not have."""
+    """The program uses every function that `core` lacks."""
     x = Signal("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
     fspa = one_atom(value, spec.Signal("x", "number", None, None))
     written(fspa, tmp_path)
     for edition in ("2015", "2018", "2021"):
         compiled(tmp_path, "--cfg", "tltl_main", "--emit", "metadata", f"{fspa.name}_monitor.rs", edition=edition)
-        made = tmp_path / f"lib{fspa.name}_monitor.rmeta"
-        assert made.exists()
-        made.unlink()
+        library = tmp_path / f"lib{fspa.name}_monitor.rmeta"
+        assert library.exists()
+        library.unlink()
 
 
 NUMBERS = r"""
@@ -220,8 +220,8 @@ fn main() {
 """
 
 
-def test_decimals_are_those_of_c(tmp_path: Path) -> None:
-    """Halves of the last digit, powers of two and ten."""
+def test_decimals_agree_with_c(tmp_path: Path) -> None:
+    """Ties in the last digit, and powers of two and ten."""
     values = [0.5**power for power in range(0, 1075, 7)] + [10.0**power for power in range(-323, 309)]
     values += [(2 * odd + 1) / 2.0**power for power in range(1, 60) for odd in (3, 5461, 131071, 200003)]
     values += [-numerator / 97 for numerator in range(98)] + [5e-324, 0.0, -0.0]

@@ -35,17 +35,17 @@ def accepts(document: Any) -> bool:
     return True
 
 
-def test_the_validator_is_the_one_that_the_schema_gives() -> None:
+def test_the_validator_is_up_to_date_with_the_schema() -> None:
     assert (FOLDER / "validator.py").read_text(encoding="utf-8") == validator_source()
 
 
-def test_the_schema_is_a_schema() -> None:
+def test_the_schema_is_valid() -> None:
     jsonschema.Draft7Validator.check_schema(SCHEMA)
 
 
 @settings(max_examples=30, deadline=None)
 @given(automata() | infinite_automata())
-def test_what_the_compiler_makes_fits(fspa: Fspa) -> None:
+def test_compiled_automata_match_the_schema(fspa: Fspa) -> None:
     document = encode(fspa)
     assert accepts(document)
     assert REFERENCE.is_valid(json.loads(json.dumps(document)))
@@ -104,7 +104,7 @@ def test_both_validators_agree_on_damaged_artefacts(
         {"otherwise": {"const": 1}},
     ],
 )
-def test_expressions_that_mean_nothing_are_refused(expression: dict[str, Any]) -> None:
+def test_meaningless_expressions_are_rejected(expression: dict[str, Any]) -> None:
     document = copy.deepcopy(DOCUMENT)
     document["atoms"][0]["expression"] = expression
     assert not accepts(document)
@@ -112,7 +112,7 @@ def test_expressions_that_mean_nothing_are_refused(expression: dict[str, Any]) -
 
 
 @pytest.mark.parametrize(("index", "semantics"), [(0, "infinite"), (1, "finite")])
-def test_pairs_are_there_over_infinite_traces_and_only_then(index: int, semantics: str) -> None:
+def test_an_artefact_has_pairs_only_over_infinite_traces(index: int, semantics: str) -> None:
     document = {**DOCUMENTS[index], "semantics": semantics}
     assert not accepts(document)
     assert not REFERENCE.is_valid(document)
@@ -149,7 +149,7 @@ def test_errors_are_in_plain_words(path: tuple[str | int, ...], value: object, t
 
 @settings(max_examples=200, deadline=None)
 @given(st.sampled_from(PLACES), st.sampled_from(WRONG))
-def test_every_error_has_words(place: tuple[int, tuple[str | int, ...]], wrong: object) -> None:
+def test_every_error_is_in_plain_words(place: tuple[int, tuple[str | int, ...]], wrong: object) -> None:
     index, path = place
     document = copy.deepcopy(DOCUMENTS[index])
     parent = document

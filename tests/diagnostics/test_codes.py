@@ -11,6 +11,6 @@ def test_codes_are_in_order_and_have_titles() -> None:
 
 
 @pytest.mark.parametrize("code", ["TLT9999", "", "../codes", "tlt0101"])
-def test_what_is_no_code(code: str) -> None:
+def test_an_unknown_code_is_an_error(code: str) -> None:
     with pytest.raises(KeyError):
         page(code)

@@ -1,4 +1,4 @@
-"""Runs programs as they are meant, so that no language's own ways hide what a program says."""
+"""Interpret programs directly, so that the peculiarities of no target language hide a mistake in a program."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class NoValueError(Exception):
 
 
 class Scope:
-    """Variables, which are declared once, and given a value before they are read."""
+    """Variables; each is declared once, and assigned before it is read."""
 
     def __init__(self, values: Mapping[str, Value]) -> None:
         self.values = dict(values)
@@ -87,7 +87,7 @@ class Scope:
 def step(
     program: Program, state: int, steps: int, best: float, done: bool, atoms: Mapping[str, float]
 ) -> dict[str, Value]:
-    """What a step computes from the values of the atoms; ``steps`` counts it."""
+    """Return the variables after a step on the values of the atoms; ``steps`` is the number of this step."""
     scope = Scope(atoms)
     scope.changing |= {"target", "robustness", "progress", "limiting", "best", "reward", "done"}
     scope.run(program.states[state])

@@ -1,4 +1,4 @@
-"""The program of a monitor decides comparisons as exact ones do, and what is sure of their ranges is."""
+"""The program of a monitor decides comparisons exactly, and the ranges that it proves are correct."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tltlc.resolve.values import constant
 
 @settings(max_examples=1000, deadline=None)
 @given(THREE, FINITE)
-def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float], x: float) -> None:
+def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
     side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
     for is_above, possible in ((True, threshold < high), (False, low < threshold)):
@@ -30,7 +30,7 @@ def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float],
         for number in [*around(threshold, low, high), min(max(x, low), high)]:
             scope = Scope({"x": number})
             scope.run(defined("value", statements))
-            found = scope.values["value"]
+            value = scope.values["value"]
             exact = Fraction(number) > Fraction(threshold) if is_above else Fraction(number) < Fraction(threshold)
-            assert (found > 0.0) == exact
-            assert range_ is None or range_.low <= found <= range_.high
+            assert (value > 0.0) == exact
+            assert range_ is None or range_.low <= value <= range_.high

@@ -1,4 +1,4 @@
-"""What is said to be sure of numbers is true of all that a monitor can meet."""
+"""The proven ranges of numbers hold for every value that a monitor can meet."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ KNOWN = {"s1": within(0.0, None), "health": Range(0.0, 1.0), "size": Range(2.0, 
 S1, HEALTH, SIZE = Signal("distance(s1)"), Signal("health"), Param("level_size")
 
 
-def of(expression: Expression) -> tuple[tuple[Statement, ...], tuple[Statement, ...], Range | None]:
-    """Statements as they come, the same with what is sure, and the range of the value."""
+def proved(expression: Expression) -> tuple[tuple[Statement, ...], tuple[Statement, ...], Range | None]:
+    """Return the plain statements, the statements simplified by the proven ranges, and the range of the value."""
     arithmetic = Arithmetic({"distance(s1)": "s1", "health": "health"}, {"level_size": "size"}, "t")
     statements = arithmetic.assigned("value", expression)
-    written, range_ = proven("value", statements, KNOWN)
-    return defined("value", statements), defined("value", written), range_
+    simplified, range_ = proven("value", statements, KNOWN)
+    return defined("value", statements), defined("value", simplified), range_
 
 
 def quotient(x: Expression, y: Expression) -> Op:
@@ -72,10 +72,12 @@ way = When(
 @example(way, math.nextafter(2.0, 0.0), 0.0, 2.0)
 @example(way, 1.0, 0.0, 3.0)
 def test_values_are_the_same_and_in_their_range(expression: Expression, s1: float, health: float, size: float) -> None:
-    statements, written, range_ = of(expression)
-    # A division that is not sure would end the test.
-    value, right = run(written, s1, health, size), run(statements, s1, health, size)
-    assert value == right or (value is not None and right is not None and math.isnan(value) and math.isnan(right))
+    statements, simplified, range_ = proved(expression)
+    # A division by zero that is wrongly proven safe would fail the test.
+    value, expected = run(simplified, s1, health, size), run(statements, s1, health, size)
+    assert value == expected or (
+        value is not None and expected is not None and math.isnan(value) and math.isnan(expected)
+    )
     if range_ is not None and value is not None:
         assert range_.low <= value <= range_.high
 
@@ -99,68 +101,68 @@ def test_values_are_the_same_and_in_their_range(expression: Expression, s1: floa
     ],
 )
 def test_ranges(expression: Expression, range_: Range | None) -> None:
-    assert of(expression)[2] == range_
+    assert proved(expression)[2] == range_
 
 
-def test_a_test_tells_of_what_it_compares() -> None:
+def test_a_condition_narrows_the_range_of_what_it_compares() -> None:
     bearing = Op("abs", (less(HEALTH, Const(0.5)),))
-    for test, sure in (
+    for condition, narrows in (
         (Condition("<", (bearing, Const(0.25))), True),
         (Condition("not", (Condition(">=", (bearing, Const(0.25))),)), True),
         (Condition("and", (Condition(">", (S1, Const(3.0))), Condition("<=", (bearing, Const(0.25))))), True),
         (Condition("or", (Condition(">", (S1, Const(3.0))), Condition("<=", (bearing, Const(0.25))))), False),
         (Condition(">", (bearing, Const(0.25))), False),
     ):
-        _, _, range_ = of(When(((test, Op("*", (Const(4.0), bearing))),), Const(0.0)))
+        _, _, range_ = proved(When(((condition, Op("*", (Const(4.0), bearing))),), Const(0.0)))
         assert range_ is not None
         assert range_.low == 0.0
-        assert (range_.high <= 1.0) == sure
+        assert (range_.high <= 1.0) == narrows
 
 
-def test_a_divisor_is_sure_only_where_the_test_holds() -> None:
-    for test in (Condition(">", (HEALTH, Const(0.0))), Condition(">=", (HEALTH, Const(1e-9)))):
-        _, written, _ = of(When(((test, quotient(S1, HEALTH)),), Const(0.0)))
-        assert "divide" not in called(written)
-        _, written, _ = of(When(((test, Const(0.0)),), quotient(S1, HEALTH)))
-        assert "divide" in called(written)
+def test_a_divisor_is_safe_only_where_the_condition_holds() -> None:
+    for condition in (Condition(">", (HEALTH, Const(0.0))), Condition(">=", (HEALTH, Const(1e-9)))):
+        _, simplified, _ = proved(When(((condition, quotient(S1, HEALTH)),), Const(0.0)))
+        assert "divide" not in called(simplified)
+        _, simplified, _ = proved(When(((condition, Const(0.0)),), quotient(S1, HEALTH)))
+        assert "divide" in called(simplified)
 
 
-def test_predicates_of_the_examples_are_sure() -> None:
+def test_predicates_of_the_examples_are_proven_safe() -> None:
     for name in ("navigation", "cover_and_hide", "branching"):
         for fspa in compile_file(ROOT / f"examples/{name}.tltl"):
-            made = program(fspa, [])
-            assert all(made.sure)
-            assert not any(called(value) & {"divide"} for value in made.values)
+            result = program(fspa, [])
+            assert all(result.sure)
+            assert not any(called(value) & {"divide"} for value in result.values)
 
 
 @pytest.mark.parametrize("part", [Op("/", (Const(1.0), Signal("x"))), Op("exp", (Signal("x"),))])
-def test_what_has_no_value_in_a_test_is_not_sure(part: Expression) -> None:
-    """A sample is refused, whatever the branches give."""
+def test_a_condition_that_may_have_no_value_is_not_safe(part: Expression) -> None:
+    """The sample is an error, whatever the branches are."""
     value = When(((Condition(">", (part, Const(2.0))), Const(0.5)),), Const(-0.5))
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     signals = (spec.Signal("x", "number", None, None),)
     assert program(replace(fspa, signals=signals, atoms=(spec.Atom("p", value),)), ()).sure == (False,)
 
 
-def test_where_atoms_are_computed() -> None:
+def test_an_atom_is_computed_only_in_the_state_that_needs_it() -> None:
     formula = f.eventually(f.and_(f.atom("a"), f.next_(f.eventually(f.and_(f.atom("b"), f.atom("c"))))))
     fspa = build(spec_from_formula(formula))
     only_in = dict(zip((atom.name for atom in fspa.atoms), program(fspa, []).only_in, strict=True))
     assert only_in == {"a": 0, "b": 1, "c": 1}
-    # An error or notice would be missed.
+    # Atoms that may report an error or a notice are computed in every state.
     atoms = tuple(replace(atom, expression=Op("*", (Const(2.0), atom.expression))) for atom in fspa.atoms)
-    made = program(replace(fspa, atoms=atoms), [])
-    assert made.sure == (False,) * 3
-    assert made.only_in == (None,) * 3
+    result = program(replace(fspa, atoms=atoms), [])
+    assert result.sure == (False,) * 3
+    assert result.only_in == (None,) * 3
     # Atoms that exclude each other are compared at each step.
     numbers = {atom.name: place for place, atom in enumerate(fspa.atoms)}
-    for group, left in (("bc", {"a": 0}), ("b", {"a": 0, "b": 1, "c": 1})):
-        made = program(replace(fspa, exclusive=(tuple(sorted(numbers[name] for name in group)),)), [])
-        assert {name: made.only_in[numbers[name]] for name in "abc"} == {**dict.fromkeys("abc"), **left}
+    for group, remaining in (("bc", {"a": 0}), ("b", {"a": 0, "b": 1, "c": 1})):
+        result = program(replace(fspa, exclusive=(tuple(sorted(numbers[name] for name in group)),)), [])
+        assert {name: result.only_in[numbers[name]] for name in "abc"} == {**dict.fromkeys("abc"), **remaining}
 
 
-def test_where_bools_are_read() -> None:
-    """Where one state's atoms alone are computed from them, there: no other state spends time on that."""
+def test_a_bool_is_read_only_in_the_state_that_needs_it() -> None:
+    """If only the atoms of one state are computed from a bool, no other state reads it."""
     a, b = f.atom("a"), f.atom("b")
     then, together = f.eventually(f.and_(a, f.next_(f.eventually(b)))), f.eventually(f.and_(a, b))
     for formula, of_a, of_b, read_in in (
@@ -171,26 +173,26 @@ def test_where_bools_are_read() -> None:
         fspa = build(spec_from_formula(formula))
         signals = tuple(spec.Signal(name, "bool", None, None) for name in "xyz")
         atoms = (spec.Atom("a", Signal(of_a)), spec.Atom("b", Signal(of_b)))
-        made = program(replace(fspa, signals=signals, atoms=atoms), [])
-        assert made.read_in == read_in
-        assert made.reads_sample
+        result = program(replace(fspa, signals=signals, atoms=atoms), [])
+        assert result.read_in == read_in
+        assert result.reads_sample
         for place in (None, 0, 1):
             expected = [name for name, only in zip("xyz", read_in, strict=True) if only == place]
-            assert made.bools_read_in(place) == expected
+            assert result.bools_read_in(place) == expected
     unread = replace(fspa, signals=signals, atoms=(spec.Atom("a", Const(0.5)), spec.Atom("b", Const(0.5))))
     assert not program(unread, []).reads_sample
 
 
-def test_what_no_state_reads_is_not_computed() -> None:
+def test_an_atom_that_no_state_reads_is_not_computed() -> None:
     fspa = build(spec_from_formula(f.eventually(f.atom("a"))))
     unread = replace(fspa, atoms=(*fspa.atoms, spec.Atom("more", Const(0.5))))
-    made = program(unread, [])
-    assert made.only_in == (0, -1)
-    assert made.values[1] == ()
+    result = program(unread, [])
+    assert result.only_in == (0, -1)
+    assert result.values[1] == ()
 
 
 @pytest.mark.parametrize("depth", [30, 300])
-def test_deep_predicates_take_no_longer_than_they_are(depth: int) -> None:
+def test_work_is_linear_in_the_depth_of_a_predicate(depth: int) -> None:
     expression: Expression = S1
     for step in range(depth):
         case = Condition("<", (S1, Const(float(step))))
@@ -198,7 +200,7 @@ def test_deep_predicates_take_no_longer_than_they_are(depth: int) -> None:
 
     def bounded() -> None:
         with recursion_room():
-            _, _, range_ = of(expression)
+            _, _, range_ = proved(expression)
         assert range_ is not None
 
     # Measured: 520.

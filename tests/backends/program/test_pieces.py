@@ -27,11 +27,11 @@ def test_short_items_share_lines_and_stay_whole() -> None:
 
 
 @pytest.mark.parametrize("items", [[], ["1", "2"], ["x" * 60]])
-def test_few_items_stand_on_one_line(items: list[str]) -> None:
+def test_few_items_share_one_line(items: list[str]) -> None:
     assert Printer.items(items) == ", ".join(items)
 
 
-def test_long_items_have_lines_of_their_own() -> None:
+def test_long_items_have_separate_lines() -> None:
     assert Printer.items(["x" * 50, "y", "z" * 50]) == f"\n    {'x' * 50},\n    y,\n    {'z' * 50},\n"
 
 
@@ -60,7 +60,7 @@ def test_fields_are_described(name: str, of: spec.Signal | spec.Param, text: str
 
 
 @pytest.mark.parametrize("target", ["c", "csharp", "gdscript", "gdscript3", "javascript", "lua", "rust"])
-def test_a_text_stands_beside_the_range_in_every_language(target: str) -> None:
+def test_the_doc_comes_before_the_range_in_every_language(target: str) -> None:
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     fspa = replace(
         fspa,

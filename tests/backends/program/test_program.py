@@ -49,7 +49,7 @@ def expected(expression: Expression, s1: float, health: float, size: float) -> f
 def same(x: float | str, y: float | str) -> bool:
     if isinstance(x, float) and isinstance(y, float):
         return (math.isnan(x) and math.isnan(y)) or (x == y and math.copysign(1, x) == math.copysign(1, y))
-    # Which of several parts without a value is met first is left to the order of the statements.
+    # If several parts have no value, the order of the statements decides which error comes first.
     return isinstance(x, str) == isinstance(y, str)
 
 
@@ -58,11 +58,13 @@ values = st.floats(-4, 4) | st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e300])
 
 @settings(max_examples=300, deadline=None)
 @given(expressions(), values, values, values)
-def test_expressions_come_to_the_same_number(expression: Expression, s1: float, health: float, size: float) -> None:
+def test_expressions_have_the_value_of_the_evaluator(
+    expression: Expression, s1: float, health: float, size: float
+) -> None:
     assert same(computed(expression, s1, health, size), expected(expression, s1, health, size))
 
 
-def test_what_is_not_needed_is_not_computed() -> None:
+def test_operands_are_computed_only_where_they_are_needed() -> None:
     x = Signal("health")
     quotient = Op("/", (Const(1.0), x))
     inside = When(((Condition(">", (quotient, Const(2.0))), Const(1.0)),), Const(0.0))
@@ -77,7 +79,7 @@ def test_what_is_not_needed_is_not_computed() -> None:
 
 
 def _depth(statement: Statement) -> int:
-    """How deep brackets nest at most in the text of a statement."""
+    """Return the maximal nesting depth of brackets in the text of a statement."""
     text, depth, deepest = Printer().lines([statement])[0], 0, 0
     for character in text:
         depth += {"(": 1, ")": -1}.get(character, 0)
@@ -85,7 +87,7 @@ def _depth(statement: Statement) -> int:
     return deepest
 
 
-def test_deep_expressions_are_cut() -> None:
+def test_deep_expressions_are_split() -> None:
     deep: Expression = Signal("health")
     for _ in range(200):
         deep = Op("+", (Const(1.0), Op("abs", (deep,))))
@@ -97,40 +99,40 @@ def test_deep_expressions_are_cut() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(automata() | infinite_automata(), st.data())
-def test_steps_are_those_of_the_monitor(fspa: Fspa, data: st.DataObject) -> None:
+def test_steps_agree_with_the_monitor(fspa: Fspa, data: st.DataObject) -> None:
     limit = data.draw(st.none() | st.integers(1, 5))
     fspa = replace(fspa, limit_steps=limit, judge=data.draw(st.sampled_from(("goal", "limit"))))
-    made = program(fspa, ())
+    result = program(fspa, ())
     monitor = Monitor(fspa)
     state, best, done = 0, 0.0, False
     for number in range(1, 8):
         letter = data.draw(st.sampled_from(letters(fspa)))
         sample = [(1 if holds else -1) * data.draw(st.sampled_from([1.0, 0.5, 0.25])) for holds in letter]
         sample = [0.0 if value == -0.25 else value for value in sample]
-        found = step(made, state, number, best, done, dict(zip(made.atoms, sample, strict=True)))
+        computed_ = step(result, state, number, best, done, dict(zip(result.atoms, sample, strict=True)))
         row = monitor.step_atoms(sample)
-        limiting = None if found["limiting"] < 0 else fspa.atoms[int(found["limiting"])].name
-        state, best, done = int(found["target"]), float(found["best"]), bool(found["done"])
+        limiting = None if computed_["limiting"] < 0 else fspa.atoms[int(computed_["limiting"])].name
+        state, best, done = int(computed_["target"]), float(computed_["best"]), bool(computed_["done"])
         assert (state, best, done) == (row.state, row.progress, row.done)
-        assert (found["reward"], found["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
+        assert (computed_["reward"], computed_["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
 
 
 @given(st.lists(st.floats(-1, 1) | st.sampled_from([0.0, -0.0, 0.5]), min_size=4, max_size=4))
 def test_robustness_is_written_with_as_few_literals_as_possible(sample: list[float]) -> None:
-    """Staying takes four primes of two literals, or two clauses of two."""
+    """The guard of the loop has four primes of two literals, or two clauses of two."""
     a, b, c, d = map(f.atom, "abcd")
     fspa = build(spec_from_formula(f.eventually(f.or_(f.and_(a, b), f.and_(c, d)))))
-    made = program(fspa, ())
-    (branch,) = made.states[0]
+    result = program(fspa, ())
+    (branch,) = result.states[0]
     assert isinstance(branch, If)
     for body in (branch.cases[0][1], branch.otherwise):
         (robustness,) = (line.value for line in body if isinstance(line, Assign) and line.name == ROBUSTNESS)
         assert sum(isinstance(part, Variable) for part in parts([robustness])) == 4
-    found = step(made, 0, 1, 0.0, False, dict(zip(made.atoms, sample, strict=True)))
-    assert found["robustness"] == Monitor(fspa).step_atoms(sample).robustness
+    computed_ = step(result, 0, 1, 0.0, False, dict(zip(result.atoms, sample, strict=True)))
+    assert computed_["robustness"] == Monitor(fspa).step_atoms(sample).robustness
 
 
-def test_no_name_of_a_specification_is_a_temporary() -> None:
+def test_temporaries_avoid_the_names_of_a_specification() -> None:
     names = ("t", "t_1", "t 2", "t2_1", "t_")
     square = Op("^", (Op("+", (Signal("t"), Const(1.0))), Const(2.0)))
     fspa = replace(
@@ -138,24 +140,24 @@ def test_no_name_of_a_specification_is_a_temporary() -> None:
         signals=tuple(spec.Signal(name, "number", None, None) for name in names),
         atoms=(spec.Atom("a", square),),
     )
-    made = program(fspa, ())
-    declared = [statement.name for statement in made.values[0] if isinstance(statement, Declare)]
+    result = program(fspa, ())
+    declared = [statement.name for statement in result.values[0] if isinstance(statement, Declare)]
     assert declared == ["t3_1"]
-    assert len({*made.signals, *made.atoms, *declared}) == 7
+    assert len({*result.signals, *result.atoms, *declared}) == 7
 
 
 @settings(max_examples=60, deadline=None)
 @given(automata() | infinite_automata(), st.sampled_from(("goal", "limit")))
-def test_what_is_declared_is_read(fspa: Fspa, judge: spec.Judge) -> None:
+def test_every_declared_variable_is_read(fspa: Fspa, judge: spec.Judge) -> None:
     for statements in program(replace(fspa, judge=judge), ()).states:
         assert _declared(statements) <= read(statements)
 
 
 def _declared(statements: Iterable[Statement]) -> set[str]:
-    found: set[str] = set()
+    names: set[str] = set()
     for statement in statements:
         if isinstance(statement, Declare):
-            found.add(statement.name)
+            names.add(statement.name)
         elif isinstance(statement, If):
-            found |= _declared(statement.otherwise).union(*(_declared(body) for _, body in statement.cases))
-    return found
+            names |= _declared(statement.otherwise).union(*(_declared(body) for _, body in statement.cases))
+    return names

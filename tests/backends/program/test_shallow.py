@@ -16,7 +16,7 @@ def greatest(terms: Iterable[Expression]) -> Expression:
 
 
 def depth(line: str) -> int:
-    """How deep brackets nest."""
+    """Return the nesting depth of the brackets."""
     return max(accumulate((character == "(") - (character == ")") for character in line))
 
 
@@ -26,19 +26,19 @@ def test_values_stay_the_same() -> None:
     deep = Call("min", (Negate(greatest(numbers[:150])), Call("min", (Real(0.5), greatest(numbers)))))
     statements = [If(((Bool(True), (Declare("x", "real", deep), Assign("y", Negate(Variable("x"))))),))]
     cut = shallow(statements)
-    found, right = Scope({}), Scope({})
-    found.run([Declare("y", "real", None, changes=True), *cut])
-    right.run([Declare("y", "real", None, changes=True), *statements])
-    assert found.values["y"] == right.values["y"]
+    actual, expected = Scope({}), Scope({})
+    actual.run([Declare("y", "real", None, changes=True), *cut])
+    expected.run([Declare("y", "real", None, changes=True), *statements])
+    assert actual.values["y"] == expected.values["y"]
     assert max(map(depth, Printer().lines(cut))) <= 32
 
 
-def test_what_is_shallow_stays_as_it_is() -> None:
+def test_shallow_statements_are_unchanged() -> None:
     statements: list[Statement] = [Assign("x", Call("min", (Real(1.0), Negate(Real(2.0)))))]
     assert shallow(statements) == tuple(statements)
 
 
-def test_new_names_are_no_other_ones() -> None:
+def test_new_names_avoid_existing_ones() -> None:
     statements = [Assign("x", greatest(Variable(f"part{number}") for number in range(70)))]
     cut = shallow(statements, [f"part{number}" for number in range(70)])
     assert [line.name for line in cut if isinstance(line, Declare)] == ["part_1", "part_2"]
