@@ -1,4 +1,4 @@
-"""Automata written by hand, for tests that must not depend on the construction."""
+"""Handwritten automata, for tests that must not depend on the construction."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def cover_and_hide() -> Fspa:
 
 
 def near(distance: str, close: float = 1.0, far: str = "level_size") -> Expression:
-    """Eq. 2 of the paper: 1 at the target, 0 at ``close``, -1 from ``far`` on."""
+    """Closeness, Eq. 2 of the paper: 1 at the target, 0 at distance ``close``, -1 from distance ``far`` on."""
     d, reach, one = Signal(distance), Param(far), Const(1.0)
     share = Op("/", (Op("-", (reach, d)), Op("-", (reach, Const(close)))))
     return When(
@@ -87,7 +87,10 @@ def _advance(goal: int, name: str) -> Guard:
 
 
 def _stay(goal: int, name: str) -> Guard:
-    """Alive and not at the goal; the primes with the other two buttons come from their exclusivity."""
-    others = [((other, True), (3, True)) for other in range(3) if other != goal]
-    primes = sorted([((goal, False), (3, True)), *others])
+    """Return the guard "alive and not at the goal".
+
+    Because the buttons are exclusive, each of the other two buttons also gives a prime.
+    """
+    other_goals = [((other, True), (3, True)) for other in range(3) if other != goal]
+    primes = sorted([((goal, False), (3, True)), *other_goals])
     return Guard(f"!{name} & alive", tuple(primes))

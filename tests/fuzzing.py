@@ -1,6 +1,6 @@
-"""Inputs that readers of files must survive: valid ones with pieces cut out, doubled, nested or replaced.
+"""Damaged inputs for readers of files: valid inputs with pieces cut out, doubled, nested or replaced.
 
-Everything is made from a seed, so that a failure can be seen again by that number alone.
+Every input is made from a seed, so that the seed reproduces a failure.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SEEDS: Final = st.integers(0, 2**64 - 1)
 
 
 def times(usual: int) -> settings:
-    """So many inputs in `make test`, and thirty times as many in `make fuzz`."""
+    """Settings with ``usual`` examples in `make test`, and thirty times as many in `make fuzz`."""
     count = usual if settings.default.derandomize else 30 * usual
     return settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck))
 
@@ -31,7 +31,7 @@ NUMBERS: Final = (
     *("0", "-0", "-0.0", "1", "-1", "0.5", "2147483648", "9223372036854775808", "-18446744073709551616", "1e16"),
     *("1e308", "-1e308", "1e309", "5e-324", "1" + "0" * 400, "-1" + "0" * 400, "1" + "0" * 5000, "NaN", "Infinity"),
 )
-"""As JSON has them; also the three that only Python reads."""
+"""JSON numbers, and the non-finite ones that only Python accepts."""
 
 VALUES: Final = (
     *NUMBERS, *("true", "false", "null", '""', "[]", "{}", "[[]]", "[null]", '{"": 0}', '"\\u0000"', '"\\ud800"'),
@@ -46,11 +46,11 @@ PIECES: Final = (
 
 
 class _Raw(str):
-    """A piece of JSON that is written as it is."""
+    """A piece of JSON that is written verbatim."""
 
 
 def check(read: Callable[[], object]) -> bool:
-    """Whether a reader takes its input; it may refuse with a TltlError, which can be shown, and in no other way."""
+    """Whether a reader accepts its input; the only error that it may raise is a TltlError that can be rendered."""
     try:
         read()
     except TltlError as error:
@@ -60,17 +60,17 @@ def check(read: Callable[[], object]) -> bool:
 
 
 def mutated_text(random: Random, text: str) -> str:
-    """A text with a few of its pieces changed."""
+    """Return a text with a few of its pieces changed."""
     for _ in range(random.choice((1, 1, 1, 2, 3, 6))):
         text = random.choice((_other_number, _other_number, _other_lines, _other_piece, _other_word))(random, text)
     return text
 
 
 def _other_number(random: Random, text: str) -> str:
-    found = list(re.finditer(r"(?<![\w.])-?\d[\d._]*(?:[eE][-+]?\d+)?", text))
-    if not found:
+    matches = list(re.finditer(r"(?<![\w.])-?\d[\d._]*(?:[eE][-+]?\d+)?", text))
+    if not matches:
         return text
-    place = random.choice(found)
+    place = random.choice(matches)
     return text[: place.start()] + random.choice(VALUES if random.random() < 0.4 else NUMBERS) + text[place.end() :]
 
 
@@ -99,16 +99,16 @@ def _other_piece(random: Random, text: str) -> str:
 
 
 def _other_word(random: Random, text: str) -> str:
-    """A word of the text in the place of another one."""
-    found = list(re.finditer(r"[\w.]+", text))
-    if not found:
+    """Replace a word of the text by another one."""
+    matches = list(re.finditer(r"[\w.]+", text))
+    if not matches:
         return text
-    place, other = random.choice(found), random.choice(found)
+    place, other = random.choice(matches), random.choice(matches)
     return text[: place.start()] + other.group() + text[place.end() :]
 
 
 def mutated_bytes(random: Random, data: bytes) -> bytes:
-    """Bytes with some of them flipped, cut out, doubled or cut off."""
+    """Return data with some bits flipped, and bytes replaced, doubled or cut off."""
     changed = bytearray(data)
     for _ in range(random.choice((1, 1, 2, 5, 20))):
         start = random.randint(0, len(changed))
@@ -126,7 +126,7 @@ def mutated_bytes(random: Random, data: bytes) -> bytes:
 
 
 def mutated_json(random: Random, document: Any) -> str:
-    """The text of JSON data with a few of its values changed, and now and then the text itself."""
+    """Return JSON text with a few values changed; one time in ten, the text is changed as well."""
     document = [deepcopy(document)]
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         _change(random, document)
@@ -135,7 +135,7 @@ def mutated_json(random: Random, document: Any) -> str:
 
 
 def _change(random: Random, document: list[Any]) -> None:
-    """Change some value in place; those near the root have the same chance as those in long lists."""
+    """Change one value in place, chosen by a random walk from the root, so that long lists are not preferred."""
     holder: Any = document
     key: Any = 0
     while isinstance(holder[key], (dict, list)) and holder[key] and random.random() < 0.85:
@@ -156,11 +156,11 @@ def _change(random: Random, document: list[Any]) -> None:
 
 
 def json_text(document: Any) -> str:
-    """JSON, with raw pieces as they are."""
+    """Return a document as JSON, with raw pieces verbatim."""
     if isinstance(document, _Raw):
         return str(document)
     if isinstance(document, dict):
-        return "{" + ",".join(f"{json.dumps(name)}:{json_text(each)}" for name, each in document.items()) + "}"
+        return "{" + ",".join(f"{json.dumps(name)}:{json_text(value)}" for name, value in document.items()) + "}"
     if isinstance(document, list):
         return "[" + ",".join(map(json_text, document)) + "]"
     return json.dumps(document)

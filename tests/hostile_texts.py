@@ -1,4 +1,4 @@
-"""Texts that make a backtracking regular expression try every way to match: made from the pattern's own parts."""
+"""Texts that make a regular expression backtrack as much as possible, built from the parts of its pattern."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _MOST_SAMPLES: Final = 4
 
 
 def hostile_texts(pattern: str, flags: int, times: int) -> Iterator[str]:
-    """For each repetition in a pattern: what leads there, what it repeats ``times`` over, and an end that fails."""
+    """Yield texts for each repetition in a pattern: a lead, the repeated part ``times`` over, and an end that fails."""
     for before, pumps in _repetitions(sre_parse.parse(pattern, flags)):
         for pump, end in product(pumps, _ENDS):
             yield before + pump * times + end
 
 
 def _repetitions(parts: Any) -> Iterator[tuple[str, list[str]]]:
-    """For each repetition without an end: a text that leads to it, and texts that it repeats."""
+    """Yield, for each unbounded repetition, a text that leads to it and texts that it can repeat."""
     before = ""
     for op, value in parts:
         name = str(op)
@@ -39,11 +39,11 @@ def _repetitions(parts: Any) -> Iterator[tuple[str, list[str]]]:
 
 
 def _pumps(body: Any) -> list[str]:
-    """Texts of a repeated part, also characters that several of its branches share."""
+    """Return texts that a repeated part matches, and single characters, which several branches may share."""
     samples = [text for text in _samples(body) if text]
     letters = sorted({letter for text in _samples(body, whole=True) for letter in text} | {"\\", "a"})
-    fitting = [letter for letter in letters if re.fullmatch("[^\x00]", letter)]
-    return list(dict.fromkeys([*samples, *fitting[:12]]))
+    usable = [letter for letter in letters if re.fullmatch("[^\x00]", letter)]
+    return list(dict.fromkeys([*samples, *usable[:12]]))
 
 
 def _inside(name: str, value: Any) -> Sequence[Any]:
@@ -59,42 +59,42 @@ def _inside(name: str, value: Any) -> Sequence[Any]:
 
 
 def _samples(parts: Any, *, whole: bool = False) -> list[str]:
-    """A few texts that a part matches; ``whole``: also what stands in repetitions that may be left out."""
-    found = [""]
+    """Return a few texts that a part matches; with ``whole``, optional repetitions are included."""
+    texts = [""]
     for op, value in parts:
         name = str(op)
         if name in ("LITERAL", "NOT_LITERAL"):
-            some = [chr(value) if name == "LITERAL" else _other(chr(value))]
+            choices = [chr(value) if name == "LITERAL" else _other(chr(value))]
         elif name == "ANY":
-            some = ["a", "\\"]
+            choices = ["a", "\\"]
         elif name == "IN":
-            some = _members(value)
+            choices = _members(value)
         elif name == "BRANCH":
-            some = [text for branch in value[1] for text in _samples(branch, whole=whole)]
+            choices = [text for branch in value[1] for text in _samples(branch, whole=whole)]
         elif name.endswith("_REPEAT"):
-            some = _samples(value[2], whole=whole) if value[0] or whole else [""]
-            some = [text * max(1, value[0]) for text in some]
+            choices = _samples(value[2], whole=whole) if value[0] or whole else [""]
+            choices = [text * max(1, value[0]) for text in choices]
         else:
-            some = [text for inner in _inside(name, value) for text in _samples(inner, whole=whole)] or [""]
-        found = [left + right for left, right in product(found, some[:_MOST_SAMPLES])][:_MOST_SAMPLES]
-    return found
+            choices = [text for inner in _inside(name, value) for text in _samples(inner, whole=whole)] or [""]
+        texts = [left + right for left, right in product(texts, choices[:_MOST_SAMPLES])][:_MOST_SAMPLES]
+    return texts
 
 
 def _members(values: Any) -> list[str]:
-    """A few characters of a set."""
+    """Return a few characters of a set."""
     first = values[0][0]
     if str(first) == "NEGATE":
         barred = re.compile("[" + "".join(map(_set_text, values[1:])) + "]", re.DOTALL)
         return [letter for letter in 'a\\ "(\n' if not barred.match(letter)] or ["~"]
-    found = []
+    characters = []
     for op, value in values:
         if str(op) == "LITERAL":
-            found.append(chr(value))
+            characters.append(chr(value))
         elif str(op) == "RANGE":
-            found.append(chr(value[0]))
+            characters.append(chr(value[0]))
         else:
-            found.append(_CLASSES.get(str(value), "-"))
-    return found
+            characters.append(_CLASSES.get(str(value), "-"))
+    return characters
 
 
 def _set_text(member: Any) -> str:

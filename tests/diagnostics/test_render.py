@@ -1,4 +1,4 @@
-"""The formats of diagnostics, each on the same few diagnostics."""
+"""The formats in which diagnostics are printed."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from tltlc.diagnostics.formats.text import columns
 from tltlc.diagnostics.render import FORMATS, render
 
 
-def diagnostic(text: str, marked: str, message: str = "", **more: object) -> Diagnostic:
+def diagnostic(text: str, marked: str, message: str = "", **fields: object) -> Diagnostic:
     start = text.index(marked)
     label = Label(SourceFile("a.tltl", text), Span(start, start + len(marked)), message)
-    return Diagnostic("TLT0101", "a title", (label,), **more)  # type: ignore[arg-type]
+    return Diagnostic("TLT0101", "a title", (label,), **fields)  # type: ignore[arg-type]
 
 
 def test_text() -> None:
@@ -36,7 +36,7 @@ def test_text() -> None:
     )
 
 
-def test_text_of_several_is_parted_by_empty_lines() -> None:
+def test_empty_lines_separate_diagnostics_in_text() -> None:
     one = Diagnostic("TLT0001", "no place", severity="warning")
     assert render([one, one]) == "warning[TLT0001]: no place\n\nwarning[TLT0001]: no place\n"
     assert render([]) == ""
@@ -59,7 +59,7 @@ def test_carets(text: str, marked: str, line: str, caret: str) -> None:
     assert shown[2:4] == [f"1 | {line}", f"  | {caret}"]
 
 
-def test_caret_of_several_lines() -> None:
+def test_the_caret_of_a_span_over_several_lines() -> None:
     shown = render([diagnostic("spec a =\n  b\n  & c\n", "b\n  & c", "here")]).splitlines()
     assert shown[2:4] == ["2 |   b", "  |   ^ (to line 3) here"]
 
@@ -72,15 +72,17 @@ def test_long_lines_are_cut_around_the_place() -> None:
         assert shown[2][caret] == "@"
 
 
-def test_a_line_of_a_megabyte_is_not_looked_at_as_a_whole() -> None:
+def test_a_line_of_a_megabyte_is_not_read_as_a_whole() -> None:
     source = SourceFile("a.tltl", "a\t" * 500_000 + "\x01")
-    found = [Diagnostic("TLT0101", "a title", (Label(source, Span(i, i + 1)),)) for i in range(0, 1_000_000, 5_000)]
-    assert len(render(found).splitlines()) == 5 * len(found) - 1
-    # Each has hundreds of thousands of characters before it; measured: 1300.
-    assert calls(lambda: render(found)) < 10_000 * len(found)
+    diagnostics = [
+        Diagnostic("TLT0101", "a title", (Label(source, Span(i, i + 1)),)) for i in range(0, 1_000_000, 5_000)
+    ]
+    assert len(render(diagnostics).splitlines()) == 5 * len(diagnostics) - 1
+    # Most spans have hundreds of thousands of characters before them.  Measured: 1300 calls for each.
+    assert calls(lambda: render(diagnostics)) < 10_000 * len(diagnostics)
 
 
-def test_several_places() -> None:
+def test_several_labels() -> None:
     source, other = SourceFile("a.tltl", "\n" * 9 + "one"), SourceFile("b.tltl", "two")
     labels = (Label(source, Span(9, 12), "here"), Label(other, Span(0, 3), "first here"))
     assert render([Diagnostic("TLT0201", "twice", labels)]).splitlines() == [
@@ -105,7 +107,7 @@ def test_colour_only_adds_codes() -> None:
 
 
 @given(st.text(), st.integers(0, 50), st.integers(0, 50), st.text(max_size=5), st.sampled_from(FORMATS))
-def test_every_format_takes_every_text(text: str, start: int, length: int, name: str, format_: str) -> None:
+def test_every_format_accepts_every_text(text: str, start: int, length: int, name: str, format_: str) -> None:
     start = min(start, len(text))
     label = Label(SourceFile(name, text), Span(start, min(len(text), start + length)), text)
     shown = render([Diagnostic("TLT0101", text, (label,), text)], format_)
@@ -248,18 +250,18 @@ SARIF = {
         },
     },
 }
-"""The part of the SARIF 2.1.0 schema that speaks of what we write, stricter in places."""
+"""The part of the SARIF 2.1.0 schema that covers our output; some rules are stricter than the standard."""
 
 
 def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names = ["level one/ä.tltl", str(tmp_path / "below.tltl"), str(tmp_path.parent / "above.tltl"), "<stdin>"]
     labels = [Label(SourceFile(name, "keep a"), Span(5, 6), "here") for name in names]
-    found = [Diagnostic("TLT0101", "a title", (label,), "help") for label in labels]
-    found.append(Diagnostic("TLT0001", "no place", severity="warning"))
+    diagnostics = [Diagnostic("TLT0101", "a title", (label,), "help") for label in labels]
+    diagnostics.append(Diagnostic("TLT0001", "no place", severity="warning"))
     fixes = (instead(labels[0].source, labels[0].span, "b"),)
-    found.append(Diagnostic("TLT0101", "two places", (labels[0], labels[1]), severity="note", fixes=fixes))
-    log = json.loads(render(found, "sarif"))
+    diagnostics.append(Diagnostic("TLT0101", "two places", (labels[0], labels[1]), severity="note", fixes=fixes))
+    log = json.loads(render(diagnostics, "sarif"))
     jsonschema.validate(log, SARIF)
     (run,) = log["runs"]
     rules = run["tool"]["driver"]["rules"]
@@ -285,18 +287,18 @@ def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_github() -> None:
     source = SourceFile("a:b,c.tltl", "one\nkeep é%\nlast")
-    found = [
+    diagnostics = [
         Diagnostic("TLT0101", "50% of\r\nit", (Label(source, Span(9, 11), "here"),), "help"),
         Diagnostic("TLT0410", "long", (Label(source, Span(0, 8)),), severity="warning"),
         Diagnostic("TLT0001", "no place", severity="note"),
     ]
-    assert render(found, "github").splitlines() == [
+    assert render(diagnostics, "github").splitlines() == [
         "::error file=a%3Ab%2Cc.tltl,line=2,endLine=2,col=6,endColumn=7,title=TLT0101::50%25 of%0D%0Ait%0Ahere%0Ahelp",
         "::warning file=a%3Ab%2Cc.tltl,line=1,endLine=2,title=TLT0410::long",
         "::notice title=TLT0001::no place",
     ]
 
 
-def test_unknown_format() -> None:
+def test_an_unknown_format_is_an_error() -> None:
     with pytest.raises(ValueError, match="one of text, json, sarif, github"):
         render([], "xml")

@@ -1,4 +1,4 @@
-"""Messages quote what others wrote, and stay readable whatever that is."""
+"""Messages stay readable, however long the texts are that they quote."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ LONG = "a" * (3 << 20)
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_shortens_a_long_name(name: str) -> None:
     label = Label(SourceFile("x.tltl", "spec"), Span(0, 4), f"`{LONG}` is here")
-    found = Diagnostic("TLT0101", f"there is no `{LONG}`", (label,), f"did you mean `{LONG}b`?")
-    text = render([found], name)
+    diagnostic = Diagnostic("TLT0101", f"there is no `{LONG}`", (label,), f"did you mean `{LONG}b`?")
+    text = render([diagnostic], name)
     assert len(text) < 10_000
     assert f"`{'a' * 199}…{'a' * 100}`" in text.replace("\\u2026", "…")
 
 
-def test_what_is_between_two_short_quotes_stays_whole() -> None:
+def test_text_between_two_short_quotes_is_not_shortened() -> None:
     text = f"`a` {'word ' * 200}`b`"
     assert short_text(text) == text
 
@@ -34,5 +34,5 @@ def test_a_quote_keeps_its_beginning_and_its_end() -> None:
     assert len(short) == len("no file ``") + LONGEST_QUOTE
 
 
-def test_a_text_without_quotes_has_an_end() -> None:
+def test_a_text_without_quotes_is_shortened() -> None:
     assert len(short_text("word " * 10_000)) == LONGEST_TEXT

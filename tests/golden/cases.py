@@ -1,8 +1,8 @@
-"""Golden cases: one file holds a command, the files that it reads, and the message that it prints.
+"""Golden cases: a case is one file with a command, the files that it reads, and the message that it prints.
 
-A case is called ``CODE[_variant].case``.  Its first line is the command, then each file follows under a line
-``-- NAME --``, and last the expected text under ``-- stderr --``, as in the txtar format of Go.  A file that is not
-plain UTF-8 text with a line feed at its end stands under ``-- NAME (bytes) --``, as a bytes literal of Python.
+The name of a case is ``CODE[_variant].case``.  The format is similar to Go's txtar.  The first line is the command.
+Each file follows a line ``-- NAME --``, and the expected text follows ``-- stderr --`` at the end.  A file that is not
+UTF-8 text with a final line feed follows ``-- NAME (bytes) --`` and is written as a Python bytes literal.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _STDERR = "stderr"
 
 @dataclass(frozen=True)
 class Case:
-    """A command with its arguments, the files that it reads by their names, and what it prints to standard error."""
+    """The arguments of a command, the files that it reads, by name, and its expected standard error."""
 
     path: Path
     arguments: tuple[str, ...]
@@ -30,11 +30,11 @@ class Case:
 
     @property
     def name(self) -> str:
-        """The code of the message, and what is special about the case."""
+        """The code of the message, and the variant if there is one."""
         return self.path.stem
 
     def unpack(self, folder: Path) -> None:
-        """Write the files into a folder, which may be missing."""
+        """Write the files to a folder, which is created if necessary."""
         folder.mkdir(exist_ok=True)
         for name, data in self.files.items():
             path = folder / name
@@ -42,7 +42,7 @@ class Case:
             path.write_bytes(data)
 
     def check(self, printed: str) -> None:
-        """Assert that this was printed; with ``UPDATE_GOLDEN=1`` in the environment, write it into the case."""
+        """Assert that the printed text is the expected one; with ``UPDATE_GOLDEN=1``, write it to the case instead."""
         if os.environ.get("UPDATE_GOLDEN") == "1" and printed != self.expected:
             head = self.path.read_bytes().decode().rpartition(f"-- {_STDERR} --\n")[0]
             self.path.write_bytes(f"{head}-- {_STDERR} --\n{printed}".encode())
@@ -51,12 +51,12 @@ class Case:
 
 
 def cases(kind: str) -> list[Case]:
-    """The cases of a folder beside this file, by name."""
+    """Return the cases in a folder next to this file, sorted by name."""
     return [read(path) for path in sorted((FOLDER / kind).glob("*.case"))]
 
 
 def read(path: Path) -> Case:
-    """The case in a file."""
+    """Parse a case."""
     text = path.read_bytes().decode()
     headers = [*_HEADER.finditer(text)]
     ends = [*(header.start() for header in headers[1:]), len(text)]

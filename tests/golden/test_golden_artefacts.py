@@ -1,7 +1,6 @@
-"""Artefacts of the paper's specifications and of one over infinite traces, byte for byte: ``artefacts/`` holds what
-each target writes.
+"""The artefacts of the paper's specifications, and of one over infinite traces, equal the files in ``artefacts/``.
 
-``UPDATE_GOLDEN=1`` in the environment writes them anew: read what changed.
+With the environment variable ``UPDATE_GOLDEN=1``, the test rewrites the files; review the changes.
 """
 
 from __future__ import annotations
@@ -22,16 +21,16 @@ TARGETS = ("json", "dot", "hoa", "mermaid", "python")
 
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("spec", SPECS)
-def test_artefact(spec: str, target: str) -> None:
+def test_an_artefact_equals_its_golden_file(spec: str, target: str) -> None:
     file = EXAMPLES / f"{spec.removesuffix('_as_printed')}.tltl"
     (fspa,) = (fspa for fspa in tltlc.compile_file(file) if fspa.name == spec)
     for name, content in emit(target, fspa).items():
-        # A golden monitor is a text here and no module of the project, for the tools that look for those.
+        # A golden monitor is stored as a text file, so that no tool takes it for a module of the project.
         golden = ARTEFACTS / (f"{name}.txt" if name.endswith(".py") else name)
-        found = content if isinstance(content, bytes) else content.encode()
+        data = content if isinstance(content, bytes) else content.encode()
         if os.environ.get("UPDATE_GOLDEN") == "1":
-            golden.write_bytes(found)
-        assert found == golden.read_bytes()
+            golden.write_bytes(data)
+        assert data == golden.read_bytes()
 
 
 def test_no_golden_is_left_over() -> None:

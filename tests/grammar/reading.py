@@ -1,4 +1,4 @@
-"""Helpers: parse a formula, and show a tree with every bracket written."""
+"""Helpers that parse a formula, and show a tree with all brackets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def read(text: str) -> tree.Expr:
 
 
 def brackets(expression: tree.Expr) -> str:
-    """The expression with a bracket around every operator, so that its structure can be read."""
+    """Return the expression with brackets around every operator, which show its structure."""
     match expression:
         case tree.Number(value=value, unit=unit):
             return f"{value:g}{unit or ''}"

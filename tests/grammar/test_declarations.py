@@ -14,7 +14,7 @@ def read(text: str) -> tuple[tree.Declaration, ...]:
     return module.declarations
 
 
-def test_every_form() -> None:
+def test_every_kind_of_declaration() -> None:
     kinds = [type(declaration).__name__ for declaration in read(TEXT)]
     assert kinds == (
         ["Import"] * 4
@@ -91,7 +91,7 @@ def test_spec() -> None:
     assert [clause.kind for clause in formula.clauses] == ["require"]
 
 
-def test_test() -> None:
+def test_a_test_block() -> None:
     (test,) = (item for item in read(TEXT) if isinstance(item, tree.TestDecl))
     assert (test.title, test.spec.name) == ("the exit first does not count", "cover_and_hide")
     steps = [item for item in test.items if isinstance(item, tree.TestStep)]
@@ -119,13 +119,13 @@ def test_comments_are_kept_in_order() -> None:
         assert module.source.slice(comment.span) == comment.text
 
 
-def test_byte_order_mark_and_strange_spaces() -> None:
+def test_byte_order_marks_and_unusual_spaces_are_ignored() -> None:
     assert len(read("\ufeffentity\u00a0a,\tb\r\n\fentity c")) == 2
     assert read("") == ()
     assert read("// nothing") == ()
 
 
-def test_a_comment_ends_with_its_line_whatever_ends_that() -> None:
+def test_a_comment_ends_at_every_kind_of_line_break() -> None:
     for end in ("\n", "\r\n", "\r"):
         module, errors = parse(SourceFile("a.tltl", f"// one{end}signal a: bool{end}/// two{end}spec s = F a{end}"))
         assert errors == ()

@@ -1,7 +1,7 @@
-"""What a help writes for plain English means what the sentence means, and keeps every word that stands for something.
+"""The edit that a help offers for plain English has the meaning of the sentence, and keeps all of its atoms.
 
-The meanings are stated here once more, over traces, without the compiler: by hand for each word, clause and prefix.
-Where a sentence has no clear meaning, its meaning is None, and the help must not offer an edit.
+The expected meanings are written by hand for each word, clause and prefix, over traces and without the compiler.
+The meaning of an unclear sentence is None; for such a sentence the help must not offer an edit.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from tltlc.tools.witness.blocks import values
 Letter = frozenset[str]
 Trace = tuple[Letter, ...]
 Here = Callable[[Trace, int], bool]
-"""Whether something holds at a sample of a trace."""
+"""Whether a formula holds at a sample of a trace."""
 Whole = Callable[[Trace], bool]
 
 ATOMS = "abc"
-LETTERS = [frozenset(each) for each in chain.from_iterable(combinations(ATOMS, size) for size in range(4))]
+LETTERS = [frozenset(names) for names in chain.from_iterable(combinations(ATOMS, size) for size in range(4))]
 LONGEST = 4
 STEPS = 2
 TIME = f"{STEPS} steps"
@@ -67,38 +67,38 @@ def negated(one: Here) -> Here:
 
 
 def later(one: Here, first: int, last: int | None = None) -> Here:
-    """At one of the samples from ``first`` to ``last`` steps ahead."""
+    """The formula holds at some sample from ``first`` to ``last`` steps ahead."""
     return lambda trace, at: any(
         one(trace, there) for there in range(at + first, len(trace)) if last is None or there <= at + last
     )
 
 
 def throughout(one: Here, first: int = 0, last: int | None = None) -> Here:
-    """At all of these samples, as far as the trace goes."""
+    """The formula holds at all samples from ``first`` to ``last`` steps ahead, up to the end of the trace."""
     return negated(later(negated(one), first, last))
 
 
 def stays(one: Here) -> Here:
-    """At so many samples in a row, which are all there."""
+    """The formula holds at ``STEPS`` samples in a row, and the trace has all of them."""
     return lambda trace, at: at + STEPS <= len(trace) and all(one(trace, at + step) for step in range(STEPS))
 
 
 def until(one: Here, other: Here) -> Here:
-    """``one`` at each sample before the first with ``other``, which need not come."""
+    """``one`` holds at each sample before the first one with ``other``, which need not exist (weak until)."""
     return lambda trace, at: all(
         one(trace, there) for there in range(at, len(trace)) if not later(other, 0, there - at)(trace, at)
     )
 
 
 def whole(clause: str, formula: Here) -> Whole:
-    """What a clause asks for, by its keyword."""
-    ends = {
+    """The meaning of a clause over a whole trace, by its keyword."""
+    meanings = {
         "reach": later(formula, 0),
         "keep": throughout(formula),
         "avoid": throughout(negated(formula)),
         "require": formula,
     }
-    return lambda trace: ends[clause](trace, 0)
+    return lambda trace: meanings[clause](trace, 0)
 
 
 def prefixed_by(prefix: str, formula: Here) -> Here:
@@ -122,8 +122,8 @@ def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
     first = prefix if prefix != "c then " else ""
     left = prefixed_by(first, a)
     if word == "without" and clause in ("reach", "keep"):
-        asked, never = whole(clause, prefixed_by(prefix, a)), whole("avoid", b)
-        return lambda trace: asked(trace) and never(trace)
+        wanted, never = whole(clause, prefixed_by(prefix, a)), whole("avoid", b)
+        return lambda trace: wanted(trace) and never(trace)
     goal = _joined(clause, word, left, is_alone=first in ("", "not "), is_negated=first == "not ")
     if goal is None or isinstance(goal, tuple):
         return whole("require", goal[0]) if goal else None
@@ -131,7 +131,7 @@ def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
 
 
 def _is_open(clause: str, prefix: str, word: str) -> bool:
-    """Whether it is open what the word belongs to, and that is not the same either way."""
+    """Whether the word can belong to several operands, with different meanings."""
     if clause == "require" and word in CONDITIONS[1:]:
         return True
     if prefix == "not ":
@@ -148,27 +148,27 @@ def _is_open(clause: str, prefix: str, word: str) -> bool:
 
 
 def _joined(clause: str, word: str, left: Here, *, is_alone: bool, is_negated: bool) -> Here | tuple[Here] | None:
-    """What is asked for in a clause; in a tuple where it is asked for at the first sample."""
+    """The meaning of two joined operands in a clause; it is in a tuple if it applies only at the first sample."""
     if word in CONDITIONS:
         return both(left, b) if clause in ("reach", "avoid") else either(left, negated(b))
     if word in ("before", "after", "followed by"):
         return _ordered(clause, word, left, is_negated=is_negated)
     if word == "unless":
-        met = {"reach": either(left, b), "keep": either(left, b), "avoid": both(left, negated(b))}
-        return met.get(clause, until(left, b))
+        by_clause = {"reach": either(left, b), "keep": either(left, b), "avoid": both(left, negated(b))}
+        return by_clause.get(clause, until(left, b))
     if word in ("xor", "xnor", "nor", "nand") and not is_alone:
         return None
     different = both(either(left, b), negated(both(left, b)))
-    states = {"without": both(left, negated(b)), "but": both(left, b), "xor": different, "xnor": negated(different)}
-    return {**states, "nor": negated(either(left, b)), "nand": negated(both(left, b))}[word]
+    by_word = {"without": both(left, negated(b)), "but": both(left, b), "xor": different, "xnor": negated(different)}
+    return {**by_word, "nor": negated(either(left, b)), "nand": negated(both(left, b))}[word]
 
 
 def _ordered(clause: str, word: str, left: Here, *, is_negated: bool) -> Here | tuple[Here] | None:
     if word == "before" and clause in ("keep", "avoid"):
         return (until(left if clause == "keep" else negated(left), b),)
     if word == "after" and clause in ("keep", "avoid"):
-        asked = left if clause == "keep" else negated(left)
-        return (throughout(either(negated(b), throughout(asked))),)
+        wanted = left if clause == "keep" else negated(left)
+        return (throughout(either(negated(b), throughout(wanted))),)
     if word == "followed by" and clause == "keep":
         return either(negated(left), later(b, 1))
     if is_negated:
@@ -193,19 +193,19 @@ def of_time(clause: str, prefix: str, word: str) -> Whole | None:
 
 
 def _timed(clause: str, word: str, formula: Here) -> Here:
-    """What a time asks for at the first sample in this clause, or where it is said, outside the other clauses."""
-    asked = negated(formula) if clause == "avoid" else formula
+    """The meaning of a time in a clause, at the first sample; without a clause, at the current sample."""
+    wanted = negated(formula) if clause == "avoid" else formula
     if word == "for":
-        return later(stays(formula), 0) if clause == "reach" else throughout(asked, 0, STEPS - 1)
+        return later(stays(formula), 0) if clause == "reach" else throughout(wanted, 0, STEPS - 1)
     if word == "after":
         if clause in ("keep", "avoid"):
-            return throughout(asked, STEPS)
-        return later(asked, STEPS, None if clause == "reach" else STEPS)
-    return throughout(asked, 0, STEPS) if clause == "avoid" else later(asked, 0, STEPS)
+            return throughout(wanted, STEPS)
+        return later(wanted, STEPS, None if clause == "reach" else STEPS)
+    return throughout(wanted, 0, STEPS) if clause == "avoid" else later(wanted, 0, STEPS)
 
 
 def _next_goal(word: str) -> Whole:
-    """A time behind `then`: it begins where the goal before it is reached, and that sample does not count."""
+    """The meaning of a time after `then`: it starts at the step after the previous goal."""
     if word == "for":
         return whole("reach", both(c, later(stays(a), 1)))
     return whole("reach", both(c, later(a, STEPS) if word == "after" else later(a, 1, STEPS)))
@@ -236,7 +236,7 @@ CASES = {
     **{f"{k} {p}a {w} {TIME}": of_time(k, p, w) for k in CLAUSES for p in PREFIXES for w in TIMES},
     **{f"{k} {p}{w} b, a": before_clause(k, p, w) for k in CLAUSES for p in PREFIXES for w in CONDITIONS[:-1]},
     **{f"{k} {p}{w} {TIME} a": before_time(k, p, w) for k in CLAUSES for p in PREFIXES for w in TIMES},
-    # What a bracket, a negation or one more goal leaves open.
+    # Sentences that brackets, a negation or another goal make ambiguous, and some that stay clear.
     "reach (a if b)": None,
     "avoid (a if b)": None,
     "avoid (a unless b)": None,
@@ -265,17 +265,17 @@ CASES = {
     "reach a before b then c": whole("reach", both(a, later(both(b, later(c, 1)), 1))),
     "reach a and b within 2 steps": whole("require", later(both(a, b), 0, 2)),
 }
-"""The meaning of each sentence, None where there is none that is clear."""
+"""The meaning of each sentence, or None if it is unclear."""
 
 
 # --- the helps ------------------------------------------------------------------------------------
 
 
-def mended(clause: str) -> str | None:
-    """The clause after the edit that its help offers, None where it offers none."""
+def fixed_text(clause: str) -> str | None:
+    """Return the spec with the edit that the help for the clause offers, or None if it offers no edit."""
     text = f"spec s {{ {clause}\n}}\n"
     source = SourceFile("a.tltl", text)
-    fixes = [fix for each in parse(source)[1] for fix in each.fixes]
+    fixes = [fix for diagnostic in parse(source)[1] for fix in diagnostic.fixes]
     return after(source, fixes[0].edits).text if fixes else None
 
 
@@ -285,10 +285,10 @@ def compiled(text: str) -> Fspa:
 
 
 def verdicts(fspa: Fspa) -> Iterator[tuple[Trace, bool]]:
-    """All traces, each with whether the automaton accepts it."""
-    edges, given = tables(fspa).edges, {letter: values(fspa, letter) for letter in LETTERS}
+    """Yield every trace of up to ``LONGEST`` samples, and whether the automaton accepts it."""
+    edges, values_of = tables(fspa).edges, {letter: values(fspa, letter) for letter in LETTERS}
     following = {
-        (state.id, letter): next(edge.target for edge in edges[state.id] if holds(edge.guard, given[letter]))
+        (state.id, letter): next(edge.target for edge in edges[state.id] if holds(edge.guard, values_of[letter]))
         for state in fspa.states
         for letter in LETTERS
     }
@@ -299,8 +299,8 @@ def verdicts(fspa: Fspa) -> Iterator[tuple[Trace, bool]]:
 
 
 @pytest.mark.parametrize(("clause", "meaning"), CASES.items(), ids=CASES)
-def test_a_help_means_what_the_sentence_means(clause: str, meaning: Whole | None) -> None:
-    text = mended(clause)
+def test_an_edit_has_the_meaning_of_the_sentence(clause: str, meaning: Whole | None) -> None:
+    text = fixed_text(clause)
     if text is None:
         return
     assert meaning is not None, text
@@ -309,20 +309,20 @@ def test_a_help_means_what_the_sentence_means(clause: str, meaning: Whole | None
     assert not wrong, f"{text}: {[sorted(letter) for letter in wrong[0]]}"
 
 
-def test_most_sentences_that_are_clear_are_helped() -> None:
+def test_most_clear_sentences_get_an_edit() -> None:
     clear = [clause for clause, meaning in CASES.items() if meaning]
-    helped = [clause for clause in clear if mended(clause)]
+    helped = [clause for clause in clear if fixed_text(clause)]
     assert len(helped) >= 0.9 * len(clear), sorted(set(clear) - set(helped))
 
 
-def test_all_words_of_the_tables_are_tried() -> None:
+def test_all_words_of_the_compiler_are_tested() -> None:
     assert {word.split()[0] for word in INFIX} == set(english._FORMS)
     assert set(TIMES) == set(english._TIMES)
     assert set(CONDITIONS[:-1]) == set(english._PREFIXES)
 
 
 @pytest.mark.parametrize("clause", [clause for clause, meaning in CASES.items() if meaning is None])
-def test_a_sentence_without_an_edit_is_answered_in_words(clause: str) -> None:
-    said = parse(SourceFile("a.tltl", f"spec s {{ {clause}\n}}\n"))[1]
-    assert said
-    assert all(each.help for each in said)
+def test_a_sentence_without_an_edit_gets_a_help(clause: str) -> None:
+    diagnostics = parse(SourceFile("a.tltl", f"spec s {{ {clause}\n}}\n"))[1]
+    assert diagnostics
+    assert all(diagnostic.help for diagnostic in diagnostics)

@@ -1,4 +1,4 @@
-"""What messages on syntax say to write: taken, it leaves no error, and is what was meant."""
+"""The fixes of syntax errors: applying one leaves no error, and gives the intended text."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from tltlc.grammar.parser import parse
 from tltlc.tools.lint.scopes import after
 
 
-def mended(text: str) -> str:
-    """A text after the first fix of its one message."""
+def fixed_text(text: str) -> str:
+    """Apply the first fix of the only error in a text, and assert that no error is left."""
     source = SourceFile("a.tltl", text)
     _, (diagnostic,) = parse(source)
     fixed = after(source, diagnostic.fixes[0].edits)
@@ -143,9 +143,9 @@ def mended(text: str) -> str:
         ("keep è", "keep e"),
     ],
 )
-def test_a_clause(clause: str, meant: str) -> None:
+def test_fixes_of_clauses(clause: str, meant: str) -> None:
     text = "spec s {{\n    {}\n    keep last\n}}\n"
-    assert mended(text.format(clause)) == text.format(meant)
+    assert fixed_text(text.format(clause)) == text.format(meant)
 
 
 @pytest.mark.parametrize(
@@ -169,5 +169,5 @@ def test_a_clause(clause: str, meant: str) -> None:
         ("object a", "entity a"),
     ],
 )
-def test_a_declaration(text: str, meant: str) -> None:
-    assert mended(f"{text}\nentity last\n") == f"{meant}\nentity last\n"
+def test_fixes_of_declarations(text: str, meant: str) -> None:
+    assert fixed_text(f"{text}\nentity last\n") == f"{meant}\nentity last\n"

@@ -1,4 +1,4 @@
-"""No text makes the parser raise, or takes it long."""
+"""No text makes the parser raise an exception or run for a long time."""
 
 import random
 import re
@@ -51,7 +51,7 @@ def check(text: str) -> None:
 
 
 @given(st.text())
-def test_any_text(text: str) -> None:
+def test_any_text_is_parsed(text: str) -> None:
     check(text)
 
 
@@ -107,7 +107,7 @@ def test_large_texts_take_a_few_calls_for_each_character(text: str) -> None:
         _, diagnostics = parse(SourceFile("a", text))
         render(diagnostics)
 
-    # Measured: 62 at most.
+    # Measured: at most 62 calls for each character.
     assert calls(parsed) < 200 * len(text)
 
 
@@ -125,7 +125,7 @@ def test_large_texts_take_a_few_calls_for_each_character(text: str) -> None:
     ],
     ids=lambda part: repr(part)[:12],
 )
-def test_limits(text: str, code: str | None) -> None:
+def test_deep_and_long_formulas_are_limited(text: str, code: str | None) -> None:
     formula, diagnostics = parse_formula(SourceFile("a", text))
     assert [diagnostic.code for diagnostic in diagnostics] == ([code] if code else [])
     assert (formula is None) == (code is not None)

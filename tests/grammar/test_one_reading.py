@@ -1,8 +1,8 @@
-"""An edit is offered only for words that have one reading in their place, and it has that reading.
+"""An edit is offered only for a clause with a single reading, and it has that reading.
 
-The rows are judged by hand.  The readings of drawn clauses are made here once more, over traces and without the
-compiler: a word can belong to the operand beside it or to all that stands on a side of it, and only where that is the
-same, an edit may be offered.
+The expected edits in the table are written by hand.  For random clauses, the tests compute all readings over traces,
+without the compiler: a word can belong to the operand next to it or to everything on one side of it.  An edit is
+allowed only if all readings are equal.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ TIMES = (
     "a = 50 %",
     "a 3 m",
 )
-"""Lines with a time that are no limit, or may be something else."""
+"""Lines with a time that are not a limit, or not clearly one."""
 LIMITS = ("limit of 30 steps", "limit: 30", "timeout 30 turns", "30 steps limit", "max time 30 steps")
 
 ROWS: list[tuple[str, str | None]] = [
-    # Behind an operator.
+    # After an operator.
     ("require always a before b", None),
     ("require always a after b", None),
     ("require always a followed by b", None),
@@ -110,7 +110,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("keep (eventually a) if b", "keep b implies eventually a"),
     ("reach (eventually a) before b", None),
     ("require (a then b) before c", None),
-    # Each word, alone.
+    # Each word between two atoms.
     ("reach a before b", None),
     ("reach a after b", "reach b then a"),
     ("reach a followed by b", "reach a then b"),
@@ -195,7 +195,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("if b then a", "keep b implies a"),
     ("if b then not a", "keep b implies not a"),
     ("if always b, a", None),
-    # A keyword or another word for it inside a formula.
+    # A keyword, or a synonym of it, inside a formula.
     ("require never a", "require always not a"),
     ("require never a until b", None),
     ("require never a or b", None),
@@ -235,7 +235,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("keep a else b", None),
     ("keep a entails b", None),
     ("unreach a", None),
-    # A condition first, with more behind it.
+    # A condition at the start, with more operators after it.
     ("if a then avoid b until c", None),
     ("if a then avoid b weak_until c", None),
     ("if a, avoid b until c", None),
@@ -257,7 +257,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("whenever a: avoid b", None),
     ("if a then reach b", "keep a implies eventually b"),
     ("if a then b or c", "keep a implies (b or c)"),
-    # A time on a line of its own.
+    # A time on a separate line.
     *((f"{line}\nreach b", None) for line in TIMES),
     *((f"{line} reach b", None) for line in TIMES),
     *((f"{line}\nreach b", "reach b") for line in LIMITS),
@@ -270,7 +270,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("reach a or avoid b until c", None),
     ("keep a implies reach b or c", None),
     ("keep a implies avoid b or c", None),
-    # Lines without a keyword, and with something in front of it.
+    # Lines without a keyword, or with a mark before it.
     ("a", None),
     ("p(k)", None),
     ("avoid\na\nb", None),
@@ -281,7 +281,7 @@ ROWS: list[tuple[str, str | None]] = [
     *((f"{mark} {clause} a", f"{clause} a") for mark in ("-", "*", "1.") for clause in ("reach", "keep", "avoid")),
     ("not reach a", None),
     ("always keep a", None),
-    # Words that are left out, and what stands in quotes.
+    # Filler words, and text in quotes.
     ("keep both a and b", "keep a and b"),
     ("keep either a or b", "keep a or b"),
     ("reach first a then b", "reach a then b"),
@@ -368,7 +368,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("reach (a without b)", "reach a and not b"),
     ("avoid (a xor b)", "avoid not (a iff b)"),
     ("avoid (a unless b)", None),
-    # Behind quantifiers.
+    # After quantifiers.
     (f"reach {ALL} before b", None),
     (f"reach {ALL} without b", None),
     (f"reach {ALL} within 5 steps", None),
@@ -388,30 +388,30 @@ ROWS: list[tuple[str, str | None]] = [
 
 
 def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    module, said = parse(source)
-    return tuple(each for each in (*said, *resolve(module)[1]) if each.severity == "error")
+    module, diagnostics = parse(source)
+    return tuple(diagnostic for diagnostic in (*diagnostics, *resolve(module)[1]) if diagnostic.severity == "error")
 
 
 def offered(clause: str) -> list[str]:
-    """The texts of specs after the edits that are offered for a clause, and for what is wrong after these."""
-    waiting, done = [f"{HEAD}spec s {{ {clause}\n}}\n"], []
-    while waiting:
-        source = SourceFile("a.tltl", waiting.pop())
-        said = errors(source)
-        if not said:
-            done.append(source.text)
-        waiting += (after(source, offer.fix.edits).text for offer in of_errors(said, source, errors))
-    return done
+    """Return the valid specs that the offered edits of a clause lead to, applied repeatedly until no error is left."""
+    queue, valid = [f"{HEAD}spec s {{ {clause}\n}}\n"], []
+    while queue:
+        source = SourceFile("a.tltl", queue.pop())
+        diagnostics = errors(source)
+        if not diagnostics:
+            valid.append(source.text)
+        queue += (after(source, offer.fix.edits).text for offer in of_errors(diagnostics, source, errors))
+    return valid
 
 
 @pytest.mark.parametrize(("clause", "meant"), ROWS, ids=[clause for clause, _ in ROWS])
-def test_an_edit_is_what_was_meant(clause: str, meant: str | None) -> None:
+def test_an_edit_gives_the_intended_clause(clause: str, meant: str | None) -> None:
     texts = offered(clause)
     assert bool(texts) == (meant is not None), texts
     for text in texts:
-        (wanted,) = tltlc.compile_text(f"{HEAD}spec s {{ {meant} }}")
-        (given,) = tltlc.compile_text(text)
-        assert given.formula == wanted.formula, text
+        (expected,) = tltlc.compile_text(f"{HEAD}spec s {{ {meant} }}")
+        (actual,) = tltlc.compile_text(text)
+        assert actual.formula == expected.formula, text
 
 
 # --- readings -------------------------------------------------------------------------------------
@@ -435,7 +435,7 @@ RIGHT: dict[str, tuple[Here, Callable[[Here], Here]]] = {
     "b and c": (both(b, c), lambda one: both(one, c)),
     "b or c": (either(b, c), lambda one: either(one, c)),
 }
-"""The right side, as one operand, and what follows where a word belongs to `b` alone."""
+"""The right side as one operand, and the rest of it for a word that belongs to `b` alone."""
 WORDS = ("if", "while", "before", "after", "followed by", "unless", "without", "but", "xor", "nor", "nand")
 AROUND: dict[str, Callable[[Here], Here] | None] = {
     "{}": None,
@@ -448,7 +448,7 @@ AROUND: dict[str, Callable[[Here], Here] | None] = {
 
 
 def of_word(word: str, one: Here, other: Here, clause: str) -> Here:
-    """The meaning of a word between two operands, as a formula in such a clause."""
+    """The meaning of a word between two operands, as a formula in this kind of clause."""
     joined = {
         "but": both(one, other),
         "without": both(one, negated(other)),
@@ -468,10 +468,10 @@ def of_word(word: str, one: Here, other: Here, clause: str) -> Here:
 
 
 def as_clause(word: str, one: Here, other: Here, clause: str) -> Whole:
-    """The meaning of a whole clause whose two sides a word joins."""
+    """The meaning of a clause whose two sides are joined by a word."""
     if word == "without" and clause in ("reach", "keep"):
-        asked, never = whole(clause, one), whole("avoid", other)
-        return lambda trace: asked(trace) and never(trace)
+        goal, never = whole(clause, one), whole("avoid", other)
+        return lambda trace: goal(trace) and never(trace)
     wanted = negated(one) if clause == "avoid" else one
     if word == "before" and clause in ("keep", "avoid"):
         return whole("require", until(wanted, other))
@@ -487,14 +487,14 @@ SOME: list[Trace] = TRACES[::7]
 
 
 def reading(clause: str, around: str, join: str, operator: str, word: str, right: str) -> Whole | None:
-    """The one meaning of such a clause; None where it has more, or is not what was meant in any."""
+    """The single meaning of a clause, or None if it has several meanings or no clear one."""
     outer = AROUND[around]
     if clause == "require" and word == "while" and around != "always ({})":
         return None
     if word == "before" and clause not in ("keep", "avoid"):
-        # `b` may be asked for later, or only be what must not come first.
+        # Either `b` must come later, or it must only not come first.
         return None
-    asked = clause
+    kind = clause
     if outer is not None:
         if word in ("if", "while"):
             rule = clause == "keep" and around == "({}) and c"
@@ -505,7 +505,7 @@ def reading(clause: str, around: str, join: str, operator: str, word: str, right
             clause != "require" or around not in ("({}) and c",)
         ):
             return None
-        asked = "keep" if word in ("if", "while") else "require"
+        kind = "keep" if word in ("if", "while") else "require"
     if operator in ("always ", "eventually ", "never "):
         return None
     tail, whole_right = RIGHT[right][1], RIGHT[right][0]
@@ -514,26 +514,26 @@ def reading(clause: str, around: str, join: str, operator: str, word: str, right
         lefts.append((OPERATORS[operator](a), JOINS[join]))
     if operator == "not " and word != "but":
         lefts.append((a, lambda one: JOINS[join](negated(one))))
-    found: list[Whole] = []
+    meanings: list[Whole] = []
     for (left, before), (other, behind) in product(lefts, [(whole_right, None), (b, tail)][: 1 if right == "b" else 2]):
         if outer is None and before is None and behind is None:
-            found.append(as_clause(word, left, other, clause))
+            meanings.append(as_clause(word, left, other, clause))
             continue
         if outer is None and not join and right == "b":
-            found.append(_negated_clause(word, left, other, clause))
+            meanings.append(_negated_clause(word, left, other, clause))
             continue
-        inner = "avoid" if before is not None and operator == "not " and left is a else asked
+        inner = "avoid" if before is not None and operator == "not " and left is a else kind
         meaning = of_word(word, left, other, inner)
         meaning = before(meaning) if before else meaning
         meaning = behind(meaning) if behind else meaning
-        found.append(whole(clause, outer(meaning) if outer else meaning))
-    if any(one(trace) != found[0](trace) for one in found[1:] for trace in SOME):
+        meanings.append(whole(clause, outer(meaning) if outer else meaning))
+    if any(one(trace) != meanings[0](trace) for one in meanings[1:] for trace in SOME):
         return None
-    return found[0]
+    return meanings[0]
 
 
 def _negated_clause(word: str, left: Here, other: Here, clause: str) -> Whole:
-    """The meaning of `not a WORD b` where `not` stands before all of it, if ``left`` is ``a`` alone."""
+    """The meaning of `not a WORD b` where `not` applies to all of it, if ``left`` is ``a`` alone."""
     if left is not a:
         return as_clause(word, left, other, clause)
     opposite = {"keep": "avoid", "avoid": "keep"}
@@ -542,27 +542,32 @@ def _negated_clause(word: str, left: Here, other: Here, clause: str) -> Whole:
     return whole(clause, negated(of_word(word, left, other, "avoid")))
 
 
-def test_drawn_clauses_with_one_reading_are_helped() -> None:
-    # Both kinds are among what is drawn, or the test of them would hold for nothing.
-    found = [(bool(offered(clause)), meaning is not None) for clause, meaning in drawn(400)]
-    assert sum(helped and clear for helped, clear in found) > 40
-    assert sum(not clear for _, clear in found) > 100
+def test_many_random_clauses_are_clear_and_many_are_not() -> None:
+    # The random clauses must contain both kinds, or the test of their edits would prove nothing.
+    results = [(bool(offered(clause)), meaning is not None) for clause, meaning in drawn(400)]
+    assert sum(fixed and clear for fixed, clear in results) > 40
+    assert sum(not clear for _, clear in results) > 100
 
 
 def drawn(number: int) -> Iterator[tuple[str, Whole | None]]:
-    """So many clauses of any parts, and as many of those parts that leave more of them clear, with their readings."""
-    every = list(product(CLAUSES, AROUND, JOINS, OPERATORS, WORDS, RIGHT))
-    few = list(product(CLAUSES, list(AROUND)[::4], list(JOINS)[:3], list(OPERATORS)[:2], WORDS, list(RIGHT)[:2]))
-    source = random.Random(7)
-    for clause, around, join, operator, word, right in (*source.sample(every, number), *source.sample(few, number)):
+    """Yield random clauses with their readings: ``number`` of any kind, and ``number`` of a kind that is often clear."""
+    all_parts = list(product(CLAUSES, AROUND, JOINS, OPERATORS, WORDS, RIGHT))
+    clear_parts = list(
+        product(CLAUSES, list(AROUND)[::4], list(JOINS)[:3], list(OPERATORS)[:2], WORDS, list(RIGHT)[:2])
+    )
+    random_ = random.Random(7)
+    for clause, around, join, operator, word, right in (
+        *random_.sample(all_parts, number),
+        *random_.sample(clear_parts, number),
+    ):
         text = around.format(f"{join}{operator}a {word} {right}")
         yield f"{clause} {text}", reading(clause, around, join, operator, word, right)
 
 
 @pytest.mark.parametrize(
-    ("clause", "meaning"), list(drawn(400)), ids=lambda each: each if isinstance(each, str) else ""
+    ("clause", "meaning"), list(drawn(400)), ids=lambda value: value if isinstance(value, str) else ""
 )
-def test_an_edit_of_a_drawn_clause_has_its_one_reading(clause: str, meaning: Whole | None) -> None:
+def test_an_edit_of_a_random_clause_has_its_single_reading(clause: str, meaning: Whole | None) -> None:
     for text in offered(clause):
         assert meaning is not None, text
         body = text.removeprefix(HEAD)

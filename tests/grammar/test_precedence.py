@@ -32,7 +32,7 @@ TABLE = [
     # then is the loosest and needs plain operands
     ("a then !b then c > 1", "(a then ((not b) then (c > 1)))"),
     ("(a & b) then (F c)", "(<(a and b)> then <(F c)>)"),
-    # what ends in a quantifier reaches as far right as it can
+    # a quantifier extends as far to the right as possible
     ("all x in (s, t): F p(x) & q", "(all x s t: ((F p(x)) and q))"),
     ("a & any x in (s): p(x) | b -> c", "(a and (any x s: ((p(x) or b) implies c)))"),
     ("a U !F all x in (s): b <-> c", "(a U (not (F (all x s: (b iff c)))))"),
@@ -72,5 +72,5 @@ def test_precedence(text: str, structure: str) -> None:
         ("a.b.F", "a.b.F"),
     ],
 )
-def test_words_that_are_not_reserved_are_names(text: str, structure: str) -> None:
+def test_unreserved_words_are_names(text: str, structure: str) -> None:
     assert brackets(read(text)) == structure

@@ -1,4 +1,4 @@
-"""Each word and sign of the grammar has its colour, and a text keeps all its letters."""
+"""The Pygments lexer colours every word and sign of the grammar, and loses no character of a text."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ WORDS = [
 
 
 def classes(text: str) -> list[tuple[str, str]]:
-    """The pieces of a text that are seen, each with its class."""
+    """Return the visible tokens of a text, each with its class."""
     pieces = TltlLexer().get_tokens_unprocessed(text)
     return [(piece, str(kind).removeprefix("Token.")) for _, kind, piece in pieces if piece.strip()]
 
@@ -54,7 +54,7 @@ def test_every_declaration_and_clause_is_a_keyword() -> None:
         assert CLASSES[load().words[word]] in pygments.Keyword, word
 
 
-def test_every_spelling_of_an_operator_is_one() -> None:
+def test_every_spelling_of_an_operator_is_an_operator() -> None:
     known = load()
     for spelling, terminal in {**known.words, **known.signs}.items():
         if CLASSES[terminal] is pygments.Operator:
@@ -63,7 +63,7 @@ def test_every_spelling_of_an_operator_is_one() -> None:
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_nothing_in_a_source_is_strange(file) -> None:  # type: ignore[no-untyped-def]
+def test_no_valid_source_has_an_error_token(file) -> None:  # type: ignore[no-untyped-def]
     text = file.read_text(encoding="utf-8")
     assert "Error" not in {kind for _, kind in classes(text)}
 
@@ -93,9 +93,9 @@ def test_no_letter_is_lost(text: str) -> None:
         ("spec s = a == ö", {"==": "Error", "ö": "Error"}),
     ],
 )
-def test_words_are_told_apart_by_their_places(text: str, expected: dict[str, str]) -> None:
-    found = classes(text)
-    assert {piece: kind for piece, kind in found if piece in expected} == expected
+def test_the_class_of_a_word_depends_on_its_place(text: str, expected: dict[str, str]) -> None:
+    tokens = classes(text)
+    assert {piece: kind for piece, kind in tokens if piece in expected} == expected
 
 
 def test_a_text_beyond_the_limit_is_shown_without_colours(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,7 +103,7 @@ def test_a_text_beyond_the_limit_is_shown_without_colours(monkeypatch: pytest.Mo
     assert classes("spec s = F a")[-1] == (" = F a", "Text")
 
 
-def test_pygments_finds_it() -> None:
+def test_pygments_finds_the_lexer() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     (entry,) = project["entry-points"]["pygments.lexers"].values()
     module, _, name = entry.partition(":")

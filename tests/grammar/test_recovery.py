@@ -55,8 +55,8 @@ def test_every_broken_clause_is_reported_once(lines: list[tuple[str, bool]]) -> 
     text = "spec s {\n" + "".join(f"    {line}\n" for line, _ in lines) + "    keep last\n}\n"
     module, diagnostics = parse(SourceFile("a.tltl", text))
     broken = [number for number, (_, good) in enumerate(lines, 2) if not good]
-    found = [label.source.position(label.span.start)[0] for label in (item.labels[0] for item in diagnostics)]
-    assert found == broken
+    reported = [label.source.position(label.span.start)[0] for label in (item.labels[0] for item in diagnostics)]
+    assert reported == broken
     (spec,) = module.declarations
     assert isinstance(spec, tree.SpecDecl)
     assert len(spec.clauses) >= len(lines) - len(broken) + 1
@@ -67,19 +67,19 @@ def test_every_broken_declaration_is_reported_once(lines: list[tuple[str, bool]]
     text = "".join(f"{line}\n" for line, _ in lines)
     module, diagnostics = parse(SourceFile("a.tltl", text))
     broken = [number for number, (_, good) in enumerate(lines, 1) if not good]
-    found = [label.source.position(label.span.start)[0] for label in (item.labels[0] for item in diagnostics)]
-    assert found == broken
+    reported = [label.source.position(label.span.start)[0] for label in (item.labels[0] for item in diagnostics)]
+    assert reported == broken
     assert len(module.declarations) >= len(lines) - len(broken)
 
 
-def test_reading_piece_by_piece_gives_the_same_tree() -> None:
+def test_recovery_gives_the_same_tree_for_valid_text() -> None:
     source = SourceFile("a.tltl", TEXT)
     assert recover(source, tokenize(TEXT)) == (parse(source)[0].declarations, ())
 
 
 @given(st.integers(0, len(TEXT) - 1))
-def test_what_is_behind_an_error_is_read(cut: int) -> None:
-    """An error spoils its own clause or declaration: a declaration in front of it or behind it is still there."""
+def test_declarations_around_an_error_are_read(cut: int) -> None:
+    """An error affects only its own clause or declaration; declarations before and after it are read."""
     text = f"entity first\nentity second\n{TEXT[:cut]} @ {TEXT[cut:]}\nentity last"
     module, diagnostics = parse(SourceFile("a.tltl", text))
     (first, *_, last) = module.declarations
@@ -96,7 +96,7 @@ def test_errors_are_in_the_order_of_the_text() -> None:
     assert len(starts) == 5
 
 
-def test_enough_is_enough() -> None:
+def test_the_number_of_errors_is_limited() -> None:
     for text in ("entity\n" * 1000, "spec a {\n" + "keep\n" * 1000 + "}"):
         assert len(parse(SourceFile("a", text))[1]) == MAX_ERRORS
 

@@ -24,25 +24,25 @@ CONSTANTS = {"TRUE": ("true", "⊤"), "FALSE": ("false", "⊥")}
 
 
 @pytest.mark.parametrize(("letter", "others"), UNARY.values())
-def test_unary(letter: str, others: str) -> None:
+def test_spellings_of_unary_operators(letter: str, others: str) -> None:
     for other in others.split():
         assert brackets(read(f"a & {other} b")) == brackets(read(f"a & {letter} b"))
 
 
 @pytest.mark.parametrize(("letter", "others"), BINARY.values())
-def test_binary(letter: str, others: str) -> None:
+def test_spellings_of_binary_operators(letter: str, others: str) -> None:
     for other in others.split():
         assert brackets(read(f"a {other} b")) == brackets(read(f"a {letter} b"))
 
 
 @pytest.mark.parametrize(("letter", "others"), CONSTANTS.values())
-def test_constants(letter: str, others: str) -> None:
+def test_spellings_of_constants(letter: str, others: str) -> None:
     for other in others.split():
         assert brackets(read(other)) == brackets(read(letter))
 
 
 @pytest.mark.parametrize("terminal", [*UNARY, *BINARY, *CONSTANTS])
-def test_no_spelling_is_left_out(terminal: str) -> None:
+def test_every_spelling_is_tested(terminal: str) -> None:
     letter, others = {**UNARY, **BINARY, **CONSTANTS}[terminal]
     tables = load()
     spellings = {text for text, name in {**tables.words, **tables.signs}.items() if name == terminal}

@@ -15,14 +15,14 @@ def fresh() -> Iterator[None]:
     tables.load.cache_clear()
 
 
-def test_shipped_tables_are_those_of_the_grammar() -> None:
-    """Lark builds them in strict mode, so this also fails on any conflict of the grammar."""
+def test_the_shipped_tables_match_the_grammar() -> None:
+    """Lark builds the tables in strict mode, so this test also fails if the grammar has a conflict."""
     shipped = Path(tables.TABLES).read_text(encoding="utf-8")
     assert tables.as_text(tables.build(Path(tables.GRAMMAR).read_bytes())) == shipped
 
 
 @pytest.mark.parametrize("content", [b"", b"{}", b"[]", b'{"checksum": 0}', b"\xff\x00"])
-def test_useless_tables_are_built_anew(
+def test_damaged_tables_are_rebuilt(
     fresh: None, content: bytes, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     good = tables.load()
@@ -33,7 +33,7 @@ def test_useless_tables_are_built_anew(
     assert tables.load() == good
 
 
-def test_a_conflict_is_refused() -> None:
+def test_a_conflict_of_the_grammar_is_an_error() -> None:
     with pytest.raises(Exception, match="conflict"):
         tables.build(b'module: e\n?declaration: e\nclause: e\ntest_item: e\nexpression: e\ne: e "+" e | "a"\n')
 

@@ -102,19 +102,19 @@ def test_deep_expressions_are_split() -> None:
 def test_steps_agree_with_the_monitor(fspa: Fspa, data: st.DataObject) -> None:
     limit = data.draw(st.none() | st.integers(1, 5))
     fspa = replace(fspa, limit_steps=limit, judge=data.draw(st.sampled_from(("goal", "limit"))))
-    result = program(fspa, ())
+    compiled = program(fspa, ())
     monitor = Monitor(fspa)
     state, best, done = 0, 0.0, False
     for number in range(1, 8):
         letter = data.draw(st.sampled_from(letters(fspa)))
         sample = [(1 if holds else -1) * data.draw(st.sampled_from([1.0, 0.5, 0.25])) for holds in letter]
         sample = [0.0 if value == -0.25 else value for value in sample]
-        computed_ = step(result, state, number, best, done, dict(zip(result.atoms, sample, strict=True)))
+        outcome = step(compiled, state, number, best, done, dict(zip(compiled.atoms, sample, strict=True)))
         row = monitor.step_atoms(sample)
-        limiting = None if computed_["limiting"] < 0 else fspa.atoms[int(computed_["limiting"])].name
-        state, best, done = int(computed_["target"]), float(computed_["best"]), bool(computed_["done"])
+        limiting = None if outcome["limiting"] < 0 else fspa.atoms[int(outcome["limiting"])].name
+        state, best, done = int(outcome["target"]), float(outcome["best"]), bool(outcome["done"])
         assert (state, best, done) == (row.state, row.progress, row.done)
-        assert (computed_["reward"], computed_["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
+        assert (outcome["reward"], outcome["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
 
 
 @given(st.lists(st.floats(-1, 1) | st.sampled_from([0.0, -0.0, 0.5]), min_size=4, max_size=4))
@@ -122,14 +122,14 @@ def test_robustness_is_written_with_as_few_literals_as_possible(sample: list[flo
     """The guard of the loop has four primes of two literals, or two clauses of two."""
     a, b, c, d = map(f.atom, "abcd")
     fspa = build(spec_from_formula(f.eventually(f.or_(f.and_(a, b), f.and_(c, d)))))
-    result = program(fspa, ())
-    (branch,) = result.states[0]
+    compiled = program(fspa, ())
+    (branch,) = compiled.states[0]
     assert isinstance(branch, If)
     for body in (branch.cases[0][1], branch.otherwise):
         (robustness,) = (line.value for line in body if isinstance(line, Assign) and line.name == ROBUSTNESS)
         assert sum(isinstance(part, Variable) for part in parts([robustness])) == 4
-    computed_ = step(result, 0, 1, 0.0, False, dict(zip(result.atoms, sample, strict=True)))
-    assert computed_["robustness"] == Monitor(fspa).step_atoms(sample).robustness
+    outcome = step(compiled, 0, 1, 0.0, False, dict(zip(compiled.atoms, sample, strict=True)))
+    assert outcome["robustness"] == Monitor(fspa).step_atoms(sample).robustness
 
 
 def test_temporaries_avoid_the_names_of_a_specification() -> None:
@@ -140,10 +140,10 @@ def test_temporaries_avoid_the_names_of_a_specification() -> None:
         signals=tuple(spec.Signal(name, "number", None, None) for name in names),
         atoms=(spec.Atom("a", square),),
     )
-    result = program(fspa, ())
-    declared = [statement.name for statement in result.values[0] if isinstance(statement, Declare)]
+    compiled = program(fspa, ())
+    declared = [statement.name for statement in compiled.values[0] if isinstance(statement, Declare)]
     assert declared == ["t3_1"]
-    assert len({*result.signals, *result.atoms, *declared}) == 7
+    assert len({*compiled.signals, *compiled.atoms, *declared}) == 7
 
 
 @settings(max_examples=60, deadline=None)
