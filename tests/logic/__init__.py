@@ -1,1 +1,1 @@
-"""Tests of the formulas, their laws and their texts."""
+"""Tests of formulas, their laws and their texts."""

@@ -14,7 +14,7 @@ _BINARY_TEMPORAL = (f.until, f.weak_until, f.release, f.strong_release)
 
 
 def formulas(atoms: Sequence[str] = ("a", "b", "c"), max_leaves: int = 8) -> st.SearchStrategy[Formula]:
-    """Formulas with every operator over the atoms and the constants."""
+    """Formulas over the atoms and the constants, with every operator."""
     return st.recursive(_leaves(atoms), lambda inner: _propositional(inner) | _temporal(inner), max_leaves=max_leaves)
 
 
@@ -26,23 +26,23 @@ def state_formulas(atoms: Sequence[str] = ("a", "b", "c"), max_leaves: int = 8) 
 def traces(
     atoms: Sequence[str] = ("a", "b", "c"), min_length: int = 1, max_length: int = 6
 ) -> st.SearchStrategy[tuple[frozenset[str], ...]]:
-    """Finite traces; a sample is the set of the atoms that hold."""
+    """Finite traces; a sample is the set of the true atoms."""
     sample = st.frozensets(st.sampled_from(list(atoms)))
     return st.lists(sample, min_size=min_length, max_size=max_length).map(tuple)
 
 
 def _leaves(atoms: Sequence[str]) -> st.SearchStrategy[Formula]:
-    # Mostly atoms: a constant makes most of what stands around it collapse.
+    # Atoms are more likely than constants, which often make the formula around them trivial.
     names = [f.atom(name) for name in atoms]
     return st.sampled_from([*names * 4, TRUE, FALSE])
 
 
 def _propositional(inner: st.SearchStrategy[Formula]) -> st.SearchStrategy[Formula]:
-    several = st.lists(inner, min_size=2, max_size=3)
+    operand_lists = st.lists(inner, min_size=2, max_size=3)
     return st.one_of(
         inner.map(f.not_),
-        several.map(lambda operands: f.and_(*operands)),
-        several.map(lambda operands: f.or_(*operands)),
+        operand_lists.map(lambda operands: f.and_(*operands)),
+        operand_lists.map(lambda operands: f.or_(*operands)),
         st.builds(f.implies, inner, inner),
         st.builds(f.iff, inner, inner),
     )

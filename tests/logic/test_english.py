@@ -1,4 +1,4 @@
-"""The English sentence: known ones, and what holds of all of them."""
+"""English sentences of formulas: known examples, and properties of all sentences."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ ENDLESS = {
     "true": "Nothing remains to be done.",
     "false": "The spec is violated.",
 }
-"""Over traces that never end."""
+"""Sentences over infinite traces."""
 
 
 @pytest.mark.parametrize(("formula", "sentence"), EXAMPLES.items())
@@ -115,7 +115,7 @@ def test_known_sentences(formula: str, sentence: str) -> None:
     assert english_text(read_formula(formula)) == sentence
 
 
-def test_comparisons_are_turned_and_need_no_brackets() -> None:
+def test_negated_comparisons_are_reversed_and_need_no_brackets() -> None:
     low, high = f.not_(f.atom("fuel > 5")), f.atom("near(a) < 3")
     assert english_text(f.always(f.or_(low, high))) == "Keep fuel <= 5 or near(a) < 3 throughout."
     assert english_text(f.always(low)) == "Avoid fuel > 5 throughout."
@@ -123,7 +123,7 @@ def test_comparisons_are_turned_and_need_no_brackets() -> None:
 
 
 @pytest.mark.parametrize(("formula", "sentence"), ENDLESS.items())
-def test_known_sentences_about_traces_that_never_end(formula: str, sentence: str) -> None:
+def test_known_sentences_over_infinite_traces(formula: str, sentence: str) -> None:
     assert english_text(read_formula(formula), endless=True) == sentence
 
 
@@ -135,7 +135,7 @@ def test_every_formula_has_a_sentence_that_names_its_atoms(formula: Formula) -> 
 @given(formulas(max_leaves=20))
 def test_constants_are_never_named(formula: Formula) -> None:
     text = english_text(formula)
-    assume("atisfy" not in text)  # what is nested too deep for a sentence is given as a formula
+    assume("atisfy" not in text)  # a part that is nested too deeply for a sentence is written as a formula
     words = text.rstrip(".").replace("(", " ").replace(")", " ").replace(",", " ").split()
     assert not {"true", "false"}.intersection(words)
 
@@ -157,13 +157,17 @@ def assert_sentence(text: str) -> None:
     assert text.count("(") == text.count(")")
 
 
-def test_a_sentence_says_one_thing_only() -> None:
-    """Small formulas with one sentence are equal on all traces."""
+def test_a_sentence_has_one_meaning() -> None:
+    """Small formulas with the same sentence agree on all traces."""
     table = TruthTable("ab", 4)
     meanings: dict[str, dict[tuple[int, ...], Formula]] = defaultdict(dict)
     for formula in (*formulas_up_to(4), *formulas_of_size(5)[::2], *formulas_of_size(6)[::49]):
         meanings[english_text(formula)].setdefault(table.of(formula), formula)
-    ambiguous = {text: [str(x) for x in found.values()] for text, found in meanings.items() if len(found) > 1}
+    ambiguous = {
+        text: [str(x) for x in formulas_by_truth.values()]
+        for text, formulas_by_truth in meanings.items()
+        if len(formulas_by_truth) > 1
+    }
     assert not ambiguous
 
 
@@ -180,7 +184,7 @@ def test_a_sentence_says_one_thing_only() -> None:
     ],
     ids=["not", "X", "F", "then", "U", "->", "and or"],
 )
-def test_depth_is_no_problem(nest: object) -> None:
+def test_deep_formulas_have_sentences(nest: object) -> None:
     assert callable(nest)
     formula = f.always(f.atom("a"))
     for _ in range(10_000):

@@ -1,4 +1,4 @@
-"""Formulas are one object each, keep what was written and can be walked however deep they are."""
+"""Equal formulas are one object, keep the order of their operands, and can be walked at any depth."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def test_conjunctions_flatten_and_keep_their_order() -> None:
     assert f.and_(A) is A
 
 
-def test_then_makes_one_sequence() -> None:
+def test_nested_then_is_one_sequence() -> None:
     assert str(f.then(A, f.then(B, C))) == "F(a & X F(b & X F c))"
 
 
-def test_atoms_stand_in_the_order_of_the_formula() -> None:
+def test_atoms_follow_the_order_of_the_formula() -> None:
     assert f.until(f.or_(C, A), f.and_(A, B)).atoms() == ("c", "a", "b")
 
 
@@ -56,7 +56,7 @@ def test_rebuilding_from_the_same_operands_changes_nothing(formula: Formula) -> 
     assert f.rebuild(formula, formula.args) is formula
 
 
-def test_walking_is_left_before_right_also_where_parts_are_shared() -> None:
+def test_a_walk_goes_from_left_to_right_even_with_shared_parts() -> None:
     a, b = f.atom("a"), f.atom("b")
     assert f.and_(f.or_(b, a), a, b).atoms() == ("b", "a")
     assert f.and_(f.eventually(f.and_(a, b)), b, a).atoms() == ("a", "b")

@@ -1,4 +1,4 @@
-"""The cheap answers are right where they commit themselves."""
+"""The cheap tests of implication, and of values at the last sample, are correct whenever they give an answer."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_implication_is_sound(premise: Formula, conclusion: Formula) -> None:
         ("!F a", "G !a"),
     ],
 )
-def test_what_implication_sees(premise: str, conclusion: str) -> None:
+def test_known_implications_are_recognised(premise: str, conclusion: str) -> None:
     p, q = read_formula(premise), read_formula(conclusion)
     if premise.startswith("!"):
         p = complement(p.args[0])
@@ -58,7 +58,7 @@ def test_what_implication_sees(premise: str, conclusion: str) -> None:
     assert not syntactically_implies(q, p) or premise == "G F a" or premise.startswith("!")
 
 
-def test_implication_gives_up_on_hard_pairs() -> None:
+def test_implication_stops_early_on_hard_pairs() -> None:
     left, right = f.atom("a"), f.atom("b")
     for i in range(300):
         left, right = f.or_(f.next_(left), f.atom(f"a{i}")), f.and_(f.next_(right), f.atom(f"b{i}"))
@@ -72,7 +72,7 @@ def test_the_complement_is_the_negation(formula: Formula) -> None:
 
 
 @given(formulas(("a", "b"), 8))
-def test_the_value_at_the_last_sample(formula: Formula) -> None:
+def test_the_value_at_the_last_sample_agrees_with_the_oracle(formula: Formula) -> None:
     value = value_at_last(formula)
     if value is not None:
         assert all(holds(formula, trace) == value for trace in LAST)

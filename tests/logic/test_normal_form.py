@@ -1,4 +1,4 @@
-"""Negation normal form: its shape, its meaning, its cost."""
+"""Negation normal form: its form, its meaning and its cost."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ def in_normal_form(formula: Formula) -> bool:
 
 
 @given(formulas(max_leaves=12))
-def test_the_form_and_the_meaning(formula: Formula) -> None:
+def test_the_normal_form_is_normal_and_keeps_the_meaning(formula: Formula) -> None:
     normal = negation_normal_form(formula)
     assert in_normal_form(normal)
     assert TABLE.of(normal) == TABLE.of(formula)
     assert negation_normal_form(normal) is normal
 
 
-def test_every_small_formula() -> None:
+def test_every_small_formula_keeps_its_meaning() -> None:
     for formula in formulas_up_to(4):
         assert TABLE.of(negation_normal_form(formula)) == TABLE.of(formula), str(formula)
 
 
-def test_the_corpus() -> None:
+def test_the_corpus_is_normalised() -> None:
     assert all(in_normal_form(negation_normal_form(entry.formula)) for entry in corpus())
 
 
@@ -65,7 +65,7 @@ def test_shared_subformulas_are_visited_once() -> None:
 
 
 @pytest.mark.parametrize("nest", [f.not_, f.next_, lambda inner: f.implies(f.atom("p"), inner)], ids=["!", "X", "->"])
-def test_depth_is_no_problem(nest: object) -> None:
+def test_deep_formulas_are_normalised(nest: object) -> None:
     assert callable(nest)
     formula = f.atom("a")
     for _ in range(10_000):

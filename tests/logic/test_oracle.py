@@ -1,4 +1,4 @@
-"""The oracle against worked examples and against the fast truth tables of these tests."""
+"""The oracle agrees with worked examples, and with the fast truth tables of these tests."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_position_counts_from_the_first_sample() -> None:
 
 
 @pytest.mark.parametrize(("trace", "position"), [([], 0), (["a"], 1), (["a"], -1)])
-def test_there_is_no_truth_outside_the_trace(trace: list[str], position: int) -> None:
+def test_a_position_outside_the_trace_is_an_error(trace: list[str], position: int) -> None:
     with pytest.raises(ValueError, match="has no position"):
         holds(read_formula("a"), trace, position)
 
@@ -74,15 +74,15 @@ def test_the_truth_table_agrees(formula: Formula) -> None:
 
 
 @given(formulas(), traces())
-def test_the_end_of_a_trace_decides_at_the_same_position(formula: Formula, trace: tuple[frozenset[str], ...]) -> None:
+def test_only_the_rest_of_a_trace_matters_at_a_position(formula: Formula, trace: tuple[frozenset[str], ...]) -> None:
     for position in range(len(trace)):
         assert holds(formula, trace, position) == holds(formula, trace[position:])
 
 
-def test_all_traces_are_all_and_in_order_of_length() -> None:
-    found = list(all_traces("ab", 3))
-    assert len(found) == len(set(found)) == 4 + 16 + 64
-    assert [len(trace) for trace in found] == sorted(len(trace) for trace in found)
+def test_all_traces_are_enumerated_by_length() -> None:
+    traces_ = list(all_traces("ab", 3))
+    assert len(traces_) == len(set(traces_)) == 4 + 16 + 64
+    assert [len(trace) for trace in traces_] == sorted(len(trace) for trace in traces_)
 
 
 @pytest.mark.parametrize(
@@ -94,13 +94,13 @@ def test_robustness_examples(formula: str, expected: float) -> None:
 
 
 @given(state_formulas(), st.lists(st.floats(-1, 1).filter(bool), min_size=3, max_size=3))
-def test_the_sign_of_the_robustness_is_the_truth(formula: Formula, numbers: list[float]) -> None:
+def test_the_sign_of_the_robustness_is_the_truth_value(formula: Formula, numbers: list[float]) -> None:
     values = dict(zip("abc", numbers, strict=True))
     robustness = robustness_of_state(formula, values)
     assert -1 <= robustness <= 1
     assert (robustness > 0) == holds(formula, [{name for name, value in values.items() if value > 0}])
 
 
-def test_robustness_is_of_one_state() -> None:
+def test_robustness_of_a_temporal_formula_is_an_error() -> None:
     with pytest.raises(ValueError, match="more than one state"):
         robustness_of_state(read_formula("F a"), {"a": 1.0})

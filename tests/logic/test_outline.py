@@ -1,4 +1,4 @@
-"""Formulas sorted into goals, what holds throughout, what recurs, and the rest."""
+"""The outline of a formula: goals, constraints that hold throughout, recurring goals, and the rest."""
 
 from __future__ import annotations
 
@@ -28,29 +28,33 @@ def goals(*texts: str) -> tuple[Goal, ...]:
         ("F(a & F b)", Outline(((Goal("a"), Goal("b", together=True)),))),
         ("G(a & !b)", Outline(throughout=("keep a", "avoid b"))),
         ("G(a -> F b)", Outline(throughout=("whenever a, reach b at that step or later",))),
-        # Here "throughout" is part of what is said, and not of the list.
+        # Here "throughout" belongs to the sentence, not to the heading of the list.
         ("G(a -> G b)", Outline(throughout=("whenever a, keep b throughout",))),
         ("F G a & a U b", Outline(others=("from some step on keep a throughout", "reach b, keeping a until then"))),
         ("true", Outline()),
         ("false", Outline(others=("what nothing can satisfy",))),
     ],
 )
-def test_over_finite_traces(formula: str, found: Outline) -> None:
+def test_outlines_over_finite_traces(formula: str, found: Outline) -> None:
     assert outline(read_formula(formula)) == found
 
 
-def test_over_infinite_traces() -> None:
-    found = outline(read_formula("G F a & F b & G c & G(a -> F b)"), endless=True)
-    assert found.recurring == ("reach a",)
-    assert found.goals == (goals("b"),)
-    assert found.throughout == ("keep c", "whenever a, reach b at that step or later")
+def test_outlines_over_infinite_traces() -> None:
+    result = outline(read_formula("G F a & F b & G c & G(a -> F b)"), endless=True)
+    assert result.recurring == ("reach a",)
+    assert result.goals == (goals("b"),)
+    assert result.throughout == ("keep c", "whenever a, reach b at that step or later")
 
 
 @settings(max_examples=300, deadline=None)
 @given(SMALL, st.booleans())
-def test_all_of_a_formula_is_said_in_english(formula: Formula, endless: bool) -> None:
+def test_the_outline_of_every_formula_is_in_english(formula: Formula, endless: bool) -> None:
     formula = without_constants(formula) if endless else formula
-    found = outline(formula, endless=endless)
-    said = [goal.text for row in found.goals for goal in row] + [*found.throughout, *found.recurring, *found.others]
-    assert all(said) and all(text == text.strip() for text in said)
-    assert said or english_text(formula, endless=endless) == "Nothing remains to be done."
+    result = outline(formula, endless=endless)
+    texts = [goal.text for row in result.goals for goal in row] + [
+        *result.throughout,
+        *result.recurring,
+        *result.others,
+    ]
+    assert all(texts) and all(text == text.strip() for text in texts)
+    assert texts or english_text(formula, endless=endless) == "Nothing remains to be done."

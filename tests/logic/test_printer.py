@@ -1,4 +1,4 @@
-"""Formulas as text: known texts, and text that is read back."""
+"""Formulas as text: known texts, and texts that are read back."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_known_texts(text: str, unicode: str, words: str) -> None:
         (f.and_(f.atom("x < 1"), f.next_(f.not_(f.atom("a")))), "(x < 1) & X !a"),
     ],
 )
-def test_a_comparison_stands_in_brackets_wherever_it_is_an_operand(formula: Formula, text: str) -> None:
+def test_a_comparison_that_is_an_operand_has_brackets(formula: Formula, text: str) -> None:
     assert ascii_text(formula) == text
 
 
@@ -89,7 +89,7 @@ def test_every_formula_of_the_corpus_is_read_back() -> None:
 
 
 @given(formulas(max_leaves=8))
-def test_no_bracket_is_spare(formula: Formula) -> None:
+def test_no_brackets_are_superfluous(formula: Formula) -> None:
     text = ascii_text(formula)
     opened: list[int] = []
     for index, character in enumerate(text):
@@ -98,7 +98,7 @@ def test_no_bracket_is_spare(formula: Formula) -> None:
         elif character == ")":
             start = opened.pop()
             without = f"{text[:start]} {text[start + 1 : index]} {text[index + 1 :]}"
-            # <-> has no grouping of its own, so that its brackets are there for the reader.
+            # The printer always groups <-> with brackets, to help the reader.
             assert "<->" in text or read_formula(without) is not formula
 
 
@@ -108,7 +108,7 @@ def test_no_bracket_is_spare(formula: Formula) -> None:
     [f.not_, f.eventually, lambda inner: f.until(f.atom("p"), inner), lambda inner: f.until(inner, f.atom("p"))],
     ids=["not", "F", "U right", "U left"],
 )
-def test_depth_is_no_problem(write: Callable[[Formula], str], nest: Callable[[Formula], Formula]) -> None:
+def test_deep_formulas_are_printed(write: Callable[[Formula], str], nest: Callable[[Formula], Formula]) -> None:
     formula = f.atom("a")
     for _ in range(10_000):
         formula = nest(formula)
@@ -116,7 +116,7 @@ def test_depth_is_no_problem(write: Callable[[Formula], str], nest: Callable[[Fo
 
 
 def parsed(text: str) -> Formula:
-    """The formula that the product's grammar finds in a text; the test's own way from tree to formula."""
+    """Parse a text with the grammar of the language, and convert the tree to a formula with code of this test."""
     source = SourceFile("formula", text)
     expr, diagnostics = parse_formula(source)
     assert not diagnostics, (text, diagnostics)
@@ -125,7 +125,7 @@ def parsed(text: str) -> Formula:
 
 
 def bounded_formula(op: str, last: int, body: Formula) -> Formula:
-    """``F[0,last] body`` or ``G[0,last] body``, expanded as the language does."""
+    """Return ``F[0,last] body`` or ``G[0,last] body``, expanded as the language expands it."""
     result = body
     for _ in range(last):
         result = f.or_(body, f.next_(result)) if op == "F" else f.and_(body, f.weak_next(result))

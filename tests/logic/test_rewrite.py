@@ -1,4 +1,4 @@
-"""Each law, and the simplifier, against all short traces."""
+"""Each rewriting law, and the simplifier, agree with the original formula on all short traces."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_each_rewrite_keeps_the_meaning_of_every_small_formula() -> None:
 
 @settings(max_examples=500)
 @given(formulas(("a", "b", "c"), 12))
-def test_each_rewrite_keeps_the_meaning_and_never_makes_longer(formula: Formula) -> None:
+def test_each_rewrite_keeps_the_meaning_and_never_lengthens(formula: Formula) -> None:
     for node in formula.walk():
         for rewrite in REWRITES:
             if node.op in rewrite.ops:
@@ -69,7 +69,7 @@ def test_simplify_keeps_the_meaning_of_every_small_formula() -> None:
 
 @settings(max_examples=500)
 @given(formulas(("a", "b", "c"), 20))
-def test_simplify_keeps_the_meaning_and_never_makes_longer(formula: Formula) -> None:
+def test_simplify_keeps_the_meaning_and_never_lengthens(formula: Formula) -> None:
     simpler = simplify(formula)
     assert TABLE.of(simpler) == TABLE.of(formula)
     assert size(simpler) <= size(formula)
@@ -99,7 +99,7 @@ def test_simplify_never_makes_a_formula_of_the_corpus_longer() -> None:
 
 
 @pytest.mark.parametrize("make", [f.next_, f.not_, f.eventually], ids=["X", "not", "F"])
-def test_simplify_takes_deep_formulas(make: object) -> None:
+def test_simplify_handles_deep_formulas(make: object) -> None:
     assert callable(make)
     formula = f.atom("a")
     for _ in range(10_000):
@@ -107,10 +107,10 @@ def test_simplify_takes_deep_formulas(make: object) -> None:
     assert size(simplify(formula)) <= 10_001
 
 
-def test_simplify_takes_wide_formulas() -> None:
+def test_simplify_handles_wide_formulas() -> None:
     wide = f.and_(*(f.eventually(f.atom(f"a{i}")) for i in range(10_000)))
     assert simplify(wide) is wide
 
 
-def test_size_counts_what_is_printed() -> None:
+def test_size_counts_the_printed_symbols() -> None:
     assert size(read_formula("a & b & !c -> X true")) == 9

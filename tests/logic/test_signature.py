@@ -1,4 +1,4 @@
-"""Signatures never refute an implication that holds."""
+"""Signatures of formulas: the truth on sampled traces, so that they never refute an implication that holds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TABLE = TruthTable("ab", 3)
 
 @settings(max_examples=300)
 @given(formulas(max_leaves=12))
-def test_a_signature_is_the_truth_on_its_traces(formula: Formula) -> None:
+def test_a_signature_is_the_truth_on_the_sampled_traces(formula: Formula) -> None:
     atoms = {name: signature(f.atom(name)) for name in "abc"}
     bits = signature(formula)
     for k in (0, 17, 63):
@@ -26,14 +26,14 @@ def test_a_signature_is_the_truth_on_its_traces(formula: Formula) -> None:
             assert holds(formula, trace, i) == bool(bits >> (64 * i + k) & 1)
 
 
-def test_equal_formulas_have_one_signature_and_others_rarely_share_it() -> None:
+def test_equivalent_formulas_share_a_signature_and_others_rarely_do() -> None:
     small = formulas_up_to(4)
     signature_of = {TABLE.of(formula): signature(formula) for formula in small}
     assert all(signature(formula) == signature_of[TABLE.of(formula)] for formula in small)
     assert len(set(signature_of.values())) > 0.98 * len(signature_of)
 
 
-def test_a_signature_of_a_deep_formula() -> None:
+def test_a_deep_formula_has_a_signature() -> None:
     deep = f.atom("a")
     for _ in range(10_000):
         deep = f.or_(f.atom("b"), f.next_(deep))

@@ -1,4 +1,4 @@
-"""The truth of formulas on all short traces at once: as slow definitions allow, but a bit for each trace.
+"""The truth of formulas on all short traces at once, by the definitions, with one bit for each trace.
 
 :mod:`tests.logic.test_oracle` compares it with the oracle.
 """
@@ -11,11 +11,14 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces
 
 Column = list[int]
-"""For each position of the traces of one length an integer; bit k is the truth on the k-th trace."""
+"""One integer for each position in traces of one length; bit k is the truth on the k-th trace."""
 
 
 class TruthTable:
-    """Truth on every trace over ``atoms`` of 1 to ``max_length`` samples: equal tables, equal meaning there."""
+    """The truth of formulas on every trace over ``atoms`` of 1 to ``max_length`` samples.
+
+    Two formulas have equal rows if and only if they agree on these traces.
+    """
 
     def __init__(self, atoms: Sequence[str], max_length: int) -> None:
         traces = list(all_traces(atoms, max_length))
@@ -30,15 +33,15 @@ class TruthTable:
         self._known: dict[Formula, list[Column]] = {}
 
     def of(self, formula: Formula) -> tuple[int, ...]:
-        """The truth at the first position, an integer for each length."""
+        """Return the truth at the first position, as one integer for each length."""
         return tuple(column[0] for column in self._columns(formula))
 
     def all_positions(self, formula: Formula) -> tuple[tuple[int, ...], ...]:
-        """The truth at every position of every trace."""
+        """Return the truth at every position of every trace."""
         return tuple(tuple(column) for column in self._columns(formula))
 
     def implies(self, premise: Formula, conclusion: Formula) -> bool:
-        """Whether each trace in the table that has the one has the other."""
+        """Whether every trace of the table that satisfies the premise satisfies the conclusion."""
         return not any(p & ~q for p, q in zip(self.of(premise), self.of(conclusion), strict=True))
 
     def _columns(self, formula: Formula) -> list[Column]:
@@ -52,7 +55,7 @@ class TruthTable:
         return known[formula]
 
     def _column(self, node: Formula, operands: list[Column], k: int) -> Column:
-        n, every = k + 1, (1 << len(self._lengths[k])) - 1
+        n, mask = k + 1, (1 << len(self._lengths[k])) - 1
         if node.op == "atom":
             return self._atoms[node.name][k]
         column = [0] * n
@@ -60,21 +63,25 @@ class TruthTable:
             now = [operand[i] for operand in operands]
             following = [operand[i + 1] if i + 1 < n else None for operand in operands]
             rest = column[i + 1] if i + 1 < n else None
-            column[i] = _bits(node.op, now, following, rest, every)
+            column[i] = _bits(node.op, now, following, rest, mask)
         return column
 
 
-def _bits(op: str, now: list[int], following: list[int | None], rest: int | None, every: int) -> int:
-    """Truth at a position from the operands' truth there and at the next one, and the formula's own at the next one."""
+def _bits(op: str, now: list[int], following: list[int | None], rest: int | None, mask: int) -> int:
+    """Return the truth of a formula at a position.
+
+    ``now`` and ``following`` are the operands' truth at this position and at the next one; ``rest`` is the formula's
+    own truth at the next position.
+    """
     match op:
         case "true":
-            return every
+            return mask
         case "false":
             return 0
         case "not":
-            return every & ~now[0]
+            return mask & ~now[0]
         case "and":
-            result = every
+            result = mask
             for bits in now:
                 result &= bits
             return result
@@ -84,23 +91,23 @@ def _bits(op: str, now: list[int], following: list[int | None], rest: int | None
                 result |= bits
             return result
         case "implies":
-            return every & ~now[0] | now[1]
+            return mask & ~now[0] | now[1]
         case "iff":
-            return every & ~(now[0] ^ now[1])
+            return mask & ~(now[0] ^ now[1])
         case "X":
             return 0 if following[0] is None else following[0]
         case "N":
-            return every if following[0] is None else following[0]
+            return mask if following[0] is None else following[0]
         case "F":
             return now[0] | (rest or 0)
         case "G":
-            return now[0] & (every if rest is None else rest)
+            return now[0] & (mask if rest is None else rest)
         case "U":
             return now[1] | now[0] & (rest or 0)
         case "W":
-            return now[1] | now[0] & (every if rest is None else rest)
+            return now[1] | now[0] & (mask if rest is None else rest)
         case "R":
-            return now[1] & (now[0] | (every if rest is None else rest))
+            return now[1] & (now[0] | (mask if rest is None else rest))
         case "M":
             return now[1] & (now[0] | (rest or 0))
     raise AssertionError(op)
