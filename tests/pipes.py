@@ -1,4 +1,4 @@
-"""Entries of a folder that are no files, and a watch on who opens them: reading one could take for ever."""
+"""Pipes and devices in a folder, and a check that nothing opens them: reading one could block forever."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ import pytest
 
 
 def put_beside(path: Path) -> None:
-    """Put a pipe at the path, and beside it a link to a device that never ends."""
+    """Create a pipe at the path, and next to it a link to a device that never ends."""
     os.mkfifo(path)
     path.with_name(f"a_{path.name}").symlink_to("/dev/zero")
 
 
 def forbid(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the test fail, instead of hang, where anything opens a pipe or /dev/zero."""
-    really = io.open
+    """Make the test fail, instead of hang, if anything opens a pipe or /dev/zero."""
+    original = io.open
 
-    def checked(file: Any, *arguments: Any, **named: Any) -> Any:
+    def checked_open(file: Any, *arguments: Any, **named: Any) -> Any:
         if not isinstance(file, int) and Path(file).exists():
             status = Path(file).stat()
             is_zero = stat.S_ISCHR(status.st_mode) and status.st_rdev == Path("/dev/zero").stat().st_rdev
             assert not stat.S_ISFIFO(status.st_mode) and not is_zero, f"{file} was opened"
-        return really(file, *arguments, **named)
+        return original(file, *arguments, **named)
 
-    monkeypatch.setattr(builtins, "open", checked)
-    monkeypatch.setattr(io, "open", checked)
+    monkeypatch.setattr(builtins, "open", checked_open)
+    monkeypatch.setattr(io, "open", checked_open)

@@ -1,7 +1,6 @@
 """Formulas in the notation of the reference corpus, and the corpus itself, for tests and benchmarks.
 
-The product reads formulas with its own grammar; this reader shares no code with it, so the two can
-be compared.
+This reader shares no code with the grammar of the language, so that the two can be compared.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ _STRENGTH |= {"F": 6, "G": 6, "(": 0}
 
 
 class Entry(NamedTuple):
-    """A formula of the corpus; a size is None where the automaton is too large to check explicitly."""
+    """A formula of the corpus; a size is None if the automaton is too large to check explicitly."""
 
     name: str
     family: str
@@ -51,11 +50,12 @@ class Entry(NamedTuple):
 
 
 def read_formula(text: str) -> Formula:
-    """The formula in ``text``: ``! & | -> <-> X WX N F G U W R M F[0,2] G[0,2]``, ``true false 1 0``, names
-    such as ``near(s1)``.
+    """Parse a formula.
 
-    Unary operators bind tightest, then ``U W R M``, ``&``, ``|``, ``->`` and ``<->``; what is not ``&`` or ``|``
-    groups to the right.  Takes linear time and no recursion.  Raises ValueError where the text is no formula.
+    A formula has the operators ``! & | -> <-> X WX N F G U W R M F[0,2] G[0,2]``, the constants ``true false 1 0``,
+    and names such as ``near(s1)``.  Unary operators bind tightest, then ``U W R M``, ``&``, ``|``, ``->`` and
+    ``<->``; binary operators except ``&`` and ``|`` group to the right.  Takes linear time without recursion.  Raises
+    ValueError if the text is not a formula.
     """
     operands: list[Formula] = []
     operators: list[str] = []
@@ -114,7 +114,7 @@ def _reduce(operands: list[Formula], operators: list[str], strength: int) -> Non
 
 
 def _bounded(operator: str, last: int, body: Formula) -> Formula:
-    """``F[0,last] body`` or ``G[0,last] body``."""
+    """Return ``F[0,last] body`` or ``G[0,last] body``."""
     result = body
     for _ in range(last):
         result = f.or_(body, f.next_(result)) if operator == "F" else f.and_(body, f.weak_next(result))
@@ -122,7 +122,7 @@ def _bounded(operator: str, last: int, body: Formula) -> Formula:
 
 
 def corpus() -> Iterator[Entry]:
-    """The reference corpus, in file order; nothing where neither of its two files is present."""
+    """Yield the reference corpus, in file order; yield nothing if neither of its two files exists."""
     for row in _rows():
         states, transition_based = row.get("states"), row.get("transition_based_states")
         yield Entry(

@@ -1,4 +1,4 @@
-"""Random traces of the pieces that readers stumble over."""
+"""Random traces made of pieces that are hard for readers of CSV and JSON."""
 
 from __future__ import annotations
 
@@ -45,15 +45,15 @@ _HEADS = (b"x,seen", b'"x" , seen', b"\xef\xbb\xbfx,seen", b"note,x,seen", b'x,"
 
 
 def csv_traces() -> st.SearchStrategy[bytes]:
-    """Traces in CSV over ``x`` and ``seen``: rows that are nearly right, with something odd here and there."""
+    """CSV traces over ``x`` and ``seen`` with nearly valid rows and occasional odd bytes."""
     return st.builds(
         _trace, st.sampled_from(_HEADS), st.lists(_rows(), max_size=5), st.sampled_from((b"", b"\n", b"\r"))
     )
 
 
 def _rows() -> st.SearchStrategy[tuple[bytes, bytes]]:
-    right = st.tuples(st.sampled_from((b"0.5", b"-0.25", b'"0.5"', b" 1 ")), st.sampled_from((b"1", b"true", b'"0"')))
-    cells = right | right | st.lists(st.sampled_from(_CELLS), min_size=1, max_size=4)
+    valid = st.tuples(st.sampled_from((b"0.5", b"-0.25", b'"0.5"', b" 1 ")), st.sampled_from((b"1", b"true", b'"0"')))
+    cells = valid | valid | st.lists(st.sampled_from(_CELLS), min_size=1, max_size=4)
     odd = st.just(b"") | st.lists(st.sampled_from(_ODD), max_size=3).map(b"".join)
     rows = st.builds(_with, cells.map(b",".join), odd, st.integers(0, 12))
     return st.tuples(rows, st.sampled_from(_ENDS))
@@ -91,9 +91,9 @@ _VALUES = (
 
 
 def json_traces() -> st.SearchStrategy[bytes]:
-    """Traces in JSON lines over ``x`` and ``seen``, some of them odd."""
-    right = st.sampled_from((b'{"x": 0.5, "seen": 1}', b' {"seen": true, "x": -0.25, "a": "b"} '))
+    """JSON-lines traces over ``x`` and ``seen``; some lines are odd."""
+    valid = st.sampled_from((b'{"x": 0.5, "seen": 1}', b' {"seen": true, "x": -0.25, "a": "b"} '))
     pairs = st.builds(lambda key, value: key + b":" + value, st.sampled_from(_KEYS), st.sampled_from(_VALUES))
-    odd = st.lists(pairs, max_size=4).map(lambda found: b"{" + b", ".join(found) + b"}")
-    lines = st.tuples(right | right | odd, st.sampled_from(_ENDS))
-    return st.lists(lines, max_size=5).map(lambda found: b"".join(line + end for line, end in found))
+    odd = st.lists(pairs, max_size=4).map(lambda members: b"{" + b", ".join(members) + b"}")
+    lines = st.tuples(valid | valid | odd, st.sampled_from(_ENDS))
+    return st.lists(lines, max_size=5).map(lambda members: b"".join(line + end for line, end in members))

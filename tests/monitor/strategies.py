@@ -15,7 +15,7 @@ from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signa
 
 SIGNALS, PARAMS = ("x", "y(a, b)"), ("p", 'q"')
 
-# Few values, so that ties, zeros and borders are hit often.
+# There are few values, so that ties, zeros and boundaries are frequent.
 values = st.sampled_from([-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0])
 numbers = st.sampled_from([0.0, -0.0, 1.0, -1.0, 2.0, 3.0, 0.5, 0.1, -2.5, 1e3, 1e200]) | st.floats(
     allow_nan=False, allow_infinity=False, width=64
@@ -25,7 +25,7 @@ _leaves = (
 )
 
 
-def _several(inner: st.SearchStrategy[Expression], low: int, high: int) -> st.SearchStrategy[tuple[Expression, ...]]:
+def _operands(inner: st.SearchStrategy[Expression], low: int, high: int) -> st.SearchStrategy[tuple[Expression, ...]]:
     return st.lists(inner, min_size=low, max_size=high).map(tuple)
 
 
@@ -48,7 +48,7 @@ def _operations(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expre
         st.builds(Op, st.sampled_from(["+", "-", "*", "/", "^"]), st.tuples(inner, inner)),
         st.builds(lambda base, exponent: Op("^", (base, exponent)), inner, exponents),
         st.builds(Op, st.sampled_from(["neg", "abs", "sqrt", "exp", "tanh"]), st.tuples(inner)),
-        st.builds(Op, st.sampled_from(["min", "max"]), _several(inner, 2, 4)),
+        st.builds(Op, st.sampled_from(["min", "max"]), _operands(inner, 2, 4)),
         st.builds(Op, st.just("clamp"), st.tuples(inner, inner, inner)),
         st.builds(When, cases, inner),
     )
@@ -59,14 +59,15 @@ _expressions: st.SearchStrategy[Expression] = st.recursive(_leaves, _operations,
 
 @st.composite
 def expressions(draw: st.DrawFn) -> Expression:
-    """Expressions with every operator over SIGNALS and PARAMS."""
+    """Expressions over SIGNALS and PARAMS, with every operator."""
     return draw(_expressions)
 
 
 @st.composite
 def automata(draw: st.DrawFn, max_leaves: int = 8) -> Fspa:
-    """Automata over the atoms a, b, c, with or without exclusive atoms, a limit, over either kind of traces, with
-    either judge.
+    """Automata over the atoms a, b, c, over finite or infinite traces, with either judge.
+
+    They may have exclusive atoms and a limit.
     """
     exclusive = draw(st.sampled_from([(), (("a", "b"),), (("a", "b", "c"),)]))
     if draw(st.integers(0, 3)):
@@ -80,14 +81,14 @@ def automata(draw: st.DrawFn, max_leaves: int = 8) -> Fspa:
 
 @st.composite
 def atom_traces(draw: st.DrawFn, fspa: Fspa, max_size: int = 8) -> list[tuple[float, ...]]:
-    """Traces of values of the automaton's atoms that no declaration of exclusive atoms forbids."""
-    sample = st.tuples(*[values for _ in fspa.atoms]).map(lambda given: _allowed(fspa, given))
+    """Traces of values of the automaton's atoms that respect its exclusive atoms."""
+    sample = st.tuples(*[values for _ in fspa.atoms]).map(lambda drawn: _allowed(fspa, drawn))
     return draw(st.lists(sample, min_size=1, max_size=max_size))
 
 
-def _allowed(fspa: Fspa, given: tuple[float, ...]) -> tuple[float, ...]:
-    """The values with all but the first true atom of each group made false."""
-    result = list(given)
+def _allowed(fspa: Fspa, drawn: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the values, with all true atoms of each exclusive group but the first one made false."""
+    result = list(drawn)
     for group in fspa.exclusive:
         for atom in [atom for atom in group if result[atom] > 0.0][1:]:
             result[atom] = -result[atom]

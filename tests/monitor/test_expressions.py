@@ -20,7 +20,7 @@ FAILURES = (ZeroDivisionError, OverflowError, ValueError)
 
 
 def result(compute: Callable[[], float]) -> object:
-    """The bits of a value, or the error instead of it; every NaN is the same."""
+    """Return the bits of a value, or the type of the error; all NaNs count as equal."""
     try:
         value = compute()
     except FAILURES as error:
@@ -53,7 +53,7 @@ def test_closeness(distance: float, expected: float) -> None:
 
 
 @given(st.floats(0.01, 1e6), st.floats(1.001, 1e6))
-def test_closeness_half_way(close: float, ratio: float) -> None:
+def test_closeness_halfway(close: float, ratio: float) -> None:
     far = close * ratio
     value = evaluate(near("d", close=close), {"d": (close + far) / 2}, {"level_size": far})
     assert value == pytest.approx(-0.75, abs=1e-6)
@@ -83,7 +83,7 @@ def test_values(expression: Expression, expected: float) -> None:
     assert compile_expressions([expression], ["x"], {})[0]((2.0,)) == expected
 
 
-def test_a_case_that_is_not_taken_is_not_computed() -> None:
+def test_only_the_selected_case_is_computed() -> None:
     guarded = When(((Condition(">", (x, Const(0.0))), Op("/", (Const(1.0), x))),), Const(-1.0))
     for expression in (guarded, Op("+", (guarded, Const(0.0)))):
         assert evaluate(expression, {"x": 0.0}, {}) == -1.0
@@ -100,7 +100,7 @@ def test_a_case_that_is_not_taken_is_not_computed() -> None:
         (Op("^", (Const(-1.0), Const(0.5))), ValueError),
     ],
 )
-def test_failures(expression: Expression, error: type[Exception]) -> None:
+def test_an_expression_without_a_value_is_an_error(expression: Expression, error: type[Exception]) -> None:
     with pytest.raises(error):
         evaluate(expression, {"x": 1.0}, {})
     with pytest.raises(error):
@@ -109,7 +109,7 @@ def test_failures(expression: Expression, error: type[Exception]) -> None:
 
 @pytest.mark.parametrize("op", ["+", "-", "*", "/", "^", "min", "neg", "when", "condition", "power"])
 def test_deep_expressions(op: str) -> None:
-    """A spec's arithmetic may be 100 operators deep, on any side."""
+    """The arithmetic of a spec may be 100 operators deep, on either side."""
     for left in (True, False):
         expression: Expression = Param("p")
         for _ in range(100):
@@ -128,8 +128,8 @@ def test_deep_expressions(op: str) -> None:
         assert result(lambda: compiled((0.5,))) == result(lambda: evaluate(expression, {"x": 0.5}, {"p": 0.75}))  # noqa: B023
 
 
-def test_the_source_of_many_atoms_grows_with_them_and_not_with_their_square(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each function names only the signals that it reads: 5,000 atoms took 19 GB when each named all of them."""
+def test_the_size_of_the_source_is_linear_in_the_atoms(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each function names only the signals that it reads.  If each named all of them, 5,000 atoms would take 19 GB."""
     texts: list[str] = []
 
     def compiled(text: str, *rest: str) -> object:

@@ -23,8 +23,8 @@ from tltlc.resolve import spec
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
 
 
-def refused(monitor: Monitor, sample: dict[str, object]) -> tuple[str, str]:
-    """The code and title of the error for a sample; the monitor stays as it was."""
+def rejection(monitor: Monitor, sample: dict[str, object]) -> tuple[str, str]:
+    """Return the code and title of the error for a sample, and assert that the monitor is unchanged."""
     before = (monitor.state, monitor.steps, monitor.progress, monitor.done)
     with pytest.raises(MonitorError) as caught:
         monitor.step(sample)  # type: ignore[arg-type]
@@ -34,7 +34,7 @@ def refused(monitor: Monitor, sample: dict[str, object]) -> tuple[str, str]:
 
 
 def with_atom(expression: Expression) -> Fspa:
-    """``F p`` where p has this expression over the signal x in [-1, 1]."""
+    """Return ``F p``, where p has this expression over the signal x."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     return replace(fspa, signals=(spec.Signal("x", "number", None, None),), atoms=(spec.Atom("p", expression),))
 
@@ -88,12 +88,12 @@ def test_the_limiting_atom_bounds_the_nearest_improving_edge(fspa: Fspa, data: s
         atom = next(index for index, atom in enumerate(fspa.atoms) if atom.name == step.limiting)
         nearest = max(robustness(guard, sample) for guard in improving)
         assert abs(sample[atom]) == abs(nearest)
-        # A better value of this atom alone makes the nearest prime that it bounds no worse.
+        # A prime with the robustness of the nearest guard contains this atom.
         primes = [prime for guard in improving for prime in guard.primes if atom in dict(prime)]
         assert any(prime_robustness(prime, sample) == nearest for prime in primes)
 
 
-def test_ties_go_to_the_first() -> None:
+def test_the_first_of_tied_atoms_is_limiting() -> None:
     fspa = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.not_(f.atom("b"))))))
     guard = fspa.edges_from(0)[1].guard
     assert fspa.atoms[bounding_atom([guard], (-0.5, 0.5))].name == "a"
@@ -102,14 +102,14 @@ def test_ties_go_to_the_first() -> None:
 # --- steps ----------------------------------------------------------------------------------------
 
 
-def test_death_at_zero_is_noticed() -> None:
-    """At 0 the robustness of `alive` and `not alive` ties; truth does not."""
+def test_health_of_zero_counts_as_death() -> None:
+    """At 0 the robustness of `alive` equals that of `not alive`, but only `not alive` is true."""
     step = Monitor(cover_and_hide()).step({**FAR, "health": 0.0})
     assert (step.state, step.verdict, step.robustness) == (2, "violated", 0.0)
     assert math.copysign(1.0, step.robustness) == 1.0
 
 
-def test_a_step_says_everything() -> None:
+def test_the_fields_of_a_step() -> None:
     step = Monitor(cover_and_hide()).step({**FAR, "distance(s1)": 10.5, "health": 0.875})
     assert step.label == cover_and_hide().states[0].label.ascii
     assert (step.state, step.verdict, step.accepting, step.done) == (0, "pending", False, False)
@@ -123,17 +123,17 @@ def test_reset() -> None:
     assert [monitor.step({**FAR, "distance(s1)": 0.5}), monitor.step({**FAR, "health": 0})] == first
 
 
-def test_other_signals_and_other_kinds_of_numbers_are_taken() -> None:
+def test_unused_signals_and_other_number_types_are_accepted() -> None:
     monitor = Monitor(with_atom(Signal("x")))
     assert monitor.step({"x": True, "y": math.nan}).accepting
     assert Monitor(with_atom(Signal("x"))).step({"x": 1}).accepting
 
 
-# --- samples that no automaton can take -----------------------------------------------------------
+# --- invalid samples ------------------------------------------------------------------------------
 
 
 def test_missing_signals_are_all_named() -> None:
-    code, title = refused(Monitor(cover_and_hide()), {"distance(s1)": 1.0, "health": 1.0})
+    code, title = rejection(Monitor(cover_and_hide()), {"distance(s1)": 1.0, "health": 1.0})
     assert (code, title) == ("TLT0611", "step 1: no value for `distance(s2)` and `distance(exit)`")
 
 
@@ -150,13 +150,13 @@ def test_missing_signals_are_all_named() -> None:
 def test_unusable_values_are_named(value: object, remark: str) -> None:
     monitor = Monitor(cover_and_hide())
     monitor.step(FAR)
-    assert refused(monitor, {**FAR, "health": value}) == ("TLT0612", f"step 2: the signal `health` {remark}")
+    assert rejection(monitor, {**FAR, "health": value}) == ("TLT0612", f"step 2: the signal `health` {remark}")
 
 
 def test_a_bool_is_true_or_false() -> None:
     fspa = replace(with_atom(Signal("x")), signals=(spec.Signal("x", "bool", 0.0, 1.0),))
     monitor = Monitor(fspa)
-    assert refused(monitor, {"x": 0.5}) == ("TLT0612", "step 1: the signal `x` is 0.5, not true or false")
+    assert rejection(monitor, {"x": 0.5}) == ("TLT0612", "step 1: the signal `x` is 0.5, not true or false")
     assert not monitor.step({"x": False}).accepting
     assert monitor.step({"x": 1.0}).accepting
 
@@ -183,7 +183,7 @@ def test_values_out_of_range_are_clamped_and_reported_once() -> None:
     ],
 )
 def test_an_atom_without_a_value_is_named(expression: Expression, remark: str) -> None:
-    assert refused(Monitor(with_atom(expression)), {"x": 0.0}) == ("TLT0613", f"step 1: the atom `p` {remark}")
+    assert rejection(Monitor(with_atom(expression)), {"x": 0.0}) == ("TLT0613", f"step 1: the atom `p` {remark}")
 
 
 def test_an_atom_out_of_its_range_is_clamped() -> None:
@@ -198,7 +198,7 @@ def test_an_atom_out_of_its_range_is_clamped() -> None:
 
 def test_exclusive_atoms_that_hold_at_once_are_named() -> None:
     sample = {**FAR, "distance(s1)": 0.0, "distance(exit)": 0.0}
-    code, title = refused(Monitor(cover_and_hide()), dict(sample))
+    code, title = rejection(Monitor(cover_and_hide()), dict(sample))
     assert code == "TLT0614"
     assert title == (
         "step 1: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
@@ -206,7 +206,7 @@ def test_exclusive_atoms_that_hold_at_once_are_named() -> None:
 
 
 @pytest.mark.parametrize("sample", [(math.nan,), (math.inf,), (1.5,), (), (1.0, 1.0)])
-def test_values_of_atoms_that_are_none_are_refused(sample: tuple[float, ...]) -> None:
+def test_invalid_values_of_atoms_are_rejected(sample: tuple[float, ...]) -> None:
     monitor = Monitor(with_atom(Signal("x")))
     with pytest.raises(ValueError, match="1 values in"):
         monitor.step_atoms(sample)
@@ -230,16 +230,16 @@ def test_params() -> None:
         ({"level_size": "3"}, "TLT0308", "the value given for the param `level_size` is no number"),
     ],
 )
-def test_params_that_do_not_fit(params: dict[str, float], code: str, text: str) -> None:
+def test_invalid_params_are_rejected(params: dict[str, float], code: str, text: str) -> None:
     with pytest.raises(MonitorError) as caught:
         Monitor(cover_and_hide(), params)
-    assert [(found.code, found.title) for found in caught.value.diagnostics] == [(code, text)]
+    assert [(diagnostic.code, diagnostic.title) for diagnostic in caught.value.diagnostics] == [(code, text)]
     assert caught.value.diagnostics[0].help
 
 
 @given(st.tuples(values, values, values))
 def test_a_guard_is_true_where_its_robustness_is_positive(sample: tuple[float, ...]) -> None:
-    """On every guard over three atoms with one prime."""
+    """This holds for every guard with one prime over three atoms."""
     fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, "abc")))))
     for signs in product([True, False], repeat=3):
         guard = replace(fspa.edges[0].guard, primes=(tuple(enumerate(signs)),))

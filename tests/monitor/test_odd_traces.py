@@ -1,6 +1,6 @@
-"""`tltlc monitor` reads odd traces as ``docs/traces.md`` says; so does the program that the target ``python`` writes.
+"""`tltlc monitor`, and the program of the target ``python``, read odd traces as ``docs/traces.md`` specifies.
 
-Other languages, which read CSV alone, do so in ``tests/tools/conformance``.
+``tests/tools/conformance`` tests the programs in other languages, which read only CSV.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ ONE = ((0.5, 1.0),)
 
 
 def _object(line: bytes, x: float = 0.5) -> Odd:
-    """A second object, and the value of ``x`` in it."""
+    """Return a trace whose second object is ``line``, in which the value of ``x`` is this."""
     return Odd(b'{"x": 0.5, "seen": 1}\n' + line + b"\n", (*ONE, (x, 1.0)))
 
 
 def _bad(line: bytes) -> Odd:
-    """A second object that is refused."""
+    """Return a trace whose second object is ``line``, which is an error."""
     return Odd(b'{"x": 0.5, "seen": 1}\n' + line + b'\n{"x": 0.5, "seen": 1}\n', ONE, 2)
 
 
@@ -116,33 +116,33 @@ ODD: Mapping[str, Odd] = {**LINES, **CELLS, **VALUES, **MORE_VALUES, **OBJECTS, 
 
 @cache
 def program() -> dict[str, Any]:
-    """The module that the target ``python`` writes for the automaton of the table."""
+    """Return the namespace of the module that the target ``python`` generates."""
     text = emit("python", CASES["trace_values"]().fspa)["trace_values_monitor.py"]
-    found: dict[str, Any] = {"__name__": "monitor"}
-    exec(text, found)
-    return found
+    namespace: dict[str, Any] = {"__name__": "monitor"}
+    exec(text, namespace)
+    return namespace
 
 
-def _values(samples: Iterator[Mapping[str, float]], found: list[tuple[float, ...]]) -> None:
-    # Those before an error stay.
-    found.extend(tuple(sample[signal.name] for signal in SIGNALS) for sample in samples)
+def _values(samples: Iterator[Mapping[str, float]], rows: list[tuple[float, ...]]) -> None:
+    # The rows before an error are kept.
+    rows.extend(tuple(sample[signal.name] for signal in SIGNALS) for sample in samples)
 
 
 def outcome(trace: bytes) -> tuple[list[tuple[float, ...]], int | None]:
-    """The samples, and the line of the refusal, 0 for a trace without samples."""
+    """Return the samples, and the line of the error, which is 0 for a trace without samples."""
     samples: list[tuple[float, ...]] = []
     try:
         _values(read_trace(io.BytesIO(trace), "trace", SIGNALS), samples)
     except TltlError as error:
-        (found,) = error.diagnostics
-        if found.code == "TLT0620":
+        (diagnostic,) = error.diagnostics
+        if diagnostic.code == "TLT0620":
             return samples, 0
-        return samples, found.labels[0].source.position(found.labels[0].span.start)[0]
+        return samples, diagnostic.labels[0].source.position(diagnostic.labels[0].span.start)[0]
     return samples, None
 
 
 def outcome_of_program(trace: bytes) -> tuple[list[tuple[float, ...]], int | None]:
-    """The same by the generated program."""
+    """Return the samples and the line of the error from the generated program."""
     module = program()
     samples: list[tuple[float, ...]] = []
     try:
@@ -153,36 +153,36 @@ def outcome_of_program(trace: bytes) -> tuple[list[tuple[float, ...]], int | Non
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_an_odd_trace_is_read_as_the_rules_say(name: str) -> None:
+def test_odd_traces_are_read_as_documented(name: str) -> None:
     odd = ODD[name]
     for samples, line in (outcome(odd.trace), outcome_of_program(odd.trace)):
-        # Texts tell -0 from 0, and nan is nan.
+        # As texts, -0 differs from 0, and nan equals nan.
         assert (repr(samples), line) == (repr([*odd.samples]), odd.line)
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_tltlc_mine_sees_columns_by_the_same_rules(name: str) -> None:
-    """It refuses the same lines, but for those whose values or columns are not those of signals."""
+def test_mine_reads_columns_by_the_same_rules(name: str) -> None:
+    """It reports errors on the same lines, but does not compare columns and values with signals."""
     odd = ODD[name]
     samples, line = outcome(odd.trace)
     try:
-        found = columns(odd.trace, "trace")
+        columns_read = columns(odd.trace, "trace")
     except TltlError as error:
         label = error.diagnostics[0].labels[0]
         assert label.source.position(label.span.start)[0] == line
     else:
         if line is None:
-            assert {"x", "seen"} <= found.keys()
-            assert found["x"] == all(x in (0.0, 1.0) for x, _ in samples)
+            assert {"x", "seen"} <= columns_read.keys()
+            assert columns_read["x"] == all(x in (0.0, 1.0) for x, _ in samples)
 
 
 @given(csv_traces())
-def test_the_generated_program_reads_random_traces_alike(trace: bytes) -> None:
+def test_the_generated_program_reads_random_traces_like_the_monitor(trace: bytes) -> None:
     assert repr(outcome(trace)) == repr(outcome_of_program(trace))
 
 
 @given(json_traces())
-def test_the_generated_program_reads_random_objects_alike(trace: bytes) -> None:
+def test_the_generated_program_reads_random_objects_like_the_monitor(trace: bytes) -> None:
     assert repr(_or_none(outcome, trace)) == repr(_or_none(outcome_of_program, trace))
 
 
@@ -190,7 +190,7 @@ def _or_none(read: Any, trace: bytes) -> Any:
     try:
         return read(trace)
     except KeyError:
-        # A missing value is the monitor's business.
+        # The monitor, not the reader, reports a missing value.
         return None
 
 
@@ -206,7 +206,7 @@ def test_any_bytes_are_samples_or_an_error(data: bytes, head: int) -> None:
 
 
 class Endless:
-    """A stream that repeats a byte, or a line, without end; counts what is read."""
+    """A stream that repeats a byte or a line forever, and counts the bytes that are read."""
 
     def __init__(self, start: bytes, piece: bytes) -> None:
         self.start, self.piece, self.taken = start, piece, 0
@@ -225,8 +225,8 @@ class Endless:
     [(b"", b"a"), (b"x,seen\n", b"1"), (b'x,seen\n"', b"-" * 63 + b"\n"), (b"{", b" "), (b"x,seen\n", b'"')],
     ids=range(5),
 )
-def test_no_more_than_a_row_is_held(start: bytes, piece: bytes) -> None:
-    """Of a line, or a cell in quotes, that does not end."""
+def test_at_most_one_row_is_read_into_memory(start: bytes, piece: bytes) -> None:
+    """This holds for a line, or a quoted cell, that never ends."""
     for read in (
         lambda stream: [*read_trace(stream, "trace", SIGNALS)],
         lambda stream: [*program()["_samples"](program()["_Lines"](stream))],
@@ -237,13 +237,13 @@ def test_no_more_than_a_row_is_held(start: bytes, piece: bytes) -> None:
         assert stream.taken <= TRACE_LINE.size + len(start) + 2
 
 
-def test_both_readers_have_one_set_of_limits() -> None:
+def test_both_readers_have_the_same_limits() -> None:
     module = program()
     limits = (module["_ROW_BYTES"], module["_JSON_DEPTH"], module["_JSON_VALUES"])
     assert limits == (TRACE_LINE.size, TRACE_LINE.depth, TRACE_LINE.values)
 
 
-def test_objects_of_a_json_writer_read() -> None:
+def test_objects_of_a_json_writer_are_read() -> None:
     rows = [{"x": 0.1, "seen": True, "höhe": None}, {"x": -1e-7, "seen": False, "höhe": [1]}]
     for ascii_ in (True, False):
         text = "".join(f"{json.dumps(row, ensure_ascii=ascii_)}\n" for row in rows)

@@ -1,4 +1,4 @@
-"""The generated monitor is :class:`tltlc.monitor.Monitor`, to the last bit, whatever the names in the spec."""
+"""The generated monitor agrees with :class:`tltlc.monitor.Monitor` to the last bit, whatever the names in the spec."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def source_of(fspa: Fspa) -> str:
 
 
 def module_of(fspa: Fspa) -> Any:
-    """The generated module, run."""
+    """Generate the module, execute it, and return it."""
     module = types.ModuleType("generated")
     sys.modules["generated"] = module  # NamedTuple looks its module up
     exec(compile(source_of(fspa), "generated.py", "exec"), module.__dict__)
@@ -53,7 +53,7 @@ def module_of(fspa: Fspa) -> Any:
 
 
 def outcome(step: Callable[[Mapping[str, Any]], Any], sample: Mapping[str, Any]) -> object:
-    """The fields of a step with floats as text, which tells 0 from -0, or the message of the error instead."""
+    """Return the fields of a step as texts, in which 0 differs from -0, or the message of the error."""
     try:
         return [repr(field) for field in step(sample)]
     except MonitorError as error:
@@ -71,7 +71,7 @@ def notices(monitor: Monitor) -> list[str]:
 
 @settings(max_examples=150)
 @given(st.data(), automata())
-def test_the_same_steps_on_random_automata(data: st.DataObject, fspa: Fspa) -> None:
+def test_steps_agree_with_the_monitor_on_random_automata(data: st.DataObject, fspa: Fspa) -> None:
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
     names = [atom.name for atom in fspa.atoms]
     for values in data.draw(atom_traces(fspa, max_size=12)):
@@ -84,7 +84,7 @@ def test_the_same_steps_on_random_automata(data: st.DataObject, fspa: Fspa) -> N
 def test_oracle_automaton_monitor_and_generated_monitor_agree(
     data: st.DataObject, formula: f.Formula, exclusive: tuple[tuple[str, ...], ...]
 ) -> None:
-    """On traces full of exact zeros, exclusive atoms or not; and an episode's rewards add up."""
+    """The traces have many exact zeros, with and without exclusive atoms; the rewards of an episode also add up."""
     limit = data.draw(st.integers(1, 6))
     judge: spec.Judge = data.draw(st.sampled_from(["goal", "limit"]))
     fspa = replace(build(spec_from_formula(formula, exclusive=exclusive)), limit_steps=limit, judge=judge)
@@ -94,15 +94,15 @@ def test_oracle_automaton_monitor_and_generated_monitor_agree(
     for values in data.draw(atom_traces(fspa)):
         state = letters.step(fspa, state, tuple(value > 0.0 for value in values))
         prefix.append({name for name, value in zip(names, values, strict=True) if value > 0.0})
-        ended = monitor.done
+        was_done = monitor.done
         step = monitor.step_atoms(values)
         assert repr(tuple(generated.step(dict(zip(names, values, strict=True))))) == repr(tuple(step))
         assert (step.state, step.accepting) == (state, oracle.holds(formula, prefix))
         total += step.reward
-        if ended:
+        if was_done:
             assert step.reward == 0.0
         elif step.verdict == "violated":
-            # Steps and terminal penalty come to the whole limit.
+            # The cost of the steps and the terminal penalty add up to 1.
             assert step.done
             assert total == pytest.approx(step.progress - 1)
         else:
@@ -114,8 +114,10 @@ def test_oracle_automaton_monitor_and_generated_monitor_agree(
 
 
 @given(st.data(), expressions(), st.tuples(numbers, numbers))
-def test_the_same_atoms(data: st.DataObject, expression: Expression, params: tuple[float, float]) -> None:
-    """Values, clamped values with their notices, and failures."""
+def test_values_of_atoms_agree_with_the_monitor(
+    data: st.DataObject, expression: Expression, params: tuple[float, float]
+) -> None:
+    """This includes clamped values with their notices, and failures."""
     fspa = replace(
         build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b"))))),
         signals=(spec.Signal(SIGNALS[0], "number", None, 2.0), spec.Signal(SIGNALS[1], "number", -3.0, None)),
@@ -138,7 +140,7 @@ def test_the_same_atoms(data: st.DataObject, expression: Expression, params: tup
         [{"distance(s1)": 0.0, "distance(s2)": 0.0}, {"distance(s1)": 0.0, "distance(exit)": 0.0}, {}],
     ],
 )
-def test_the_same_on_samples_that_are_not_clean(changes: list[dict[str, Any]]) -> None:
+def test_invalid_samples_agree_with_the_monitor(changes: list[dict[str, Any]]) -> None:
     generated, monitor = module_of(cover_and_hide()).Monitor(), Monitor(cover_and_hide())
     for change in changes:
         assert outcome(generated.step, {**FAR, **change}) == outcome(monitor.step, {**FAR, **change})
@@ -146,7 +148,7 @@ def test_the_same_on_samples_that_are_not_clean(changes: list[dict[str, Any]]) -
     assert generated.notices == notices(monitor)
 
 
-def test_the_same_on_missing_signals() -> None:
+def test_missing_signals_agree_with_the_monitor() -> None:
     for count in range(4):
         for names in itertools.combinations(FAR, count):
             sample = {name: FAR[name] for name in names}
@@ -154,7 +156,7 @@ def test_the_same_on_missing_signals() -> None:
             assert outcome(module_of(cover_and_hide()).Monitor().step, sample) == expected
 
 
-def test_bools() -> None:
+def test_bools_agree_with_the_monitor() -> None:
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     atom = spec.Atom("p", Op("-", (Op("*", (Const(2.0), Signal("x"))), Const(1.0))))
     fspa = replace(fspa, signals=(spec.Signal("x", "bool", 0.0, 1.0),), atoms=(atom,))
@@ -164,7 +166,7 @@ def test_bools() -> None:
         assert outcome(generated.step, {"x": value}) == outcome(monitor.step, {"x": value})
 
 
-def test_many_exclusive_atoms() -> None:
+def test_many_exclusive_atoms_agree_with_the_monitor() -> None:
     names = [f"a{index}" for index in range(10)]
     fspa = build(spec_from_formula(f.eventually(f.atom("a0")), exclusive=[names]))
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
@@ -217,7 +219,7 @@ def test_deep_arithmetic(depth: int) -> None:
 def test_hostile_texts_are_no_code(fspa: Fspa) -> None:
     module = module_of(fspa)
     assert source_of(fspa).encode().decode() == source_of(fspa)
-    # All atoms are one signal here, so where it is above 0 those that are exclusive are refused, by name.
+    # All atoms read the same signal here, so a value above 0 violates the exclusive atoms, which the error names.
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
     for value in (1.0, -1.0, 0.0):
         sample = {fspa.signals[0].name: value, "health": 1.0}
@@ -232,8 +234,8 @@ NAMES = (
 )
 
 
-def test_hostile_names_stay_apart() -> None:
-    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+def test_hostile_names_stay_distinct() -> None:
+    """Each atom reads a signal of the same awkward name; in each sample a different atom must be the limiting one."""
     names = list(dict.fromkeys(NAMES))
     atoms = [f"v{index}" for index in range(len(names))]
     fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
@@ -249,7 +251,7 @@ def test_hostile_names_stay_apart() -> None:
         assert (step.limiting, step.robustness) == (name, 0.25)
 
 
-def test_hostile_texts_run_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hostile_texts_execute_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     attack = 'open("broken", "w")'
     for text in (
@@ -284,7 +286,7 @@ def test_output_is_the_same_for_the_same_input() -> None:
     assert source_of(cover_and_hide()) == source_of(cover_and_hide())
 
 
-def test_it_stands_alone_and_is_typed(tmp_path: Path) -> None:
+def test_the_file_imports_nothing_of_the_project_and_passes_mypy(tmp_path: Path) -> None:
     path = tmp_path / "cover_and_hide_monitor.py.txt"
     path.write_text(source_of(cover_and_hide()), encoding="utf-8")
     command = [sys.executable, "-I", "-W", "error", "-c", "import runpy, sys; runpy.run_path(sys.argv[1])", str(path)]
@@ -321,7 +323,7 @@ def as_csv(rows: list[dict[str, float]]) -> str:
     return text.getvalue()
 
 
-def test_script(tmp_path: Path) -> None:
+def test_the_script_prints_the_steps(tmp_path: Path) -> None:
     monitor = Monitor(cover_and_hide())
     lines = ["step,state,verdict,accepting,done,progress,reward"]
     for number, sample in enumerate(TRACE, start=1):
@@ -364,7 +366,9 @@ def test_script(tmp_path: Path) -> None:
         (None, ["--help"], 2, "usage: python cover_and_hide_monitor.py [--full] TRACE.csv"),
     ],
 )
-def test_script_errors(tmp_path: Path, trace: str | None, arguments: list[str], status: int, message: str) -> None:
-    found, _, errors = run_script(tmp_path, trace, *arguments)
-    assert found == status
+def test_errors_of_the_script(
+    tmp_path: Path, trace: str | None, arguments: list[str], status: int, message: str
+) -> None:
+    returncode, _, errors = run_script(tmp_path, trace, *arguments)
+    assert returncode == status
     assert errors.startswith(message)

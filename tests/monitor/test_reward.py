@@ -1,4 +1,4 @@
-"""Algorithm 1: the worked numbers of the paper, the totals of episodes, both ways to end them."""
+"""Algorithm 1: the numbers that the paper works out, the totals of episodes, and both rules of termination."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def automaton(formula: f.Formula, limit: int | None, judge: Literal["goal", "lim
 
 
 def episode(monitor: Monitor, trace: Sequence[tuple[float, ...]]) -> list[Step]:
-    """The steps up to the end of the episode."""
+    """Return the steps up to the end of the episode."""
     steps: list[Step] = []
     for values in trace:
         steps.append(monitor.step_atoms(values))
@@ -39,7 +39,7 @@ def episode(monitor: Monitor, trace: Sequence[tuple[float, ...]]) -> list[Step]:
     return steps
 
 
-def test_half_way_to_the_exit() -> None:
+def test_progress_halfway_to_the_exit() -> None:
     """In `F near(e) & G alive`, at distance (b + B) / 2 and full health: 2/3 + 0.25/3 = 0.75."""
     fspa = cover_and_hide()
     outcome = reward_step(tables(fspa), 3, 3, (-1.0, -1.0, -0.75, 1.0), 2 / 3, 10)
@@ -68,7 +68,7 @@ def test_an_episode_of_cover_and_hide() -> None:
     assert (after.verdict, after.done, after.progress, after.reward) == ("violated", True, 1.0, 0.0)
 
 
-def test_dying_costs_the_unspent_steps() -> None:
+def test_a_violation_costs_the_remaining_steps() -> None:
     monitor = Monitor(cover_and_hide())
     steps = [monitor.step({**FAR, "distance(s1)": 0.0}), monitor.step({**FAR, "health": 0.0})]
     assert steps[1].reward == pytest.approx(-1 / 400 - 398 / 400)
@@ -90,7 +90,7 @@ def test_every_failed_episode_totals_progress_minus_one(data: st.DataObject, fsp
 
 
 @given(st.data(), automata())
-def test_progress_is_the_best_so_far_and_rewards_are_its_rise(data: st.DataObject, fspa: Fspa) -> None:
+def test_progress_is_the_best_so_far_and_rewards_are_its_increase(data: st.DataObject, fspa: Fspa) -> None:
     monitor = Monitor(replace(fspa, limit_steps=None))
     best, over = 0.0, False
     for values in data.draw(atom_traces(fspa)):
@@ -100,7 +100,7 @@ def test_progress_is_the_best_so_far_and_rewards_are_its_rise(data: st.DataObjec
         best, over = step.progress, step.done
 
 
-def test_a_spec_judged_at_its_limit_is_rewarded_for_outliving_it() -> None:
+def test_a_spec_judged_at_its_limit_is_rewarded_for_survival() -> None:
     fspa = automaton(f.always(P), 4)
     assert (fspa.judge, fspa.spec_size) == ("limit", 0)
     alive = episode(Monitor(fspa), [(1.0,)] * 9)
@@ -110,26 +110,26 @@ def test_a_spec_judged_at_its_limit_is_rewarded_for_outliving_it() -> None:
     assert sum(step.reward for step in dead) == pytest.approx(0.5 - 1)
 
 
-def test_a_spec_judged_at_its_limit_ends_where_it_is_satisfied() -> None:
+def test_a_spec_judged_at_its_limit_ends_early_when_satisfied() -> None:
     fspa = automaton(f.eventually(A), 4, "limit")
     steps = episode(Monitor(fspa), [(-1.0,), (1.0,), (1.0,)])
     assert [(step.progress, step.done) for step in steps] == [(0.25, False), (1.0, True)]
 
 
-def test_without_a_limit_survival_has_no_share_and_nothing_costs() -> None:
+def test_without_a_limit_survival_gives_no_progress_and_steps_are_free() -> None:
     steps = episode(Monitor(automaton(f.always(P), None)), [(1.0,), (1.0,), (-1.0,), (1.0,)])
     assert [(step.progress, step.reward, step.done) for step in steps] == [(0, 0, False), (0, 0, False), (0, 0, True)]
 
 
-def test_nothing_to_reach_never_divides() -> None:
+def test_a_spec_of_size_zero_does_not_divide_by_zero() -> None:
     goal = episode(Monitor(automaton(f.always(P), 4, "goal")), [(1.0,)])
     assert (goal[0].progress, goal[0].done, goal[0].reward) == (1.0, True, 1 - 1 / 4)
     never = episode(Monitor(automaton(f.FALSE, 4, "goal")), [()])
     assert (never[0].progress, never[0].done, never[0].reward) == (0.0, True, -1.0)
 
 
-def test_the_listing_notices_one_step_later() -> None:
-    """With `termination="paper"` a success can still turn into a failure."""
+def test_the_printed_algorithm_ends_one_step_later() -> None:
+    """With `termination="paper"`, a success can still turn into a failure."""
     fspa = automaton(f.and_(f.eventually(A), f.always(P)), 10, "goal")
     literal = RewardOptions(termination="paper")
     reached, dead = (1.0, 1.0), (1.0, -1.0)
@@ -146,20 +146,20 @@ def test_the_listing_notices_one_step_later() -> None:
     assert sum(step.reward for step in steps) == pytest.approx(1 - 1)
 
 
-def test_the_discounted_penalty() -> None:
+def test_the_discounted_terminal_penalty() -> None:
     fspa = automaton(f.and_(f.eventually(A), f.always(P)), 10, "goal")
     trace = [(-1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)]
     gamma = 0.9
     options = RewardOptions(terminal_penalty="discounted", gamma=gamma)
     last = episode(Monitor(fspa, reward=options), trace)[-1]
-    # What the seven steps that were saved would have cost, seen from the step of the violation.
+    # The discounted cost of the seven remaining steps, as of the step of the violation.
     assert last.reward == pytest.approx(-1 / 10 - sum(gamma**step / 10 for step in range(7)))
     same = episode(Monitor(fspa, reward=replace(options, gamma=1.0)), trace)[-1]
     assert same.reward == episode(Monitor(fspa), trace)[-1].reward
 
 
 def test_the_nearest_improving_edge_counts() -> None:
-    """Of several edges that improve, line 14 takes the most robust."""
+    """Line 14 takes the most robust of several improving edges."""
     fspa = automaton(f.or_(f.eventually(f.and_(A, P)), f.eventually(f.atom("c"))), None)
     step = Monitor(fspa).step_atoms((-0.25, 0.5, -0.75))
     assert (step.progress, step.limiting) == (0.75, "a")
@@ -167,14 +167,14 @@ def test_the_nearest_improving_edge_counts() -> None:
     assert (step.progress, step.limiting) == (0.375, "c")
 
 
-def test_an_edge_that_is_not_taken_is_no_nearer_than_its_border() -> None:
-    """In `F near(e) & G alive`: the robustness of the edge, 0.5, is capped at 0."""
+def test_the_robustness_of_an_edge_that_is_not_taken_is_capped_at_zero() -> None:
+    """In `F near(e) & G alive`, the robustness 0.5 of the edge is capped at 0."""
     outcome = reward_step(tables(cover_and_hide()), 3, 3, (-1.0, -1.0, 0.5, 1.0), 0.0, 10)
     assert outcome.progress == 2 / 3 + 1 / 3
 
 
-def test_a_trap_has_no_progress() -> None:
-    """Whatever the atoms say, and whatever was reached before: that stays."""
+def test_a_trap_adds_no_progress() -> None:
+    """Whatever the values of the atoms, the progress so far stays as it is."""
     fspa = cover_and_hide()
     assert (fspa.states[2].verdict, fspa.states[2].distance) == ("violated", None)
     for best in (0.0, 2 / 3):
@@ -182,8 +182,8 @@ def test_a_trap_has_no_progress() -> None:
             assert reward_step(tables(fspa), source, 2, (1.0, 1.0, 1.0, 1.0), best, 10).progress == best
 
 
-def test_order_of_operations() -> None:
-    """Every monitor must agree to the last bit, so the order is fixed."""
+def test_the_order_of_operations_is_fixed() -> None:
+    """All monitors must agree to the last bit."""
     fspa = cover_and_hide()
     rng = random.Random(1)
     for _ in range(200):
@@ -195,8 +195,8 @@ def test_order_of_operations() -> None:
         assert outcome.reward == (max(best, progress) - best) - 1 / 400
 
 
-def test_an_episode_that_is_cut_off() -> None:
-    """`last` ends it; a failure pays what it left unspent, a success has nothing left to reach."""
+def test_a_truncated_episode() -> None:
+    """`last` ends the episode; a failure costs the remaining steps, and a success has full progress."""
     fspa = automaton(f.eventually(A), 10)
     monitor = Monitor(fspa)
     monitor.step_atoms((-0.5,))
@@ -231,12 +231,12 @@ def test_an_episode_that_is_cut_off() -> None:
         ({"gamma": "1"}, "gamma is a number"),
     ],
 )
-def test_options_that_there_are_not_are_refused(options: dict[str, Any], said: str) -> None:
+def test_invalid_options_are_rejected(options: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError, match=said):
         RewardOptions(**options)
 
 
-def test_a_monitor_takes_an_automaton_and_options() -> None:
+def test_a_monitor_rejects_other_types() -> None:
     fspa = cover_and_hide()
     with pytest.raises(TypeError, match=r"RewardOptions\(mode=\"sparse\"\), not 'sparse'"):
         Monitor(fspa, reward="sparse")  # type: ignore[arg-type]

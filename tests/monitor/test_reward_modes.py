@@ -21,7 +21,7 @@ SPARSE, EDGE = RewardOptions(mode="sparse"), RewardOptions(mode="edge")
 
 
 def last_reward(formula: f.Formula, trace: Sequence[tuple[float, ...]]) -> float:
-    """The reward of the mode `sparse` at the end of an episode as long as the trace."""
+    """Return the reward of the mode `sparse` for an episode that is as long as the trace."""
     fspa = replace(build(spec_from_formula(formula)), limit_steps=len(trace), judge="limit")
     monitor = Monitor(fspa, reward=SPARSE)
     rewards = [monitor.step_atoms(sample).reward for sample in trace]
@@ -30,7 +30,7 @@ def last_reward(formula: f.Formula, trace: Sequence[tuple[float, ...]]) -> float
 
 @settings(max_examples=60)
 @given(formulas(("a", "b"), max_leaves=5), st.data())
-def test_sparse_is_the_signed_distance_to_the_nearest_trace_judged_otherwise(
+def test_sparse_is_the_signed_distance_to_the_nearest_trace_with_another_result(
     formula: f.Formula, data: st.DataObject
 ) -> None:
     spec = spec_from_formula(formula)
@@ -47,7 +47,7 @@ def test_sparse_is_the_signed_distance_to_the_nearest_trace_judged_otherwise(
             break
     trace = trace[:steps]
     accepted = holds(formula, [{n for n, v in zip(names, sample, strict=True) if v > 0} for sample in trace])
-    others = []
+    distances = []
     for letters in product(product([False, True], repeat=len(names)), repeat=steps):
         if (
             holds(formula, [{n for n, true in zip(names, letter, strict=True) if true} for letter in letters])
@@ -59,8 +59,8 @@ def test_sparse_is_the_signed_distance_to_the_nearest_trace_judged_otherwise(
                 for value, true in zip(sample, letter, strict=True)
                 if (value > 0) != true
             ]
-            others.append(max(changes, default=0.0))
-    distance = min(others, default=1.0)
+            distances.append(max(changes, default=0.0))
+    distance = min(distances, default=1.0)
     assert reward == (distance if accepted else -distance)
 
 
@@ -71,7 +71,7 @@ def test_sparse_on_sequences_is_the_robustness_of_the_formula() -> None:
     assert last_reward(f.always(A), [(0.5,), (0.25,), (1.0,)]) == 0.25
 
 
-def test_sparse_comes_once() -> None:
+def test_the_sparse_reward_is_paid_once() -> None:
     fspa = replace(build(spec_from_formula(f.always(P))), limit_steps=3)
     monitor = Monitor(fspa, reward=SPARSE)
     assert [monitor.step_atoms((v,)).reward for v in (0.5, 0.75, 1.0, 1.0)] == [0.0, 0.0, 0.5, 0.0]
@@ -79,7 +79,7 @@ def test_sparse_comes_once() -> None:
     assert [monitor.step_atoms((v,)).reward for v in (0.5, -0.25, 1.0)] == [0.0, -0.25, 0.0]
 
 
-def test_edge_pays_for_leaving_but_not_into_a_trap() -> None:
+def test_the_edge_mode_rewards_leaving_a_state_except_into_a_trap() -> None:
     fspa = build(spec_from_formula(f.and_(f.eventually(A), f.always(P))))
     monitor = Monitor(fspa, reward=EDGE)
     assert [monitor.step_atoms(v).reward for v in [(-0.5, 1.0), (0.25, 0.5)]] == [-0.5, 0.25]
@@ -87,8 +87,10 @@ def test_edge_pays_for_leaving_but_not_into_a_trap() -> None:
 
 
 @given(st.data(), automata(), st.sampled_from([1.0, 0.9]))
-def test_potential_adds_up_to_success_alone(data: st.DataObject, fspa: Fspa, gamma: float) -> None:
-    """The discounted sum over a whole episode is that of success alone, less the potential at the start."""
+def test_potential_rewards_sum_to_success_minus_the_initial_potential(
+    data: st.DataObject, fspa: Fspa, gamma: float
+) -> None:
+    """The discounted sum over an episode is the discounted success minus the potential of the initial state."""
     fspa = replace(fspa, judge="goal", limit_steps=4)
     monitor = Monitor(fspa, reward=RewardOptions(mode="potential", gamma=gamma))
     trace = data.draw(atom_traces(fspa, max_size=4))

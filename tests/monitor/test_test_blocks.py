@@ -35,14 +35,14 @@ def failures(*blocks: str) -> list[Diagnostic | None]:
         "step p  expect progress < 0.1  step p, a  expect progress <= 0.5 expect progress > 0.4",
     ],
 )
-def test_what_holds_passes(block: str) -> None:
+def test_correct_expectations_pass(block: str) -> None:
     assert failures(block) == [None]
 
 
-def test_a_step_that_changes_nothing_is_not_repeated_for_long() -> None:
+def test_repeated_steps_that_change_nothing_are_skipped() -> None:
     block = "step 99999x p  " * 100 + "expect pending  step p, a  step 5x p, b  expect holding"
     assert failures(block) == [None]
-    # Ten million steps would take more than as many calls; measured: 37,426.
+    # Ten million steps would take more than ten million calls.  Measured: 37,426.
     assert calls(lambda: failures(block)) < 1_000_000
 
 
@@ -55,7 +55,7 @@ def test_a_step_that_changes_nothing_is_not_repeated_for_long() -> None:
         ("expect pending  step p", "a trace has at least one sample", "expect pending"),
     ],
 )
-def test_what_does_not_hold_is_shown(block: str, remark: str, marked: str) -> None:
+def test_a_failed_expectation_is_labelled(block: str, remark: str, marked: str) -> None:
     (failure,) = failures(block)
     assert failure is not None
     (label,) = failure.labels
@@ -63,12 +63,12 @@ def test_what_does_not_hold_is_shown(block: str, remark: str, marked: str) -> No
     assert label.source.slice(label.span) == marked
 
 
-def test_a_step_that_cannot_be() -> None:
+def test_an_impossible_step_is_an_error() -> None:
     (failure,) = failures("step p  step p, a, b  expect pending")
     assert failure is not None
     assert (failure.code, failure.title) == ("TLT0614", "step 2: `a` and `b` hold at once, against `exclusive a, b`")
 
 
-def test_tests_run_in_order_and_apart() -> None:
-    found = failures("step p, a  step p, b  expect holding", "step p, b  expect holding", "step p  expect pending")
-    assert [failure is None for failure in found] == [True, False, True]
+def test_tests_run_in_order_and_independently() -> None:
+    results = failures("step p, a  step p, b  expect holding", "step p, b  expect holding", "step p  expect pending")
+    assert [failure is None for failure in results] == [True, False, True]

@@ -20,17 +20,17 @@ def read(text: str | bytes) -> list[dict[str, float]]:
     return list(read_trace(io.BytesIO(data), "trace", SIGNALS))
 
 
-def refused(text: str | bytes) -> tuple[str, str, str, str]:
-    """Code, title, line:column and remark of the error."""
+def rejection(text: str | bytes) -> tuple[str, str, str, str]:
+    """Return the code, title, line:column and label of the error."""
     with pytest.raises(TltlError) as caught:
         read(text)
-    (found,) = caught.value.diagnostics
-    assert found.help
-    if not found.labels:
-        return found.code, found.title, "", ""
-    label = found.labels[0]
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.help
+    if not diagnostic.labels:
+        return diagnostic.code, diagnostic.title, "", ""
+    label = diagnostic.labels[0]
     line, column = label.source.position(label.span.start)
-    return found.code, found.title, f"{line}:{column}", label.message
+    return diagnostic.code, diagnostic.title, f"{line}:{column}", label.message
 
 
 def test_csv() -> None:
@@ -50,7 +50,7 @@ def test_json_lines() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(allow_nan=False, allow_infinity=False), st.booleans()), min_size=1))
-def test_csv_and_json_lines_say_the_same(rows: list[tuple[float, bool]]) -> None:
+def test_csv_and_json_lines_give_the_same_samples(rows: list[tuple[float, bool]]) -> None:
     expected = [{"near(a, b)": number, "open": float(flag)} for number, flag in rows]
     lines = [json.dumps({"near(a, b)": number, "open": flag}) for number, flag in rows]
     assert read("\n".join(lines)) == expected
@@ -58,12 +58,12 @@ def test_csv_and_json_lines_say_the_same(rows: list[tuple[float, bool]]) -> None
     assert read("\n".join(['"near(a, b)",open', *cells])) == expected
 
 
-def test_a_byte_order_mark_is_no_part_of_the_first_name() -> None:
+def test_a_byte_order_mark_is_skipped() -> None:
     assert read('\ufeffopen,"near(a, b)"\n1,1\n') == [{"near(a, b)": 1.0, "open": 1.0}]
     assert read('\ufeff{"open": 1}\n') == [{"open": 1.0}]
 
 
-def test_samples_come_as_the_lines_do() -> None:
+def test_samples_are_read_lazily() -> None:
     stream = io.BytesIO(b'open,"near(a, b)"\n1,1\n0,1\nx\n')
     samples = read_trace(stream, "trace", SIGNALS)
     assert next(samples)["open"] == 1.0
@@ -72,7 +72,7 @@ def test_samples_come_as_the_lines_do() -> None:
     assert next(samples)["open"] == 0.0
 
 
-def test_numbers_that_are_not_finite_are_left_to_the_monitor() -> None:
+def test_non_finite_numbers_are_passed_to_the_monitor() -> None:
     assert math.isnan(read('open,"near(a, b)"\n1,nan\n')[0]["near(a, b)"])
     assert read('{"near(a, b)": 1' + "0" * 400 + "}")[0]["near(a, b)"] == math.inf
 
@@ -119,7 +119,7 @@ HEADER = 'open,"near(a, b)"\n'
     ],
 )
 def test_traces_that_cannot_be_read(text: str | bytes, expected: tuple[str, str, str, str]) -> None:
-    assert refused(text) == expected
+    assert rejection(text) == expected
 
 
 @pytest.mark.parametrize(
@@ -130,14 +130,14 @@ def test_traces_that_cannot_be_read(text: str | bytes, expected: tuple[str, str,
         ('[{"open": 1}]\n', 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'),
     ],
 )
-def test_other_forms_of_a_trace(text: str, advice: str) -> None:
+def test_unsupported_formats_get_advice(text: str, advice: str) -> None:
     with pytest.raises(TltlError) as caught:
         read(text)
     assert caught.value.diagnostics[0].help == advice
 
 
 @given(st.binary(max_size=60))
-def test_any_bytes_are_read_or_refused(data: bytes) -> None:
+def test_any_bytes_are_read_or_rejected(data: bytes) -> None:
     for start in (b"", b'open,"near(a, b)"\n', b'{"open": 1}\n', b"{"):
         try:
             read(start + data)

@@ -1,4 +1,4 @@
-"""Resolves a text as the compiler does, without the file that it would stand in."""
+"""Resolve a text as the compiler does, without a file."""
 
 from __future__ import annotations
 
@@ -14,43 +14,43 @@ from tltlc.resolve.spec import Program, Spec
 
 
 def resolved(text: str, name: str = "<test>", **options: object) -> tuple[Program, tuple[Diagnostic, ...]]:
-    """The program of a text that parses, and every diagnostic of its resolution."""
+    """Resolve a text that parses, and return the program and all diagnostics of the resolution."""
     module, errors = parse(SourceFile(name, text))
     assert errors == ()
     return resolve(module, ResolveOptions(**options))  # type: ignore[arg-type]
 
 
 def good(text: str, name: str = "<test>", **options: object) -> Program:
-    """The program of a text about which there is nothing to say."""
+    """Return the program of a text without diagnostics."""
     program, diagnostics = resolved(text, name, **options)
     assert diagnostics == ()
     return program
 
 
 def only(text: str, name: str = "<test>", **options: object) -> Spec:
-    """The one spec of such a text."""
+    """Return the only spec of a text without diagnostics."""
     (spec,) = good(text, name, **options).specs
     return spec
 
 
 def formula(text: str) -> str:
-    """The formula of the one spec of such a text, in ASCII."""
+    """Return the formula of the only spec of a text without diagnostics, in ASCII."""
     return str(only(text).formula)
 
 
 def codes(text: str, name: str = "<test>", **options: object) -> list[str]:
-    """The codes of all diagnostics of a text."""
+    """Return the codes of all diagnostics of a text."""
     return [diagnostic.code for diagnostic in resolved(text, name, **options)[1]]
 
 
 def value(spec: Spec, atom: str, **signals: float) -> float:
-    """The robustness of an atom of a spec, with its params at their values."""
+    """Return the robustness of an atom of a spec, with the declared values of its params."""
     params = {param.name: param.value for param in spec.params}
-    expression = next(each.expression for each in spec.atoms if each.name == atom)
+    expression = next(candidate.expression for candidate in spec.atoms if candidate.name == atom)
     return evaluate(expression, signals, params)
 
 
 def write(folder: Path, **files: str) -> None:
-    """Writes NAME.tltl for each keyword."""
+    """Write a file NAME.tltl for each keyword argument."""
     for name, text in files.items():
         (folder / f"{name}.tltl").write_text(text, encoding="utf-8")

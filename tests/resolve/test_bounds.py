@@ -1,4 +1,4 @@
-"""Bounded operators mean what they say, on every short trace."""
+"""Bounded operators have the right meaning on all short traces."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DECLARED = "clock 20 Hz signal a: bool spec s = "
 
 
 @given(trace=traces(("a",), max_length=8), low=st.integers(0, 4), extra=st.integers(0, 4))
-def test_eventually_is_false_past_the_end_and_always_asks_nothing_there(
+def test_past_the_end_eventually_is_false_and_always_is_true(
     trace: tuple[frozenset[str], ...], low: int, extra: int
 ) -> None:
     window = trace[low : low + extra + 1]
@@ -47,7 +47,7 @@ def test_next_after(trace: tuple[frozenset[str], ...], n: int) -> None:
         ("next after 1 step a", "X a"),
     ],
 )
-def test_words_and_seconds(words: str, brackets: str) -> None:
+def test_bounds_in_words_and_seconds(words: str, brackets: str) -> None:
     assert formula(DECLARED + words) == formula(DECLARED + brackets)
 
 
@@ -58,12 +58,12 @@ def test_whole_multiples_of_the_period_are_not_rounded_up(period: float, n: int)
     assert only(text).limit_steps == n + 1
 
 
-def test_a_bound_that_is_too_long_names_itself_and_takes_no_time() -> None:
+def test_a_bound_that_is_too_long_is_an_error() -> None:
     for bound in ("F[0,1000000000]", "G[999999999,1000000000]", "F[0,400] F[0,400]"):
         assert codes(f"signal a: bool spec s = {bound} a") == ["TLT0315"]
 
 
-def test_one_step_is_a_unit_like_many() -> None:
+def test_step_and_steps_are_the_same_unit() -> None:
     text = 'signal a: bool spec s = {} test "t" for s {{ step a expect progress >= 0.5 step a expect satisfied }}'
     for one, many in (("F[0,1 step] a", "F[0,1 steps] a"), ("F within 1 step a", "F within 1 steps a")):
         assert only(text.format(one)).formula == only(text.format(many)).formula

@@ -1,4 +1,4 @@
-"""What the check of predicates says in a program."""
+"""The diagnostics of the predicate check in a program."""
 
 from __future__ import annotations
 
@@ -18,40 +18,40 @@ from tltlc.resolve.range_proof import work
 
 
 def test_a_wrong_range_is_an_error_with_a_witness() -> None:
-    _, (found,) = resolved("signal x in [0, 1] predicate p in [0, 1] = 2 * x spec s = F p")
-    assert (found.code, found.severity) == ("TLT0306", "error")
-    assert "x = 1" in found.labels[0].message
-    assert found.labels[0].source.slice(found.labels[0].span) == "in [0, 1]"
+    _, (diagnostic,) = resolved("signal x in [0, 1] predicate p in [0, 1] = 2 * x spec s = F p")
+    assert (diagnostic.code, diagnostic.severity) == ("TLT0306", "error")
+    assert "x = 1" in diagnostic.labels[0].message
+    assert diagnostic.labels[0].source.slice(diagnostic.labels[0].span) == "in [0, 1]"
 
 
 def test_a_range_that_only_fails_below_zero_is_a_warning() -> None:
     text = "predicate p(e: entity) in [-1, 1] = clamp(1 - sqrt(d(e) / 3 m), -1, 1) entity a spec s = F p(a)"
-    _, (found,) = resolved("signal d(e: entity): length " + text)
-    assert (found.code, found.severity) == ("TLT0401", "warning")
-    assert found.help == "declare its range, e.g. `in [0 m, inf]`"
+    _, (diagnostic,) = resolved("signal d(e: entity): length " + text)
+    assert (diagnostic.code, diagnostic.severity) == ("TLT0401", "warning")
+    assert diagnostic.help == "declare its range, e.g. `in [0 m, inf]`"
     assert codes("signal d(e: entity): length in [0 m, inf] " + text) == []
 
 
 def test_a_jump_is_a_warning() -> None:
-    _, (found,) = resolved("signal x in [0, 1] predicate p in [0, 1] = when x < 0.5: 0 otherwise: 1 spec s = F p")
-    assert (found.code, found.severity) == ("TLT0402", "warning")
+    _, (diagnostic,) = resolved("signal x in [0, 1] predicate p in [0, 1] = when x < 0.5: 0 otherwise: 1 spec s = F p")
+    assert (diagnostic.code, diagnostic.severity) == ("TLT0402", "warning")
 
 
-def test_one_check_for_all_entities() -> None:
+def test_a_predicate_is_checked_once_for_all_entities() -> None:
     text = (
         "signal d(e: entity) in [0, 1] predicate p(e: entity) in [0, 1] = 2 * d(e) entity a, b spec s = F p(a) & F p(b)"
     )
     assert codes(text) == ["TLT0306"]
 
 
-def test_the_values_of_arguments_count() -> None:
+def test_the_check_uses_the_values_of_arguments() -> None:
     declared = "signal x in [0, 4] predicate p(most: number = 4) in [0, 1] = x / most "
     assert codes(declared + "spec s = F p") == []
     assert codes(declared + "spec s = F p(8)") == []
     assert codes(declared + "spec s = F p(2)") == ["TLT0306"]
 
 
-def test_numbers_passed_on_are_checked_where_they_are_known() -> None:
+def test_a_numeric_argument_is_checked_where_its_value_is_known() -> None:
     declared = "signal x in [0, 4] predicate p(most: number) in [0, 1] = x / most "
     assert codes(declared + "let q(m: number) = F p(m) spec s = F p(8)") == []
     assert codes(declared + "predicate r(m: number) in [0, 1] = p(2 * m) spec s = F p(8)") == []
@@ -63,18 +63,18 @@ def test_numbers_passed_on_are_checked_where_they_are_known() -> None:
     assert codes(declared + "param b in [1, 8] = 4 let q(m: number) = F p(b) & m > 1 spec s = F p(b)") == ["TLT0306"]
 
 
-def test_the_whole_range_of_a_param_counts() -> None:
+def test_the_check_covers_the_whole_range_of_a_param() -> None:
     assert codes("signal x in [0, 4] param m in [4, 8] = 5 predicate p in [0, 1] = x / m spec s = F p") == []
     assert codes("signal x in [0, 4] param m in [2, 8] = 5 predicate p in [0, 1] = x / m spec s = F p") == ["TLT0306"]
 
 
 SIGNALS = "".join(f"signal {name} in [-1, 1] " for name in "xyz")
 LINE = "(x^3 * y + {}.5e-8 * y * z^2 + x * z) / 4"
-"""Values so near to each other that a jump is neither proved nor found."""
+"""Values of this form are so close to each other that a jump between them is neither proved nor found."""
 
 
 def nested(depth: int, first: int = 0) -> str:
-    """``when`` in the last case of ``when``, over three signals."""
+    """Return nested ``when`` over three signals; each is in the last case of the one around it."""
     value = LINE.format(first + 99)
     for n in range(depth):
         a, b = "xyz"[n % 3], "xyz"[(n + 1) % 3]
@@ -90,13 +90,13 @@ def balanced(parts: list[str], op: str) -> str:
 
 
 def steps(count: int, op: str = "+") -> str:
-    """A sum or product of ``when`` with two cases each."""
+    """Return a sum or product of ``count`` ``when`` with two cases each."""
     cases = [f"(when {'xyz'[n % 3]} > {n / count}: x * y otherwise: 0.1)" for n in range(count)]
     return f"{balanced(cases, op)} / {count}"
 
 
 def chain(count: int) -> str:
-    """One ``when`` with many cases."""
+    """Return one ``when`` with ``count`` cases and an ``otherwise``."""
     cases = [f"when {'xyz'[n % 3]} > {1 - 2 * n / count}: {'xyz'[n % 2]} / {n + 2}" for n in range(count)]
     return f"{' '.join(cases)} otherwise: 0.1"
 
@@ -125,38 +125,36 @@ def chain(count: int) -> str:
             "its `when` splits it into more than 64 cases",
         ),
         (balanced(["x"] * 1500, "+") + " / 1500", ["TLT0503"], "it has more than 2,000 operands and operators"),
-        # What is wrong at a point is an error, however much there is to prove.
+        # A value that is wrong at some point is an error, even if the proof would take too many steps.
         (f"3 * ({steps(16)}) + 2", ["TLT0306"], None),
         (f"2 + {nested(40)}", ["TLT0306"], None),
     ],
 )
-def test_a_check_ends_within_its_steps(
+def test_a_check_stays_within_its_step_limit(
     body: str, codes_of_it: list[str], why: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
     with work.limited(10**9) as spent:
-        _, found = resolved(f"{SIGNALS} predicate p in [-1, 1] = {body} spec s = F p")
+        _, diagnostics = resolved(f"{SIGNALS} predicate p in [-1, 1] = {body} spec s = F p")
     assert 10**9 - spent.left <= WORK["check of a predicate"]
-    assert [diagnostic.code for diagnostic in found] == codes_of_it
-    assert why is None or found[0].labels[0].message == why
+    assert [diagnostic.code for diagnostic in diagnostics] == codes_of_it
+    assert why is None or diagnostics[0].labels[0].message == why
 
 
-def test_the_checks_of_all_predicates_end_within_their_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_checks_of_all_predicates_stay_within_their_step_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
     monkeypatch.setitem(WORK, "check of a predicate", 50_000)  # type: ignore[attr-defined]
     monkeypatch.setitem(WORK, "checks of all predicates", 150_000)  # type: ignore[attr-defined]
     predicates = " ".join(f"predicate p{n} in [-1, 1] = {nested(8, n)}" for n in range(6))
     with work.limited(10**9) as spent:
-        _, found = resolved(f"{SIGNALS} {predicates} spec s = F (p0 & p1 & p2 & p3 & p4 & p5)")
+        _, diagnostics = resolved(f"{SIGNALS} {predicates} spec s = F (p0 & p1 & p2 & p3 & p4 & p5)")
     assert 10**9 - spent.left <= 150_000
-    assert [diagnostic.code for diagnostic in found] == ["TLT0503"] * 4
-    assert found[3].title == "the predicate `p3` and 2 more predicates were not checked"
-    assert all(diagnostic.severity == "warning" for diagnostic in found)
+    assert [diagnostic.code for diagnostic in diagnostics] == ["TLT0503"] * 4
+    assert diagnostics[3].title == "the predicate `p3` and 2 more predicates were not checked"
+    assert all(diagnostic.severity == "warning" for diagnostic in diagnostics)
 
 
-def test_the_same_steps_are_counted_where_answers_are_remembered(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_cached_answers_count_the_same_steps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path))
     text = f"{SIGNALS} predicate p in [-1, 1] = {nested(3)} spec s = F p"
     counted = []
@@ -167,16 +165,16 @@ def test_the_same_steps_are_counted_where_answers_are_remembered(
     assert counted[0] == counted[1]
 
 
-def test_predicates_inside_predicates_do_not_grow_without_end() -> None:
+def test_nested_predicates_are_limited() -> None:
     doubled = " ".join(f"predicate p{n} in [-1, 1] = p{n - 1} * p{n - 1}" for n in range(1, 31))
-    found = codes(f"signal x in [-1, 1] predicate p0 in [-1, 1] = x {doubled} spec s = F p30")
-    assert set(found) == {"TLT0503", "TLT0315"}
+    reported = codes(f"signal x in [-1, 1] predicate p0 in [-1, 1] = x {doubled} spec s = F p30")
+    assert set(reported) == {"TLT0503", "TLT0315"}
     many = " & ".join(f"p12 > {n / 1000}" for n in range(200))
-    found = codes(f"signal x in [-1, 1] predicate p0 in [-1, 1] = x {doubled} spec s = F ({many})")
-    assert set(found) == {"TLT0503", "TLT0315"}
+    reported = codes(f"signal x in [-1, 1] predicate p0 in [-1, 1] = x {doubled} spec s = F ({many})")
+    assert set(reported) == {"TLT0503", "TLT0315"}
 
 
-def test_numbers_of_any_length_end_a_proof() -> None:
+def test_very_long_numbers_stop_a_proof() -> None:
     from tltlc.expression.tree import Const, Op, Signal
     from tltlc.resolve.range_proof.elimination import GiveUpError
     from tltlc.resolve.range_proof.exact import _Translation
@@ -195,11 +193,13 @@ def test_numbers_of_any_length_end_a_proof() -> None:
 
 
 @pytest.mark.parametrize("folder", [standard_library(), ROOT / "examples"], ids=["standard library", "examples"])
-def test_libraries_and_examples_need_a_hundredth_of_the_steps(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_libraries_and_examples_need_less_than_a_hundredth_of_the_steps(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
     for path in sorted(folder.glob("*.tltl")):
         module, _ = parse(SourceFile(str(path), path.read_text("utf-8")))
         with work.limited(10**9) as spent:
-            _, found = resolve(module, ResolveOptions())
+            _, diagnostics = resolve(module, ResolveOptions())
         assert 10**9 - spent.left < WORK["check of a predicate"] / 100
-        assert not {"TLT0401", "TLT0402", "TLT0503"} & {diagnostic.code for diagnostic in found}
+        assert not {"TLT0401", "TLT0402", "TLT0503"} & {diagnostic.code for diagnostic in diagnostics}

@@ -1,4 +1,4 @@
-"""Comparisons: their robustness, the atoms they share, and what is refused."""
+"""Comparisons: their robustness, the atoms that they share, and the errors of invalid ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NUMBERS = st.integers(-50, 50)
 
 
 @given(c=NUMBERS, holding=st.integers(1, 50), failing=st.integers(0, 50), x=st.floats(0, 1), op=st.sampled_from("<>"))
-def test_scaled_to_one_at_the_ends_and_zero_at_the_threshold(
+def test_robustness_is_one_at_the_ends_and_zero_at_the_threshold(
     c: int, holding: int, failing: int, x: float, op: str
 ) -> None:
     low, high = (c - failing, c + holding) if op == ">" else (c - holding, c + failing)
@@ -27,9 +27,9 @@ def test_scaled_to_one_at_the_ends_and_zero_at_the_threshold(
     assert value(spec, name, x=bad) == (0 if bad == c else -1)
     at = low + (high - low) * x
     expected = (at - c) / (good - c) if (at > c) == (op == ">") else -abs(at - c) / abs(bad - c) if at != c else 0.0
-    found = value(spec, name, x=at)
-    assert isclose(found, expected, abs_tol=1e-12)
-    assert (found > 0) == (at > c if op == ">" else at < c)
+    actual = value(spec, name, x=at)
+    assert isclose(actual, expected, abs_tol=1e-12)
+    assert (actual > 0) == (at > c if op == ">" else at < c)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_scaled_to_one_at_the_ends_and_zero_at_the_threshold(
         ("-x > -200 %", "(-x > -2)"),
     ],
 )
-def test_one_atom_for_one_question(written: str, resolved: str) -> None:
+def test_equivalent_comparisons_have_the_same_form(written: str, resolved: str) -> None:
     text = formula(f"signal x in [0, 4] signal y in [0, 4] spec s = F ({written})")
     assert text in (f"F {resolved}", f"F{resolved}", f"F({resolved})")
 
@@ -69,14 +69,14 @@ def test_two_sides_are_compared_by_their_difference(x: float, y: float) -> None:
     assert isclose(value(spec, "x > y", x=x, y=y), expected, abs_tol=1e-12)
 
 
-def test_a_param_counts_with_its_range() -> None:
+def test_robustness_uses_the_range_of_a_param() -> None:
     spec = only("signal x in [0, 4] param p in [1, 2] = 1.5 spec s = F x > p")
     assert spec.params[0].value == 1.5
     assert value(spec, "x > p", x=4) == 2.5 / 3
     assert value(spec, "x > p", x=0) == -0.75
 
 
-def test_a_predicate_counts_with_its_declared_range() -> None:
+def test_robustness_uses_the_declared_range_of_a_predicate() -> None:
     spec = only("signal x in [0, 4] predicate p in [-1, 1] = x / 2 - 1 spec s = F p > 0.5")
     assert [atom.name for atom in spec.atoms] == ["p > 0.5"]
     assert value(spec, "p > 0.5", x=4) == 1
@@ -100,7 +100,7 @@ def test_a_predicate_counts_with_its_declared_range() -> None:
         (": number", "x > 1", "TLT0311"),
     ],
 )
-def test_refused(declared: str, written: str, code: str) -> None:
+def test_invalid_comparisons_are_rejected(declared: str, written: str, code: str) -> None:
     assert codes(f"signal x {declared} spec s = F ({written})") == [code]
 
 
@@ -116,15 +116,15 @@ def test_refused(declared: str, written: str, code: str) -> None:
         ("x > 200", False),
     ],
 )
-def test_a_percentage_is_meant_where_it_would_say_something(written: str, is_percentage: bool) -> None:
+def test_a_percentage_is_suggested_if_it_would_be_valid(written: str, is_percentage: bool) -> None:
     text = f"signal x: ratio spec s = F ({written}"
-    _, (refused,) = resolved(text + ")")
-    assert (f"write `{written} %`" in (refused.help or "")) == is_percentage
+    _, (diagnostic,) = resolved(text + ")")
+    assert (f"write `{written} %`" in (diagnostic.help or "")) == is_percentage
     assert not is_percentage or codes(text + " %)") == []
 
 
 @pytest.mark.parametrize("written", ["x > 0", "x < 1", "x >= 1", "x <= 0"])
-def test_a_threshold_may_be_an_end(written: str) -> None:
+def test_a_threshold_may_be_an_end_of_the_range(written: str) -> None:
     assert codes(f"signal x in [0, 1] spec s = F ({written})") == []
 
 

@@ -1,4 +1,4 @@
-"""Arithmetic that is too deep or too wide is refused, whichever part of a ``when`` it stands in."""
+"""Arithmetic that is too deep or too wide is an error, in every part of a ``when``."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ SIGNAL = "signal x in [0, 1]\n"
 def code(text: str) -> str:
     with pytest.raises(tltlc.TltlError) as caught:
         tltlc.compile_text(SIGNAL + text)
-    return next(each.code for each in caught.value.diagnostics if each.severity == "error")
+    return next(diagnostic.code for diagnostic in caught.value.diagnostics if diagnostic.severity == "error")
 
 
-def test_what_a_condition_compares_counts() -> None:
-    # Each spec makes the next predicate known, so that no chain of predicates is followed.
+def test_depth_inside_conditions_counts() -> None:
+    # Each spec resolves a predicate before the next one uses it, so that the chain is not limited as a whole.
     chain = "".join(
         f"spec s{place} = F p{place} > 0\npredicate p{place + 1} in [-1, 1] = when p{place} < 0.5: 1 otherwise: -1\n"
         for place in range(ARITHMETIC.depth)

@@ -1,4 +1,4 @@
-"""Numbers at the ends of what a computer can hold are refused, not carried on as infinities."""
+"""Numbers close to the limits of floating point are errors, and do not become infinities."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ Q = "predicate q in [-1, 1] = clamp((p - d) / 3 m, -1, 1) spec s = F q"
         ("signal d: length in [0 m, 9 m] param p: length = 1e308 km " + Q, "TLT0109"),
     ],
 )
-def test_one_error(text: str, code: str) -> None:
+def test_an_extreme_number_is_one_error(text: str, code: str) -> None:
     assert codes(text) == [code]
 
 
 @pytest.mark.parametrize("value", ["1e999", "1e999 m", "1e308 km"])
-def test_a_param_from_outside(value: str) -> None:
+def test_an_extreme_override_of_a_param_is_an_error(value: str) -> None:
     text = "signal d: length in [0 m, 9 m] param p: length = 3 m " + Q
     assert codes(text, params={"p": value}) == ["TLT0308"]
 
 
-def test_the_greatest_that_is_allowed() -> None:
+def test_the_largest_allowed_numbers() -> None:
     assert codes(BOOL + "spec s { limit 1000000000 steps keep a }") == []
     assert codes("signal d in [-1e308, 1e308] spec s = F d > 0.5") == []

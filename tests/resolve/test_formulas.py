@@ -1,4 +1,4 @@
-"""Lets, quantifiers, names of atoms, and texts that are large."""
+"""Lets, quantifiers, names of atoms, and large texts."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ AT = "entity e1, e2, e3 signal at(x: entity): bool signal a: bool signal b: bool
         ("spec s = true & !false", "true & !false"),
     ],
 )
-def test_meaning(written: str, meant: str) -> None:
+def test_meanings_of_lets_and_quantifiers(written: str, meant: str) -> None:
     assert formula(AT + written) == meant
 
 
@@ -63,7 +63,7 @@ def test_names_of_atoms_are_canonical(use: str, name: str) -> None:
     assert atom.name == name
 
 
-def test_entities_in_a_predicate_and_defaults_from_its_own_file() -> None:
+def test_entities_as_arguments_and_defaults_of_a_predicate() -> None:
     text = """
     entity a, b
     signal d(x: entity, y: entity): length in [0 m, 90 m]
@@ -103,7 +103,7 @@ def test_a_cycle_is_reported_once_and_named() -> None:
     assert [(d.code, d.title) for d in diagnostics] == [("TLT0207", "`y` is defined by itself: y -> z -> x -> y")]
 
 
-def test_two_predicates_of_one_name_from_two_files(tmp_path: object) -> None:
+def test_two_predicates_with_the_same_name_are_an_error(tmp_path: object) -> None:
     from pathlib import Path
 
     folder = Path(str(tmp_path))
@@ -136,17 +136,17 @@ def test_deep_brackets() -> None:
     assert codes("signal x in [0, 1] spec s = F " + "(" * 150 + "x" + ")" * 150 + " > 0.5") == []
 
 
-def test_growth_without_end_is_an_error() -> None:
+def test_exponential_growth_is_an_error() -> None:
     doubling = " ".join(f"let d{i + 1} = d{i} & X d{i}" for i in range(60))
     assert codes(f"signal a: bool let d0 = F a {doubling} spec s = d60") == ["TLT0315"]
     silent = " ".join(f"let d{i + 1}(p) = d{i}(p & a) | d{i}(p | a)" for i in range(60))
-    # However many of them there are in a program, their work is counted together.
+    # The work of all lets in a program is counted together.
     again = silent.replace("d", "e")
     assert codes(f"signal a: bool let d0(p) = a {silent} let e0(p) = a {again} spec s = d60(a) & e60(a)") == ["TLT0315"]
 
 
 def test_growth_of_defaults_is_an_error() -> None:
-    # Without a limit, the last of these would be as large as no memory is.
+    # Without a limit, the last default would not fit into any memory.
     formulas = ", ".join(f"p{i + 1} = (p{i} & p{i})" for i in range(60))
     assert codes(f"signal a: bool let d(p0 = a, {formulas}) = p0 spec s = F d") == ["TLT0315"]
     numbers = ", ".join(f"p{i + 1} = (p{i} + p{i}) / 2" for i in range(60))
@@ -159,64 +159,66 @@ def test_deep_arithmetic_is_an_error_not_a_crash() -> None:
     long = " + ".join(["x"] * 900)
     assert codes(f"signal x in [0, 1] spec s = F ({long}) > 0.5") == ["TLT0317"]
     chain = " ".join(f"predicate p{i} in [-1, 1] = -p{i + 1}" for i in range(2_000))
-    found = codes(f"signal x in [-1, 1] {chain} predicate p2000 in [-1, 1] = x spec s = F p0")
-    assert set(found) == {"TLT0317"}
-    # One error for each hundred in the chain or so, not one for each predicate.
-    assert len(found) < 50
+    reported = codes(f"signal x in [-1, 1] {chain} predicate p2000 in [-1, 1] = x spec s = F p0")
+    assert set(reported) == {"TLT0317"}
+    # There is about one error for each hundred predicates of the chain, not one for each predicate.
+    assert len(reported) < 50
 
 
-def test_what_does_not_depend_on_a_quantifier_is_resolved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_signals_inside_quantifiers_are_resolved_once_for_each_entity(monkeypatch: pytest.MonkeyPatch) -> None:
     from tltlc.resolve import formulas
 
-    made: list[object] = []
-    monkeypatch.setattr(formulas, "signal", lambda *given: made.append(given) or signal(*given))
+    calls: list[object] = []
+    monkeypatch.setattr(formulas, "signal", lambda *arguments: calls.append(arguments) or signal(*arguments))
     names = ", ".join(f"g{i}" for i in range(10))
     text = f"entity {names} signal at(x: entity): bool spec s = "
     quantifiers = " ".join(f"all {v} in ({names}):" for v in "xyz")
     spec = only(f"{text}{quantifiers} F (at(x) | at(y))")
     assert spec.formula.op == "and"
     assert len(spec.formula.args) == 1000
-    assert len(made) == 20
+    assert len(calls) == 20
 
 
-def test_a_quantifier_ends_as_soon_as_it_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_quantifier_stops_as_soon_as_it_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
     from tltlc.resolve import formulas
 
-    made: list[object] = []
-    monkeypatch.setattr(formulas, "entity", lambda *given: made.append(given) or entity(*given))
+    calls: list[object] = []
+    monkeypatch.setattr(formulas, "entity", lambda *arguments: calls.append(arguments) or entity(*arguments))
     names = ", ".join(f"g{i}" for i in range(300))
     text = f"entity {names} signal at(x: entity): bool spec s = all x in ({names}): all y in ({names}): "
-    _, (found,) = resolved(f"{text} F (at(x) & at(y))")
-    assert (found.code, found.title) == ("TLT0315", "`all x` expands to more than 100,000 parts")
-    assert len(made) < 30_000
+    _, (diagnostic,) = resolved(f"{text} F (at(x) & at(y))")
+    assert (diagnostic.code, diagnostic.title) == ("TLT0315", "`all x` expands to more than 100,000 parts")
+    assert len(calls) < 30_000
 
 
-def test_a_problem_in_a_definition_shows_each_use_on_the_way() -> None:
+def test_an_error_in_a_definition_labels_its_first_uses() -> None:
     lets = " ".join(f"let f{i}(x) = f{i - 1}(x)" for i in range(1, 9))
     text = f"signal d: length in [0 m, 9 m] let f0(x) = d < x {lets} spec s = F f8(3)"
-    _, (found,) = resolved(text)
-    assert found.code == "TLT0305"
-    assert [label.source.slice(label.span) for label in found.labels] == ["x", "f0(x)", "f1(x)", "f2(x)"]
-    assert {label.message for label in found.labels[1:]} == {"used here"}
+    _, (diagnostic,) = resolved(text)
+    assert diagnostic.code == "TLT0305"
+    assert [label.source.slice(label.span) for label in diagnostic.labels] == ["x", "f0(x)", "f1(x)", "f2(x)"]
+    assert {label.message for label in diagnostic.labels[1:]} == {"used here"}
 
 
 @pytest.mark.parametrize("parameter", ["", "(x: entity)"])
-def test_a_problem_that_no_argument_causes_shows_the_definition_alone(parameter: str) -> None:
-    _, (found,) = resolved(f"{AT} signal d in [0, 1] let f{parameter} = d < 3 m spec s = F f{parameter and '(e1)'}")
-    assert (found.code, len(found.labels)) == ("TLT0305", 1)
+def test_an_error_that_no_argument_causes_labels_only_the_definition(parameter: str) -> None:
+    _, (diagnostic,) = resolved(
+        f"{AT} signal d in [0, 1] let f{parameter} = d < 3 m spec s = F f{parameter and '(e1)'}"
+    )
+    assert (diagnostic.code, len(diagnostic.labels)) == ("TLT0305", 1)
 
 
-def test_a_problem_deep_inside_lets_passes_through_all_of_them() -> None:
+def test_an_error_deep_inside_lets_is_reported() -> None:
     lets = " ".join(f"let f{i}(x) = X f{i - 1}(x)" for i in range(1, 3000))
     assert codes(f"signal d in [0, 1] let f0(x) = d < x {lets} spec s = f2999(3 m)") == ["TLT0305"]
 
 
-def test_an_unused_let_hands_its_parameters_on_whatever_they_are() -> None:
+def test_an_unused_let_may_pass_untyped_parameters_on() -> None:
     lets = "let low(x) = d < x let never_low(x) = G !low(x) let both(x) = low(x) & F low(1 - x)"
     assert formula(f"signal d in [0, 1] {lets} spec s = F low(0.5)") == "F(d < 0.5)"
 
 
-def test_defaults_that_use_each_other_are_refused_before_they_fill_the_memory() -> None:
+def test_defaults_that_grow_exponentially_are_rejected() -> None:
     formulas = ", ".join(f"a{number + 1} = (a{number} & a{number})" for number in range(60))
     assert codes(f"signal y: bool let p(a0 = y, {formulas}) = a0 spec s = F p") == ["TLT0315"]
     numbers = ", ".join(f"a{number + 1} = (a{number} + a{number}) / 2" for number in range(40))
