@@ -1,4 +1,4 @@
-"""Run what once took hours, and now takes less than a second."""
+"""Run code in a new process with a time limit: for inputs that once took hours and now take less than a second."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _SECONDS: Final = 120.0
 
 
 def soon(code: str) -> str:
-    """Run Python code in a process of its own and return its output; fail the test after two minutes."""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=_SECONDS, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    """Run Python code in a new process and return its output; fail the test after two minutes."""
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=_SECONDS, check=False)
+    assert result.returncode == 0, result.stderr
+    return result.stdout

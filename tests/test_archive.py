@@ -1,4 +1,4 @@
-"""Archives are unpacked below their folder, or not at all."""
+"""An archive is unpacked only into its folder; otherwise it is an error."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OUTSIDE = ["../x", "a/../../x", "/x", "//x", "a//x", "..", ".", "", "a/..", "a/.
 
 
 @pytest.mark.parametrize("name", OUTSIDE)
-def test_a_path_that_leads_out_is_refused(name: str, tmp_path: Path) -> None:
+def test_a_path_out_of_the_folder_is_rejected(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "folder"
     folder.mkdir()
     with pytest.raises(TltlError, match="TLT0009"):
@@ -24,7 +24,7 @@ def test_a_path_that_leads_out_is_refused(name: str, tmp_path: Path) -> None:
     assert not list(folder.iterdir())
 
 
-def test_a_path_through_a_link_is_refused(tmp_path: Path) -> None:
+def test_a_path_through_a_link_is_rejected(tmp_path: Path) -> None:
     folder = tmp_path / "folder"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
@@ -33,7 +33,7 @@ def test_a_path_through_a_link_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("names", [("a", "a"), ("a", "a/b"), ("a/b", "a")])
-def test_two_entries_for_one_path_are_refused(names: tuple[str, str], tmp_path: Path) -> None:
+def test_two_entries_for_one_path_are_rejected(names: tuple[str, str], tmp_path: Path) -> None:
     with pytest.raises(TltlError, match="TLT0009"):
         unpack(tmp_path, [(name, b"") for name in names], ARCHIVE)
 
@@ -41,30 +41,30 @@ def test_two_entries_for_one_path_are_refused(names: tuple[str, str], tmp_path: 
 @pytest.mark.parametrize(
     "names", [("A.tltl", "a.tltl"), ("Folder", "folder/x"), ("x/Folder/y", "x/folder"), ("\u00e9", "e\u0301")]
 )
-def test_names_that_are_one_on_some_file_systems_do_not_blame_the_archive(
+def test_a_clash_of_names_on_this_file_system_suggests_another_folder(
     names: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, name, _: folder / normalize("NFC", name).lower())
     with pytest.raises(TltlError) as caught:
         unpack(tmp_path, [("other", b""), *((name, b"") for name in names)], ARCHIVE)
-    (found,) = caught.value.diagnostics
+    (diagnostic,) = caught.value.diagnostics
     title = f"the archive holds `{names[0]}` and `{names[1]}`, which the file system here takes for one path"
-    assert (found.code, found.title, found.help) == ("TLT0009", title, ARCHIVE.elsewhere)
+    assert (diagnostic.code, diagnostic.title, diagnostic.help) == ("TLT0009", title, ARCHIVE.elsewhere)
 
 
 WINDOWS = ["con", "nul.tltl", "a/Aux/b", "COM1.tar.gz", "lpt9", "com\u00b2", "nul .txt", "a:b", "a\\b", "x.", "x "]
 
 
 @pytest.mark.parametrize("name", WINDOWS)
-def test_what_is_no_file_on_windows_is_refused_there(
+def test_names_that_windows_forbids_are_rejected_there(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
     monkeypatch.setattr("tltlc.io.archive._IS_WINDOWS", True)
     with pytest.raises(TltlError) as caught:
         inside(tmp_path, name, ARCHIVE)
-    (found,) = caught.value.diagnostics
-    assert (found.code, found.help) == ("TLT0009", ARCHIVE.elsewhere)
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.help) == ("TLT0009", ARCHIVE.elsewhere)
 
 
 @pytest.mark.parametrize("name", ["console", "a.con", "com", "com10", "nu", "a/lpt.txt", ".x"])
@@ -73,17 +73,17 @@ def test_plain_names_are_files_on_windows(name: str, tmp_path: Path, monkeypatch
     assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
 
 
-def test_a_name_that_the_system_refuses_is_an_error(tmp_path: Path) -> None:
+def test_a_name_that_the_system_rejects_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(TltlError, match="TLT0005"):
         unpack(tmp_path, [("/".join(["x" * 203] * 20), b"")], ARCHIVE)
 
 
-def test_a_name_that_is_too_long_for_file_systems_is_refused(tmp_path: Path) -> None:
+def test_a_name_that_is_too_long_for_file_systems_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(TltlError, match=r"TLT0009: .* a part of which is longer than 255 bytes"):
         unpack(tmp_path, [("a/" + "x" * 256, b"")], ARCHIVE)
 
 
-def test_files_lie_at_their_paths(tmp_path: Path) -> None:
+def test_files_are_unpacked_to_their_paths(tmp_path: Path) -> None:
     unpack(tmp_path, [("a/b/c.tltl", b"1"), ("d", b"2"), ("...", b"3"), ("a/..b", b"4")], ARCHIVE)
     assert {str(path.relative_to(tmp_path)): path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == {
         "a/b/c.tltl": b"1",

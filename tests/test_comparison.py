@@ -1,4 +1,4 @@
-"""Inclusion and equivalence of automata, against the definitions of what formulas mean."""
+"""Inclusion and equivalence of automata agree with the semantics of formulas."""
 
 from __future__ import annotations
 
@@ -33,45 +33,45 @@ def finite(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
 
 @settings(max_examples=150, deadline=None)
 @given(SMALL, SMALL)
-def test_over_finite_traces_a_shortest_one_tells_them_apart(one: Formula, other: Formula) -> None:
-    found = separating(finite(one), finite(other))
-    apart = [each for each in all_traces(("a", "b"), 3) if holds(one, each) and not holds(other, each)]
-    if found is None:
-        assert not apart
+def test_over_finite_traces_a_shortest_counterexample_is_found(one: Formula, other: Formula) -> None:
+    counterexample = separating(finite(one), finite(other))
+    expected = [trace for trace in all_traces(("a", "b"), 3) if holds(one, trace) and not holds(other, trace)]
+    if counterexample is None:
+        assert not expected
         return
-    assert found.cycle == ()
-    assert holds(one, found.prefix) and not holds(other, found.prefix)
-    assert len(found.prefix) <= min((len(each) for each in apart), default=len(found.prefix))
-    assert apart or len(found.prefix) > 3
+    assert counterexample.cycle == ()
+    assert holds(one, counterexample.prefix) and not holds(other, counterexample.prefix)
+    assert len(counterexample.prefix) <= min((len(trace) for trace in expected), default=len(counterexample.prefix))
+    assert expected or len(counterexample.prefix) > 3
 
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL, SMALL)
-def test_what_is_impossible_is_on_no_trace(one: Formula, other: Formula) -> None:
+def test_a_counterexample_has_no_impossible_samples(one: Formula, other: Formula) -> None:
     a, b = finite(one), finite(other)
     known = {atom.name for atom in (*a.atoms, *b.atoms)}
-    literals = tuple(each for each in (("b", True), ("a", False)) if each[0] in known)
+    literals = tuple(literal for literal in (("b", True), ("a", False)) if literal[0] in known)
     if not literals:
         return
-    found = separating(a, b, impossible=[literals])
+    counterexample = separating(a, b, impossible=[literals])
 
     def is_possible(letter: frozenset[str]) -> bool:
         return not all((name in letter) == wanted for name, wanted in literals)
 
-    apart = [
-        each
-        for each in all_traces(("a", "b"), 3)
-        if all(map(is_possible, each)) and holds(one, each) and not holds(other, each)
+    expected = [
+        trace
+        for trace in all_traces(("a", "b"), 3)
+        if all(map(is_possible, trace)) and holds(one, trace) and not holds(other, trace)
     ]
-    if found is None:
-        assert not apart
+    if counterexample is None:
+        assert not expected
         return
-    assert all(map(is_possible, found.prefix))
-    assert holds(one, found.prefix) and not holds(other, found.prefix)
-    assert len(found.prefix) <= min((len(each) for each in apart), default=len(found.prefix))
+    assert all(map(is_possible, counterexample.prefix))
+    assert holds(one, counterexample.prefix) and not holds(other, counterexample.prefix)
+    assert len(counterexample.prefix) <= min((len(trace) for trace in expected), default=len(counterexample.prefix))
 
 
-def test_after_a_goal_less_is_left() -> None:
+def test_after_a_goal_less_remains() -> None:
     fspa = finite("F a & F b")
     is_left = less_is_left(fspa)
     after = {edge.target for edge in fspa.edges if edge.source == 0} - {0}
@@ -84,10 +84,10 @@ def test_after_a_goal_less_is_left() -> None:
 
 @settings(max_examples=150, deadline=None)
 @given(SMALL, SMALL)
-def test_over_infinite_traces_a_lasso_tells_them_apart(one: Formula, other: Formula) -> None:
-    found = separating(compiled(one), compiled(other))
-    if found is not None:
-        assert holds_on_lasso(one, found.prefix, found.cycle) and not holds_on_lasso(other, found.prefix, found.cycle)
+def test_over_infinite_traces_a_lasso_is_found(one: Formula, other: Formula) -> None:
+    lasso = separating(compiled(one), compiled(other))
+    if lasso is not None:
+        assert holds_on_lasso(one, lasso.prefix, lasso.cycle) and not holds_on_lasso(other, lasso.prefix, lasso.cycle)
         return
     for before, after in ((0, 1), (0, 2), (1, 1), (1, 2), (2, 1)):
         for samples in product(SAMPLES, repeat=before + after):
@@ -106,27 +106,27 @@ def test_over_infinite_traces_a_lasso_tells_them_apart(one: Formula, other: Form
         ("a R b", "b W (a & b)", "equal"),
     ],
 )
-def test_relations(make, one: str, other: str, relation: str) -> None:  # type: ignore[no-untyped-def]
+def test_inclusion_and_equivalence(make, one: str, other: str, relation: str) -> None:  # type: ignore[no-untyped-def]
     first, second = make(one), make(other)
-    ways = is_included(first, second), is_included(second, first)
-    assert ways == {"equal": (True, True), "stricter": (True, False), "neither": (False, False)}[relation]
+    included = is_included(first, second), is_included(second, first)
+    assert included == {"equal": (True, True), "stricter": (True, False), "neither": (False, False)}[relation]
     assert are_equivalent(first, second) == (relation == "equal")
 
 
-def test_what_only_infinite_traces_tell() -> None:
+def test_differences_only_over_infinite_traces() -> None:
     assert separating(compiled("F G a"), compiled("G F a")) is None
-    found = separating(compiled("G F a & G F b"), compiled("F G (a | b)"))
-    assert found is not None
-    assert {"a", "b"} <= set().union(*found.cycle) and frozenset() in found.cycle
+    lasso = separating(compiled("G F a & G F b"), compiled("F G (a | b)"))
+    assert lasso is not None
+    assert {"a", "b"} <= set().union(*lasso.cycle) and frozenset() in lasso.cycle
     assert separating(finite("F G a"), finite("G F a")) is None and are_equivalent(finite("F G a"), finite("G F a"))
 
 
-def test_atoms_of_both_count_by_their_names() -> None:
+def test_atoms_are_matched_by_name() -> None:
     assert separating(finite("F b"), finite("F b & F a")) == Trace((frozenset({"b"}),))
     assert is_included(finite("G b & G a"), finite("G a"))
 
 
-def test_traces_on_which_exclusive_atoms_hold_together_are_none() -> None:
+def test_counterexamples_respect_exclusive_atoms() -> None:
     both = ("a", "b")
     assert separating(finite("F(a & b)", both), finite("false")) is None
     assert separating(finite("F(a & b)"), finite("F c", ("a", "b"))) is None
@@ -134,7 +134,7 @@ def test_traces_on_which_exclusive_atoms_hold_together_are_none() -> None:
     assert separating(finite("F(a & b)"), finite("F c")) is not None
 
 
-def test_automata_of_both_kinds_are_not_compared() -> None:
+def test_finite_and_infinite_automata_cannot_be_compared() -> None:
     with pytest.raises(ValueError, match="`spec` is over finite traces, and `spec` over infinite ones"):
         separating(finite("F a"), compiled("F a"))
 
@@ -145,14 +145,14 @@ def test_work_is_bounded() -> None:
 
 
 @pytest.mark.parametrize("compare", [is_included, are_equivalent])
-def test_the_work_of_answers_is_bounded(compare) -> None:  # type: ignore[no-untyped-def]
+def test_the_work_of_inclusion_and_equivalence_is_bounded(compare) -> None:  # type: ignore[no-untyped-def]
     one, other = compiled("G F a & G F b"), compiled("G F b & G F a")
     assert compare(one, other)
     with pytest.raises(OutOfWork):
         compare(one, other, work=10)
 
 
-def test_many_atoms_need_no_deep_stack_of_the_caller() -> None:
+def test_many_atoms_need_no_deep_stack() -> None:
     fspa = finite(" & ".join(f"a{number}" for number in range(300)))
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(len(inspect.stack(0)) + 200)
@@ -162,19 +162,19 @@ def test_many_atoms_need_no_deep_stack_of_the_caller() -> None:
         sys.setrecursionlimit(before)
 
 
-def test_artefacts_of_sources() -> None:
+def test_compiled_specs_can_be_compared() -> None:
     text = "signal a: bool signal b: bool spec one { reach a then b } spec two { reach a reach b }"
     one, two = compile_text(text)
     assert is_included(one, two)
     assert separating(two, one) == Trace((frozenset({"a", "b"}),))
 
 
-def test_the_edges_of_a_state_are_put_together_in_pairs() -> None:
+def test_the_edges_of_a_state_are_combined_in_pairs() -> None:
     def goals(count: int) -> Fspa:
         signals = "".join(f"signal a{number}: bool\n" for number in range(8))
         return compile_text(f"{signals}spec s = {' & '.join(f'F a{number}' for number in range(count))}\n")[0]
 
     one, other = goals(7), goals(8)
-    # One after the other, each edge takes a step for all that was put together before, which takes 400,000 steps.
+    # If edges were combined one after the other, each one would visit the whole result so far: 400,000 steps in all.
     assert separating(other, one, work=250_000) is None
     assert separating(one, other, work=250_000) is not None

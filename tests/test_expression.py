@@ -5,12 +5,12 @@ from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signa
 
 def test_nodes_come_in_order_of_appearance() -> None:
     a, b, c, d = Signal("a"), Param("b"), Const(1.0), Signal("d")
-    test = Condition("<", (a, b))
-    expression = Op("+", (When(((test, c),), d), a))
-    assert list(nodes(expression)) == [expression, expression.args[0], test, a, b, c, d, a]
+    condition = Condition("<", (a, b))
+    expression = Op("+", (When(((condition, c),), d), a))
+    assert list(nodes(expression)) == [expression, expression.args[0], condition, a, b, c, d, a]
 
 
-def test_depth_is_no_limit() -> None:
+def test_expressions_of_any_depth_can_be_walked() -> None:
     expression: Expression = Signal("a")
     for _ in range(100_000):
         expression = Op("neg", (expression,))

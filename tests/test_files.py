@@ -1,4 +1,4 @@
-"""Files that are looked for: what the system does not tell is not there."""
+"""Looking for files: a file that the system cannot access counts as missing."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ import pytest
 from tltlc.io.files import exists, is_dir, is_file, note_read, noted, read_source, stamp, walk, was_read
 
 
-def test_what_is_there(tmp_path: Path) -> None:
+def test_existing_files_and_folders_are_found(tmp_path: Path) -> None:
     (tmp_path / "a").touch()
-    assert [(exists(tmp_path / each), is_file(tmp_path / each)) for each in ("a", "", "b", "a/b")] == [
+    assert [(exists(tmp_path / name), is_file(tmp_path / name)) for name in ("a", "", "b", "a/b")] == [
         (True, True),
         (True, False),
         (False, False),
@@ -25,22 +25,22 @@ def test_what_is_there(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("look", [exists, is_file])
 @pytest.mark.parametrize("name", ["a" * 300, "a\0", "\ud800"])
-def test_a_name_that_the_system_does_not_allow_is_nowhere(look: Callable[[str], bool], name: str) -> None:
+def test_a_name_that_the_system_does_not_allow_is_missing(look: Callable[[str], bool], name: str) -> None:
     assert not look(name)
 
 
 @pytest.mark.parametrize("look", [exists, is_file])
-def test_what_one_may_not_look_at_is_nowhere(
+def test_a_file_without_permission_is_missing(
     look: Callable[[Path], bool], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refused(*_: object, **__: object) -> NoReturn:
+    def forbidden(*_: object, **__: object) -> NoReturn:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(os, "stat", refused)
+    monkeypatch.setattr(os, "stat", forbidden)
     assert not look(tmp_path)
 
 
-def test_what_is_looked_at_is_noted_as_it_was_before(tmp_path: Path) -> None:
+def test_a_looked_up_path_is_noted_with_its_first_state(tmp_path: Path) -> None:
     file, missing = tmp_path / "a", tmp_path / "b"
     file.write_text("1")
     before = stamp(str(file))
@@ -54,13 +54,13 @@ def test_what_is_looked_at_is_noted_as_it_was_before(tmp_path: Path) -> None:
     assert len(outer) == 3
 
 
-def test_a_folder_stays_the_same_whatever_is_written_into_it(tmp_path: Path) -> None:
+def test_the_stamp_of_a_folder_ignores_its_files(tmp_path: Path) -> None:
     before = stamp(str(tmp_path))
     (tmp_path / "a").touch()
     assert before is not None and stamp(str(tmp_path)) == before
 
 
-def test_notes_within_notes(tmp_path: Path) -> None:
+def test_nested_notes(tmp_path: Path) -> None:
     with noted() as outer:
         with noted():
             pass
@@ -68,7 +68,7 @@ def test_notes_within_notes(tmp_path: Path) -> None:
     assert [*outer] == [str(tmp_path)]
 
 
-def test_only_files_are_replaced_by_what_is_written(tmp_path: Path) -> None:
+def test_only_regular_files_count_as_read(tmp_path: Path) -> None:
     file = tmp_path / "a"
     file.touch()
     with noted():
@@ -78,7 +78,7 @@ def test_only_files_are_replaced_by_what_is_written(tmp_path: Path) -> None:
         assert not was_read(os.devnull)
 
 
-def test_a_round_of_watching_forgets_what_earlier_rounds_have_read(tmp_path: Path) -> None:
+def test_a_new_round_of_notes_forgets_files_of_earlier_rounds(tmp_path: Path) -> None:
     source, link = tmp_path / "a", tmp_path / "link"
     source.write_text("1")
     link.hardlink_to(source)
@@ -94,7 +94,7 @@ def test_a_round_of_watching_forgets_what_earlier_rounds_have_read(tmp_path: Pat
 
 @pytest.fixture
 def deep(tmp_path: Path) -> Iterator[Path]:
-    """A folder with a thousand folders in each other, more than Python's stack has room for."""
+    """A folder with more nested folders than Python's recursion limit."""
     before = Path.cwd()
     os.chdir(tmp_path)
     try:
@@ -105,7 +105,7 @@ def deep(tmp_path: Path) -> Iterator[Path]:
         yield tmp_path
     finally:
         os.chdir(before)
-        # Nothing of Python's removes it.
+        # No function of Python can remove a folder this deep.
         subprocess.run(["rm", "-rf", str(tmp_path / "d")], check=False)
 
 
@@ -113,9 +113,9 @@ def test_folders_of_any_depth_are_walked(deep: Path) -> None:
     (deep / "b").mkdir()
     (deep / "b" / "file").touch()
     (deep / "link").symlink_to(deep)
-    refused: list[OSError] = []
-    walked = list(walk(deep, refused.append))
+    errors: list[OSError] = []
+    walked = list(walk(deep, errors.append))
     assert (str(deep), ["b", "d", "link"], []) == (walked[0][0], sorted(walked[0][1]), walked[0][2])
     assert (str(deep / "b"), [], ["file"]) in walked
-    # Where a path may have some thousand characters only, the last folders are refused.
-    assert len(walked) > 1000 or len(refused) == 1
+    # If paths are limited to some thousand characters, the deepest folders give an error.
+    assert len(walked) > 1000 or len(errors) == 1

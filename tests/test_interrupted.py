@@ -1,4 +1,4 @@
-"""A child process that a signal has ended is an interrupt of the command, and no fault of the child."""
+"""A child process that ends by a signal interrupts the command, and is not an error of the child."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs signals t
 
 
 @pytest.mark.parametrize("status", [0, 1, 2, 128, 129, -9, -11, 141])
-def test_other_ends_are_no_interrupt(status: int) -> None:
+def test_other_exit_statuses_are_no_interrupt(status: int) -> None:
     raise_if_interrupted(status)
 
 
@@ -42,7 +42,7 @@ def test_importing_the_layout_process_changes_no_signal() -> None:
 @pytest.mark.parametrize("word", ["rev-parse", "ls-tree", "--batch-check", "--batch"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_git_is_an_interrupt(repository: Path, word: str, number: signal.Signals) -> None:  # noqa: F811
-    """Ctrl-C reaches all processes of a terminal, and git may end first."""
+    """Ctrl-C goes to all processes of a terminal, and git may end first."""
     tools, temporary = repository / "tools", repository / "temporary"
     tools.mkdir()
     temporary.mkdir()

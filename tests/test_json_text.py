@@ -1,4 +1,4 @@
-"""JSON is read within limits."""
+"""JSON is read within limits of size, depth and number of values."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-def test_a_value_comes_back(value: object) -> None:
+def test_a_value_is_read_back_unchanged(value: object) -> None:
     text = json.dumps(value)
     limit = Limit(size=1, values=text.count(",") + 1)
     assert loads(text, limit) == loads(text.encode(), limit) == value
 
 
-def test_too_many_values_are_refused_before_they_are_made() -> None:
+def test_too_many_values_are_rejected_before_they_are_created() -> None:
     assert len(loads("[" + "0," * 9 + "0]", SMALL)) == 10
     with pytest.raises(JsonLimitError, match="more than 10 values"):
         loads("[" + "[]," * 10 + "[]]", SMALL)
 
 
 @pytest.mark.parametrize("opening", ["[", '{"a":'])
-def test_deep_nesting_is_refused(opening: str) -> None:
+def test_deep_nesting_is_rejected(opening: str) -> None:
     with pytest.raises(JsonLimitError, match="nests too deep"):
         loads(opening * 100_000, SMALL)
 
@@ -51,7 +51,7 @@ def test_nesting_is_counted_in_levels(opening: str) -> None:
         loads(opening * 6 + "0" + closing * 6, limit)
 
 
-def test_a_large_file_is_refused(tmp_path: Path) -> None:
+def test_a_large_file_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "x.json"
     path.write_text(" " * 99 + "1")
     assert load(path, SMALL) == 1
@@ -63,6 +63,6 @@ def test_a_large_file_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text", ["[" * 100_000, '{"format": "fspa", "a":' + "[" * 5000, "[" + "[]," * 10_000_000 + "[]]"]
 )
-def test_an_artefact_that_would_fill_the_memory_is_refused(text: str) -> None:
+def test_an_artefact_that_would_fill_the_memory_is_rejected(text: str) -> None:
     with pytest.raises(TltlError, match="TLT0006"):
         read_artefact(SourceFile("x.fspa.json", text))

@@ -1,4 +1,4 @@
-"""No regular expression takes a time that explodes, whatever the text; those that read files take linear time."""
+"""No regular expression takes exponential time on any text, and those that read files take linear time."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _FLAGS = {"DOTALL", "MULTILINE", "ASCII", "IGNORECASE", "I"}
 
 def _terminals(grammar: Path) -> Iterator[tuple[str, int]]:
     rules = re.findall(r"^\??(\w+):", grammar.read_text(encoding="utf-8"), re.MULTILINE)
-    made = Lark(
+    parser = Lark(
         grammar.read_text(encoding="utf-8"), parser="lalr", start=next(rule for rule in rules if rule.islower())
     )
-    for terminal in made.terminals:
+    for terminal in parser.terminals:
         yield terminal.pattern.to_regexp(), 0
 
 
 def _in_code() -> Iterator[tuple[str, str, int]]:
-    """Module, pattern and flags of each call of ``re`` whose pattern can be told from the module's own constants."""
+    """Yield module, pattern and flags of each call of ``re`` whose pattern follows from constants of the module."""
     for path in sorted([*_ROOT.glob("tltlc/**/*.py"), *_ROOT.glob("runtime/tltl_runtime/**/*.py")]):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         known: dict[str, object] = {}
@@ -52,14 +52,14 @@ def _in_code() -> Iterator[tuple[str, str, int]]:
 
 
 def _value(node: ast.AST | None, known: dict[str, object]) -> object:
-    """The value of a constant expression; None for any other."""
+    """Return the value of a constant expression, or None for any other expression."""
     try:
         return eval(ast.unparse(node), {"__builtins__": {}}, known) if node is not None else None
     except Exception:
         return None
 
 
-def _soon(patterns: list[tuple[str, int]], times: int) -> None:
+def _match_soon(patterns: list[tuple[str, int]], times: int) -> None:
     soon(
         "import re\n"
         "from tests.hostile_texts import hostile_texts\n"
@@ -73,20 +73,20 @@ def _soon(patterns: list[tuple[str, int]], times: int) -> None:
 
 @pytest.mark.parametrize("grammar", _GRAMMARS, ids=lambda path: path.stem)
 def test_every_terminal_of_a_grammar_takes_linear_time(grammar: Path) -> None:
-    _soon(list(_terminals(grammar)), 50_000)
+    _match_soon(list(_terminals(grammar)), 50_000)
 
 
 def test_the_pattern_of_all_tokens_takes_linear_time() -> None:
-    _soon([(lexer_pattern().pattern, lexer_pattern().flags)], 20_000)
+    _match_soon([(lexer_pattern().pattern, lexer_pattern().flags)], 20_000)
 
 
 def test_no_pattern_in_the_code_takes_exponential_time() -> None:
-    found = list(dict.fromkeys((pattern, flags) for _, pattern, flags in _in_code()))
-    assert len(found) > 80
-    _soon(found, 300)
+    patterns = list(dict.fromkeys((pattern, flags) for _, pattern, flags in _in_code()))
+    assert len(patterns) > 80
+    _match_soon(patterns, 300)
 
 
-def test_hostile_texts_find_an_ambiguous_repetition() -> None:
+def test_hostile_texts_include_one_for_an_ambiguous_repetition() -> None:
     from tests.hostile_texts import hostile_texts
 
     texts = set(hostile_texts(r'(?s:"(\\.|[^\"])*")', 0, 49))

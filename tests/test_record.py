@@ -1,4 +1,4 @@
-"""Records behave as frozen dataclasses with slots do."""
+"""Records behave like frozen dataclasses with slots."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_fields_by_position_name_and_default() -> None:
         ((1,), {"z": 2}, "Point has no field z"),
     ],
 )
-def test_wrong_arguments(given: tuple[int, ...], named: dict[str, int], message: str) -> None:
+def test_wrong_arguments_are_an_error(given: tuple[int, ...], named: dict[str, int], message: str) -> None:
     with pytest.raises(TypeError, match=message):
         Point(*given, **named)
 
@@ -82,7 +82,7 @@ def test_replace_pickle_and_match() -> None:
             assert (x, y) == (1, 7)
 
 
-def test_a_field_without_default_must_come_first() -> None:
+def test_a_field_without_a_default_must_come_first() -> None:
     with pytest.raises(TypeError, match="follows one with a default"):
 
         @record
@@ -96,7 +96,7 @@ def test_the_empty_mapping_stays_empty() -> None:
         EMPTY["a"] = 1  # type: ignore[index]
 
 
-def test_a_record_checks_itself() -> None:
+def test_a_record_can_validate_its_fields() -> None:
     @record
     class Share:
         """A number in [0, 1]."""
@@ -114,7 +114,7 @@ def test_a_record_checks_itself() -> None:
         replace(Share(), value=-1)
 
 
-def test_a_hash_that_is_kept() -> None:
+def test_a_record_can_cache_its_hash() -> None:
     hashes = []
 
     class Counted:

@@ -1,4 +1,4 @@
-"""The last bounds of a command: processor time and memory."""
+"""The limits of a command on processor time and memory."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if sys.platform == "win32":
     pytest.skip("Windows bounds neither", allow_module_level=True)
 
 GOALS = "".join(f"signal a{i}: bool\n" for i in range(11)) + f"spec s = {' & '.join(f'F a{i}' for i in range(11))}\n"
-"""Takes half a minute of processor time."""
+"""A source that takes half a minute of processor time."""
 
 MANY = "".join(f"signal s{i}: bool\nspec q{i} = F (s{i} & X s{i // 2})\n" for i in range(6_000))
-"""Takes 80 MiB."""
+"""A source that takes 80 MiB of memory."""
 
 
 def _run(*arguments: str, given: str = "") -> subprocess.CompletedProcess[str]:
@@ -34,32 +34,32 @@ def _script(script: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
 
 
-def test_a_command_ends_after_its_processor_time(tmp_path: Path) -> None:
+def test_a_command_stops_at_its_limit_of_processor_time(tmp_path: Path) -> None:
     (tmp_path / "goals.tltl").write_text(GOALS)
-    ended = _run("--max-cpu", "1", "compile", str(tmp_path / "goals.tltl"), "-o", str(tmp_path / "out"))
-    assert ended.returncode == 1
-    assert ended.stderr == (
+    result = _run("--max-cpu", "1", "compile", str(tmp_path / "goals.tltl"), "-o", str(tmp_path / "out"))
+    assert result.returncode == 1
+    assert result.stderr == (
         "error[TLT0007]: the command was not done after 1 seconds of processor time\n"
         "  help: make its input smaller, or permit more: `tltlc --max-cpu SECONDS COMMAND …`\n"
     )
     assert not (tmp_path / "out").exists()
 
 
-def test_a_command_ends_where_it_takes_too_much_memory() -> None:
-    ended = _run("--max-memory", "0.05", "check", "-", given=MANY)
-    assert ended.returncode == 1
-    # Python prints a line of its own where there is no room to call a hook.
-    assert ended.stderr.endswith(
+def test_a_command_stops_at_its_limit_of_memory() -> None:
+    result = _run("--max-memory", "0.05", "check", "-", given=MANY)
+    assert result.returncode == 1
+    # Python may print another line first, if it has no memory to call the exception hook.
+    assert result.stderr.endswith(
         "error[TLT0007]: the command ran out of memory (it may use 0.05 GiB)\n"
         "  help: make its input smaller, or permit more: `tltlc --max-memory GIB COMMAND …`\n"
     )
-    assert "Traceback" not in ended.stderr
+    assert "Traceback" not in result.stderr
 
 
 @pytest.mark.parametrize("bounds", [(), ("--max-cpu", "0", "--max-memory", "0")])
-def test_the_bounds_are_far_away(bounds: tuple[str, ...]) -> None:
-    ended = _run(*bounds, "check", "-", given=MANY)
-    assert (ended.returncode, ended.stderr) == (0, "<stdin>: 6000 specs, nothing to report\n")
+def test_the_default_limits_are_generous(bounds: tuple[str, ...]) -> None:
+    result = _run(*bounds, "check", "-", given=MANY)
+    assert (result.returncode, result.stderr) == (0, "<stdin>: 6000 specs, nothing to report\n")
 
 
 @pytest.mark.parametrize(
@@ -69,28 +69,28 @@ def test_the_bounds_are_far_away(bounds: tuple[str, ...]) -> None:
         *[("--max-memory", value) for value in ("nan", "8589934592", "1e300")],
     ],
 )
-def test_bounds_are_numbers(option: str, value: str) -> None:
-    ended = _run(option, value, "list", "codes")
-    assert ended.returncode == 2
-    assert "TLT0700" in ended.stderr
+def test_invalid_limits_are_rejected(option: str, value: str) -> None:
+    result = _run(option, value, "list", "codes")
+    assert result.returncode == 2
+    assert "TLT0700" in result.stderr
 
 
-def test_the_help_names_the_bounds() -> None:
+def test_the_help_shows_the_limits() -> None:
     out = " ".join(_run("--help").stdout.split())
     assert "--max-cpu SECONDS End the work on files after so much processor time" in out
     assert f"[default: {COMMAND.work_s}" in out
     assert "--max-memory GIB" in out
 
 
-def test_a_program_that_imports_tltlc_has_no_bounds() -> None:
+def test_a_program_that_imports_tltlc_has_no_limits() -> None:
     script = "import signal, resource\nbefore = resource.getrlimit(resource.RLIMIT_DATA)\nwith bounded():\n"
     script += "    assert signal.getitimer(signal.ITIMER_PROF) == (0.0, 0.0)\n"
     script += "    assert resource.getrlimit(resource.RLIMIT_DATA) == before\n"
-    ended = _script(script)
-    assert (ended.returncode, ended.stderr) == (0, "")
+    result = _script(script)
+    assert (result.returncode, result.stderr) == (0, "")
 
 
-def test_bounds_end_with_the_work_that_has_them() -> None:
+def test_limits_end_with_the_bounded_block() -> None:
     script = (
         "import resource, signal\n"
         "before = resource.getrlimit(resource.RLIMIT_DATA), signal.getsignal(signal.SIGPROF)\n"
@@ -103,11 +103,11 @@ def test_bounds_end_with_the_work_that_has_them() -> None:
         "assert signal.getitimer(signal.ITIMER_PROF)[0] == 0\n"
         "assert (resource.getrlimit(resource.RLIMIT_DATA), signal.getsignal(signal.SIGPROF)) == before\n"
     )
-    ended = _script(script)
-    assert (ended.returncode, ended.stderr) == (0, "")
+    result = _script(script)
+    assert (result.returncode, result.stderr) == (0, "")
 
 
-def test_no_handler_of_exceptions_keeps_it_going() -> None:
+def test_no_exception_handler_can_ignore_the_time_limit() -> None:
     script = (
         "permit(Process(memory=0, work_s=1))\n"
         "class Dropped:\n"
@@ -124,7 +124,7 @@ def test_no_handler_of_exceptions_keeps_it_going() -> None:
     assert _script(script).stdout == "ended\n"
 
 
-def test_other_threads_have_no_bounds() -> None:
+def test_other_threads_have_no_limits() -> None:
     script = (
         "import threading\n"
         "permit(Process(memory=1 << 30, work_s=100))\n"
@@ -132,33 +132,33 @@ def test_other_threads_have_no_bounds() -> None:
         "    with bounded(): print('worked')\n"
         "thread = threading.Thread(target=work)\nthread.start()\nthread.join()\n"
     )
-    ended = _script(script)
-    assert (ended.stdout, ended.stderr) == ("worked\n", "")
+    result = _script(script)
+    assert (result.stdout, result.stderr) == ("worked\n", "")
 
 
-def test_a_process_is_limited_for_good() -> None:
+def test_a_limit_of_a_process_cannot_be_raised() -> None:
     script = (
         "import resource\n"
         "limit('RLIMIT_DATA', 1 << 30)\nlimit('RLIMIT_DATA', 1 << 31)\nlimit('RLIMIT_OF_ANOTHER_SYSTEM', 1)\n"
         "print(*resource.getrlimit(resource.RLIMIT_DATA))\n"
     )
-    ended = _script(script)
-    assert (ended.stdout, ended.stderr) == (f"{1 << 30} {1 << 30}\n", "")
+    result = _script(script)
+    assert (result.stdout, result.stderr) == (f"{1 << 30} {1 << 30}\n", "")
 
 
 @pytest.mark.parametrize("error", [OutOfTimeError(), MemoryError(), RecursionError()])
-def test_each_has_the_same_code(error: BaseException) -> None:
+def test_every_exhausted_resource_has_the_same_code(error: BaseException) -> None:
     reported = exhausted(error)
     assert isinstance(reported, TltlError)
-    assert [each.code for each in reported.diagnostics] == ["TLT0007"]
+    assert [diagnostic.code for diagnostic in reported.diagnostics] == ["TLT0007"]
 
 
-def test_other_errors_are_not_meant() -> None:
+def test_other_errors_are_not_reported_as_exhausted() -> None:
     assert exhausted(ValueError()) is None
 
 
-def test_what_a_destructor_runs_out_of_is_not_printed() -> None:
-    done = _script("""
+def test_exhausted_resources_in_a_destructor_are_not_printed() -> None:
+    result = _script("""
 class Thing:
     def __init__(self, error):
         self.error = error
@@ -173,7 +173,7 @@ with bounded():
     Thing(ValueError("inside"))
 Thing(MemoryError("outside"))
 """)
-    assert done.returncode == 0
-    assert "ValueError: inside" in done.stderr
-    assert "MemoryError: outside" in done.stderr
-    assert done.stderr.count("Traceback") == 2
+    assert result.returncode == 0
+    assert "ValueError: inside" in result.stderr
+    assert "MemoryError: outside" in result.stderr
+    assert result.stderr.count("Traceback") == 2

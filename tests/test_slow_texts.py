@@ -1,4 +1,4 @@
-"""Texts that once took a time that grew with the square of their length, or faster."""
+"""Texts that once took quadratic time or more."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from tests.soon import soon
 @pytest.mark.parametrize(
     "code",
     [
-        # A project file of blank lines, with one key that nothing knows.
+        # A project file of blank lines with one unknown key.
         "from tltlc.io.project import _place; from tltlc.core.source import SourceFile\n"
         "_place(SourceFile('tltl.toml', '\\n' * 1_000_000 + 'librarys'), 'kez')",
-        # A project file of many keys that nothing knows.
+        # A project file of many unknown keys.
         "from tltlc.io.project import _place; from tltlc.core.source import SourceFile\n"
         "source = SourceFile('tltl.toml', ''.join(f'k{n}=1\\n' for n in range(100_000)))\n"
         "for n in range(100_000): assert _place(source, f'k{n}')",
-        # A param whose value ends in what is no unit.
+        # The value of a param with an invalid unit.
         "from tltlc.resolve.constants import override; assert override('1' * 1_000_000 + '!') is None",
         "from tltlc.resolve.constants import override; assert override('1' + ' ' * 1_000_000 + '!') is None",
-        # An automaton of another tool, with a text that does not end.
+        # An automaton of another tool with an unterminated string.
         "from tltlc.tools.hoa.reader import _without_comments; from tltlc.core.source import SourceFile\n"
         "_without_comments(SourceFile('a.hoa', '\"' + '\\\\\"' * 2_000_000))",
         "from tltlc.tools.hoa.reader import _without_comments; from tltlc.core.source import SourceFile\n"
@@ -28,5 +28,5 @@ from tests.soon import soon
     ],
     ids=["blank lines", "unknown keys", "digits", "blanks", "quotes", "quotes and a backslash"],
 )
-def test_it_is_done_soon(code: str) -> None:
+def test_slow_texts_are_processed_quickly(code: str) -> None:
     soon(code)

@@ -1,4 +1,4 @@
-"""Temporary files: those of killed processes are removed, those of others and everything else stay."""
+"""Temporary files of killed processes are removed; all other files stay."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Path.replace = told
 from tltlc.interfaces.cli.main import main
 main()
 """
-"""Compiles, and waits for a line on standard input between writing its temporary files and renaming them."""
+"""A program that compiles, and waits for a line on standard input before it renames its temporary files."""
 
 
 @contextmanager
@@ -62,7 +62,7 @@ def temporary(folder: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_ends_a_command_in_order(number: signal.Signals, tmp_path: Path) -> None:
+def test_a_command_ended_by_a_signal_leaves_no_file(number: signal.Signals, tmp_path: Path) -> None:
     with stopped_before_renaming(tmp_path) as running:
         assert len(temporary(tmp_path)) == FILES + 1
         running.send_signal(number)
@@ -84,7 +84,7 @@ def interrupted(file):
     return try_lock(file)
 temporary.try_lock = interrupted
 """
-"""A signal comes after the lock file was made, and before anybody knows of it."""
+"""A signal comes after the lock file is created and before it is locked."""
 
 WHILE_CLEANING = """
 import os, signal, sys
@@ -98,7 +98,7 @@ def second(path, missing_ok=False):
     return unlink(path, missing_ok)
 Path.replace, Path.unlink = first, second
 """
-"""A signal comes before the first file is renamed, and another one whenever a temporary file is removed."""
+"""A signal comes before the first file is renamed, and another one each time a temporary file is removed."""
 
 
 @pytest.mark.parametrize("program", [AT_THE_LOCK, WHILE_CLEANING], ids=["lock", "cleaning"])
@@ -108,12 +108,14 @@ def test_a_signal_at_a_bad_moment_leaves_no_file(number: signal.Signals, program
     script = program.format(name=number.name) + "from tltlc.interfaces.cli.main import main\nmain()\n"
     command = [sys.executable, "-c", script, "compile", "specs.tltl", "-o", "out"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": ""}
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=HANG_S)
+    result = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=HANG_S)
     assert [path.name for path in tmp_path.iterdir()] == ["specs.tltl"]
-    assert (done.returncode, done.stdout) == (128 + number, "")
+    assert (result.returncode, result.stdout) == (128 + number, "")
 
 
-def test_the_next_folder_removes_that_of_a_killed_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_new_temporary_folder_removes_the_one_of_a_killed_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     script = (
         "import os\nfrom tltlc.io.temporary import temporary_folder\n"
@@ -122,11 +124,11 @@ def test_the_next_folder_removes_that_of_a_killed_process(tmp_path: Path, monkey
         "    os.kill(os.getpid(), 9)\n"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, timeout=HANG_S, check=False)
-    assert (done.returncode, len(list(tmp_path.iterdir()))) == (-9, 2)
+    result = subprocess.run([sys.executable, "-c", script], env=environment, timeout=HANG_S, check=False)
+    assert (result.returncode, len(list(tmp_path.iterdir()))) == (-9, 2)
     with temporary_folder() as folder:
         assert sorted(tmp_path.iterdir()) == [folder, folder.with_name(f"{folder.name[:-2]}.lock")]
-        # Another process, or thread, leaves it alone.
+        # A second temporary folder does not remove the first one.
         with temporary_folder():
             assert folder.is_dir()
         assert folder.is_dir()
@@ -134,13 +136,13 @@ def test_the_next_folder_removes_that_of_a_killed_process(tmp_path: Path, monkey
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_temporary_folder_without_a_place_has_a_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_temporary_folder_that_cannot_be_created_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "gone"))
     with pytest.raises(TltlError, match="TLT0005: cannot make a temporary folder"), temporary_folder():
         pass
 
 
-def test_a_signal_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
+def test_an_ignored_signal_stays_ignored(tmp_path: Path) -> None:
     with stopped_before_renaming(tmp_path, ignoring="SIGHUP") as running:
         running.send_signal(signal.SIGHUP)
         running.communicate("go on\n", timeout=HANG_S)
@@ -148,7 +150,7 @@ def test_a_signal_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
     assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES, [])
 
 
-def test_the_next_write_removes_what_a_killed_process_has_left(tmp_path: Path) -> None:
+def test_the_next_write_removes_files_of_a_killed_process(tmp_path: Path) -> None:
     with stopped_before_renaming(tmp_path) as running:
         running.kill()
     assert len(temporary(tmp_path)) == FILES + 1
@@ -156,7 +158,7 @@ def test_the_next_write_removes_what_a_killed_process_has_left(tmp_path: Path) -
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["other"]
 
 
-def test_a_living_process_keeps_its_temporary_files(tmp_path: Path) -> None:
+def test_a_running_process_keeps_its_temporary_files(tmp_path: Path) -> None:
     with stopped_before_renaming(tmp_path) as running:
         before = temporary(tmp_path)
         write_files(tmp_path / "out", {"other": "text"})
@@ -166,69 +168,67 @@ def test_a_living_process_keeps_its_temporary_files(tmp_path: Path) -> None:
     assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES + 1, [])
 
 
-def test_two_writers_of_one_process_leave_each_other_alone(tmp_path: Path) -> None:
+def test_two_writers_in_one_process_keep_their_files(tmp_path: Path) -> None:
     with temporaries() as one:
-        kept = one.path(tmp_path / "a")
-        kept.write_text("one")
+        file = one.path(tmp_path / "a")
+        file.write_text("one")
         write_files(tmp_path, {"b": "two"})
-        assert kept.read_text() == "one"
+        assert file.read_text() == "one"
     assert [path.name for path in tmp_path.iterdir()] == ["b"]
 
 
-BEGINNING = ".tltlc-1-0123456789abcdef"
+PREFIX = ".tltlc-1-0123456789abcdef"
 
 
-def test_only_regular_files_with_names_of_our_own_are_removed(tmp_path: Path) -> None:
+def test_only_regular_files_with_our_names_are_removed(tmp_path: Path) -> None:
     folder, elsewhere = tmp_path / "folder", tmp_path / "elsewhere"
     folder.mkdir()
     elsewhere.write_text("precious")
-    gone = [f"{BEGINNING}.lock", f"{BEGINNING}-0.tmp", f"{BEGINNING}-17.mp4", f"{BEGINNING}-3"]
+    removed = [f"{PREFIX}.lock", f"{PREFIX}-0.tmp", f"{PREFIX}-17.mp4", f"{PREFIX}-3"]
     other_owner = ".tltlc-2-0123456789abcdef"
-    stays = [f"{BEGINNING}-x.tmp", f"{BEGINNING}-1.tmp.bak", f"{BEGINNING}0-1.tmp", f"a{BEGINNING}-1.tmp"]
-    # A temporary file without a lock file: nobody knows whether its owner is gone.
-    stays += [f"{other_owner}-0.tmp", ".tltlc-3-0123456789ABCDEF.lock", ".tltlc-3.lock", ".tltlc-12-0.tmp"]
-    for name in (*gone, *stays):
+    kept = [f"{PREFIX}-x.tmp", f"{PREFIX}-1.tmp.bak", f"{PREFIX}0-1.tmp", f"a{PREFIX}-1.tmp"]
+    # A temporary file without a lock file may still have an owner.
+    kept += [f"{other_owner}-0.tmp", ".tltlc-3-0123456789ABCDEF.lock", ".tltlc-3.lock", ".tltlc-12-0.tmp"]
+    for name in (*removed, *kept):
         (folder / name).write_text("text")
-    (folder / f"{BEGINNING}-8.tmp").symlink_to(elsewhere)
-    (folder / f"{BEGINNING}-9.tmp").mkdir()
-    # Lock files that are none.
+    (folder / f"{PREFIX}-8.tmp").symlink_to(elsewhere)
+    (folder / f"{PREFIX}-9.tmp").mkdir()
+    # These have the name of a lock file, but are not regular files.
     (folder / ".tltlc-4-0123456789abcdef.lock").symlink_to(elsewhere)
     (folder / ".tltlc-4-0123456789abcdef-0.tmp").write_text("text")
     os.mkfifo(folder / ".tltlc-5-0123456789abcdef.lock")
     (folder / ".tltlc-6-0123456789abcdef.lock").mkdir()
     before = {path.name for path in folder.iterdir()}
     remove_abandoned(folder)
-    assert {path.name for path in folder.iterdir()} == before - set(gone)
+    assert {path.name for path in folder.iterdir()} == before - set(removed)
     assert elsewhere.read_text() == "precious"
 
 
-def test_a_file_system_without_locks_is_written_to_all_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_files_are_written_on_a_file_system_without_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import fcntl
 
-    def none(*_: object) -> None:
+    def no_locks(*_: object) -> None:
         raise OSError(95, "Operation not supported")
 
-    monkeypatch.setattr(fcntl, "flock", none)
-    (tmp_path / f"{BEGINNING}.lock").touch()
+    monkeypatch.setattr(fcntl, "flock", no_locks)
+    (tmp_path / f"{PREFIX}.lock").touch()
     write_files(tmp_path, {"a": "text"})
-    assert sorted(path.name for path in tmp_path.iterdir()) == [f"{BEGINNING}.lock", "a"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"{PREFIX}.lock", "a"]
 
 
-def test_a_lock_file_that_is_taken_away_is_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Another process may take a lock file for an abandoned one before it is locked."""
+def test_a_removed_lock_file_is_created_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another process may take a new lock file for an abandoned one, and remove it before it is locked."""
     from tltlc.io import temporary as module
 
     attempts = []
 
-    def taken_once(path: Path, file: object) -> bool:
+    def removed_once(path: Path, file: object) -> bool:
         attempts.append(path)
         if len(attempts) == 1:
             path.unlink()
         return path.exists()
 
-    monkeypatch.setattr(module, "_is_there", taken_once)
+    monkeypatch.setattr(module, "_is_there", removed_once)
     write_files(tmp_path, {"a": "text"})
     assert len(set(attempts)) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["a"]

@@ -1,4 +1,4 @@
-"""Files that are there as a whole or not at all, after a loss of power too where that is asked for."""
+"""Files are written completely or not at all; durable files also survive a loss of power."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from tltlc.io.writing import remove_file, rewrite, write_file, write_files
 
 @pytest.fixture(name="done")
 def _done(monkeypatch: pytest.MonkeyPatch) -> list[int | str]:
-    """What the system is asked for, in order: sizes of files and `folder` that are synced, names that files get."""
-    told: list[int | str] = []
+    """The calls in order: the size of a synced file, `folder` for a synced folder, the name of a renamed file."""
+    calls: list[int | str] = []
     sync, replace = os.fsync, Path.replace
 
     def synced(descriptor: int) -> None:
-        found = os.fstat(descriptor)
-        told.append("folder" if stat.S_ISDIR(found.st_mode) else found.st_size)
+        status = os.fstat(descriptor)
+        calls.append("folder" if stat.S_ISDIR(status.st_mode) else status.st_size)
         sync(descriptor)
 
     def replaced(path: Path, target: Path) -> Path:
-        told.append(target.name)
+        calls.append(target.name)
         return replace(path, target)
 
     monkeypatch.setattr(os, "fsync", synced)
     monkeypatch.setattr(Path, "replace", replaced)
-    return told
+    return calls
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows syncs no folders")
-def test_durable_files_are_on_the_disk_before_they_get_their_names(tmp_path: Path, done: list[int | str]) -> None:
+def test_durable_files_are_synced_before_they_are_renamed(tmp_path: Path, done: list[int | str]) -> None:
     write_files(tmp_path, {"a": "one", "b/c": b"three"}, durable=True)
     assert done == [3, 5, "a", "c", "folder", "folder"]
     assert [(tmp_path / name).read_text() for name in ("a", "b/c")] == ["one", "three"]
@@ -44,12 +44,12 @@ def test_durable_files_are_on_the_disk_before_they_get_their_names(tmp_path: Pat
     assert done == [4, "a", "folder"]
 
 
-def test_other_files_wait_for_no_disk(tmp_path: Path, done: list[int | str]) -> None:
+def test_other_files_are_not_synced(tmp_path: Path, done: list[int | str]) -> None:
     write_files(tmp_path, {"a": "one", "b/c": b"three"})
     assert done == ["a", "c"]
 
 
-def test_what_is_there_already_is_not_written(tmp_path: Path, done: list[int | str]) -> None:
+def test_a_file_with_the_same_content_is_not_written(tmp_path: Path, done: list[int | str]) -> None:
     (tmp_path / "a").write_text("one")
     (tmp_path / "b").write_text("another")
     assert write_files(tmp_path, {"a": "one", "b": "two", "c": b"three"}) == (tmp_path / "b", tmp_path / "c")
@@ -58,7 +58,7 @@ def test_what_is_there_already_is_not_written(tmp_path: Path, done: list[int | s
 
 
 @pytest.mark.parametrize("durable", [False, True])
-def test_a_failure_leaves_what_was_there(tmp_path: Path, durable: bool) -> None:
+def test_a_failure_keeps_the_old_files(tmp_path: Path, durable: bool) -> None:
     (tmp_path / "a").write_text("older")
     (tmp_path / "b").mkdir()
     with pytest.raises(TltlError, match=r"TLT0005: cannot write `.*b`"):
@@ -68,7 +68,7 @@ def test_a_failure_leaves_what_was_there(tmp_path: Path, durable: bool) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")
-def test_what_a_killed_process_left_of_a_durable_file_is_removed(tmp_path: Path) -> None:
+def test_files_of_a_killed_process_are_removed(tmp_path: Path) -> None:
     killed = """
 import os, signal, sys
 from pathlib import Path
@@ -81,24 +81,24 @@ write_file(Path(sys.argv[1]), "newer", durable=True)
     for _ in range(2):
         subprocess.run([sys.executable, "-c", killed, str(path)], check=False)
         assert path.read_text() == "older"
-        # Also its temporary file and its lock file, and no more than those of the last process.
+        # There are also one temporary file and one lock file, those of the last process.
         assert len([*tmp_path.iterdir()]) == 3
     write_file(path, "newer", durable=True)
-    assert [each.read_text() for each in tmp_path.iterdir()] == ["newer"]
+    assert [file.read_text() for file in tmp_path.iterdir()] == ["newer"]
 
 
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
 @pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1"])
-def test_a_pipe_is_written_by_the_name_of_its_descriptor(name: str) -> None:
+def test_a_pipe_can_be_written_through_the_name_of_its_descriptor(name: str) -> None:
     code = "import sys, pathlib, tltlc.io.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'é')"
-    done = subprocess.run([sys.executable, "-c", code, name], capture_output=True, check=False)
-    assert (done.returncode, done.stdout) == (0, "é".encode()), done.stderr
+    result = subprocess.run([sys.executable, "-c", code, name], capture_output=True, check=False)
+    assert (result.returncode, result.stdout) == (0, "é".encode()), result.stderr
 
 
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
 @pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/dev/stderr", "log"])
 @pytest.mark.parametrize("again", [False, True])
-def test_the_file_that_output_goes_to_keeps_what_others_write(tmp_path: Path, name: str, *, again: bool) -> None:
+def test_a_file_that_is_also_standard_output_keeps_other_output(tmp_path: Path, name: str, *, again: bool) -> None:
     code = "import sys, pathlib, tltlc.io.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'new')"
     log = tmp_path / "log"
     log.write_text("new" if again else "before, ")
@@ -108,7 +108,7 @@ def test_the_file_that_output_goes_to_keeps_what_others_write(tmp_path: Path, na
     assert log.read_text() == ("new" if again else "before, ") + "newnew"
 
 
-def test_a_file_is_removed_where_it_is_there(tmp_path: Path) -> None:
+def test_removing_a_missing_file_is_no_error(tmp_path: Path) -> None:
     (tmp_path / "a").touch()
     for _ in range(2):
         remove_file(tmp_path / "a", "leave it")
@@ -116,25 +116,25 @@ def test_a_file_is_removed_where_it_is_there(tmp_path: Path) -> None:
     (tmp_path / "b").mkdir()
     with pytest.raises(TltlError, match=r"TLT0005: cannot remove `.*b`") as error:
         remove_file(tmp_path / "b", "leave it")
-    assert [found.help for found in error.value.diagnostics] == ["leave it"]
+    assert [diagnostic.help for diagnostic in error.value.diagnostics] == ["leave it"]
 
 
-def test_a_source_file_that_could_not_be_read_again_stays(tmp_path: Path) -> None:
+def test_a_source_file_is_not_replaced_by_one_that_is_too_large(tmp_path: Path) -> None:
     path = tmp_path / "big.tltl"
     path.write_text("spec a = true\n")
     with pytest.raises(TltlError) as caught:
         rewrite(path, "// ◇\n" * 200_000)
-    assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]
     assert path.read_text() == "spec a = true\n"
 
 
-def test_a_rename_that_fails_restores_the_files_before_it(tmp_path: Path) -> None:
+def test_a_failed_rename_restores_the_earlier_files(tmp_path: Path) -> None:
     (tmp_path / "a").write_text("old")
     (tmp_path / "c").write_text("old c")
     replace = Path.replace
 
     def refuse(self: Path, target: Path) -> Path:
-        # Like a system on which `c` must not change.
+        # Simulate a system on which `c` must not change.
         if target.name == "c":
             raise PermissionError(1, "Operation not permitted")
         return replace(self, target)
@@ -146,7 +146,7 @@ def test_a_rename_that_fails_restores_the_files_before_it(tmp_path: Path) -> Non
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "old", "c": "old c"}
 
 
-def test_folders_that_were_made_go_where_a_file_cannot_be_written(tmp_path: Path) -> None:
+def test_new_folders_are_removed_if_a_file_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "z").mkdir()
     with pytest.raises(TltlError, match="it is a folder"):
         write_files(tmp_path, {"x/y/a": "new", "z": "new"})

@@ -1,4 +1,4 @@
-"""Wait for events, not for times: every deadline here only ends a test that hangs."""
+"""Wait for events instead of fixed times; the deadlines only end a test that hangs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Final, TypeVar
 Found = TypeVar("Found")
 
 HANG_S: Final = 900.0
-"""Seconds after which a test counts as hanging; no busy machine is that slow. Pass it as every ``timeout``."""
+"""Seconds after which a test counts as hanging, even on a busy machine.  Pass it as every ``timeout``."""
 
 
 def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found:
@@ -26,16 +26,16 @@ def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found
 
 
 def printed(program: str, data: bytes = b"") -> bytes:
-    """What a Python program prints that gets ``data`` as its input; it ends after ``HANG_S`` seconds at the latest.
+    """Run a Python program with ``data`` as its input, and return its output; it may take ``HANG_S`` seconds.
 
-    It runs in a process of its own, for what cannot be interrupted, such as a regular expression at work.
+    The program runs in a new process, because code such as a regular expression cannot be interrupted.
     """
     words = [sys.executable, "-c", program]
     return subprocess.run(words, input=data, capture_output=True, timeout=HANG_S, check=True).stdout
 
 
 def is_running(pid: int) -> bool:
-    """Whether a process is there and has not ended, on Linux."""
+    """Whether a process exists and has not ended, on Linux."""
     try:
         return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
     except OSError:
@@ -43,13 +43,13 @@ def is_running(pid: int) -> bool:
 
 
 def until_gone(pids: Iterable[int]) -> None:
-    """Wait until all these processes have ended."""
+    """Wait until all processes have ended."""
     waited = tuple(pids)
     until(lambda: not any(map(is_running, waited)), f"the end of the processes {waited}")
 
 
 def children(pid: int) -> list[int]:
-    """The processes that the main thread of a process started, on Linux."""
+    """Return the processes that the main thread of a process started, on Linux."""
     try:
         return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()]
     except OSError:
@@ -57,10 +57,10 @@ def children(pid: int) -> list[int]:
 
 
 def until_it_reads(pid: int, descriptor: int = 0) -> None:
-    """Wait until a process sleeps in a read of a file descriptor that has nothing to give, on Linux."""
+    """Wait until a process blocks in a read of a file descriptor, on Linux."""
 
     def reads() -> bool:
-        # The number of the system call comes first, then its arguments: what is read from is the first of them.
+        # The file has the number of the system call and its arguments, of which the descriptor is the first.
         words = Path(f"/proc/{pid}/syscall").read_text(encoding="ascii").split()
         return len(words) > 2 and int(words[1], 16) == descriptor and int(words[0]) == _READ
 
@@ -68,4 +68,4 @@ def until_it_reads(pid: int, descriptor: int = 0) -> None:
 
 
 _READ: Final = {"x86_64": 0, "aarch64": 63}.get(platform.machine(), 0)
-"""The number of the system call."""
+"""The number of the system call ``read`` on this machine."""

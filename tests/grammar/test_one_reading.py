@@ -550,7 +550,7 @@ def test_many_random_clauses_are_clear_and_many_are_not() -> None:
 
 
 def drawn(number: int) -> Iterator[tuple[str, Whole | None]]:
-    """Yield random clauses with their readings: ``number`` of any kind, and ``number`` of a kind that is often clear."""
+    """Yield random clauses and their readings: ``number`` of any kind, and ``number`` of a kind that is often clear."""
     all_parts = list(product(CLAUSES, AROUND, JOINS, OPERATORS, WORDS, RIGHT))
     clear_parts = list(
         product(CLAUSES, list(AROUND)[::4], list(JOINS)[:3], list(OPERATORS)[:2], WORDS, list(RIGHT)[:2])

@@ -1,4 +1,4 @@
-"""Broken programs give diagnostics, never an exception."""
+"""Broken programs give diagnostics, and never raise an exception."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ PIECES = [
 
 @settings(max_examples=150, deadline=None)
 @given(number=st.integers(0, len(TEXTS) - 1), seed=st.integers(0, 10_000), edits=st.integers(1, 6))
-def test_mutated_programs(number: int, seed: int, edits: int) -> None:
+def test_mutated_programs_raise_no_exception(number: int, seed: int, edits: int) -> None:
     tokens = TOKEN.findall(TEXTS[number])
     rng = random.Random(seed)
     for _ in range(edits):
@@ -64,7 +64,7 @@ def test_mutated_programs(number: int, seed: int, edits: int) -> None:
     assert all(spec.parts for spec in program.specs)
 
 
-def test_each_of_many_misspelt_names_takes_as_long_as_one_of_a_few() -> None:
+def test_suggestions_for_misspelt_names_take_linear_work() -> None:
     def resolved(names: int) -> None:
         declared = "".join(f"signal player_near_{number}: bool\n" for number in range(names))
         used = "".join(f"spec s{number} = G player_naer_{number}\n" for number in range(names))
@@ -73,5 +73,5 @@ def test_each_of_many_misspelt_names_takes_as_long_as_one_of_a_few() -> None:
         assert len(diagnostics) == names
         assert "did you mean `player_near_" in diagnostics[0].labels[0].message
 
-    # Twice as many would take four times as long if each were compared to all.
+    # If each name were compared with all others, twice as many names would take four times the work.
     assert calls(lambda: resolved(1000)) < 3 * calls(lambda: resolved(500))

@@ -1,4 +1,4 @@
-"""Where imports are found, what they offer, and what happens when they fail."""
+"""Where imports are found, which names they offer, and how they fail."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _spec(folder: Path, text: str, **options: object) -> Spec:
     return only(text, str(folder / "main.tltl"), **options)
 
 
-def test_the_own_folder_comes_before_the_others_and_the_standard_library_last(tmp_path: Path) -> None:
+def test_imports_search_the_own_folder_then_libraries_then_the_standard_library(tmp_path: Path) -> None:
     own, extra = tmp_path / "own", tmp_path / "extra"
     own.mkdir()
     extra.mkdir()
@@ -47,13 +47,13 @@ def test_imports_are_transitive_and_each_file_is_read_once(tmp_path: Path) -> No
     assert str(_spec(tmp_path, "import a import b import c spec s = goal").formula) == "F x"
 
 
-def test_selected_names_bring_nothing_else(tmp_path: Path) -> None:
+def test_importing_selected_names_imports_nothing_else(tmp_path: Path) -> None:
     text = "import stealth (near) entity e signal alive: bool spec s = F near(e) & G alive"
     spec = _spec(tmp_path, text)
     assert [signal.name for signal in spec.signals] == ["distance(e)", "alive"]
 
 
-def test_an_alias_is_only_in_the_source(tmp_path: Path) -> None:
+def test_an_alias_is_not_part_of_the_names_of_atoms(tmp_path: Path) -> None:
     spec = _spec(tmp_path, "import stealth as st entity e spec s = F st.near(e, close = 3 m) & F st.seen")
     assert [atom.name for atom in spec.atoms] == ["near(e, close=3)", "seen"]
     assert [signal.name for signal in spec.signals] == ["distance(e)", "seen"]
@@ -61,8 +61,8 @@ def test_an_alias_is_only_in_the_source(tmp_path: Path) -> None:
 
 
 def test_the_origin_in_a_suggestion_is_the_import_of_this_file() -> None:
-    _, (found,) = resolved("import stealth entity e spec s = F neer(e)")
-    assert found.labels[0].message == "did you mean `near` (from stealth)?"
+    _, (diagnostic,) = resolved("import stealth entity e spec s = F neer(e)")
+    assert diagnostic.labels[0].message == "did you mean `near` (from stealth)?"
 
 
 def test_identical_declarations_merge_whichever_comes_first(tmp_path: Path) -> None:
@@ -86,16 +86,16 @@ def test_identical_declarations_merge_whichever_comes_first(tmp_path: Path) -> N
     ],
 )
 def test_different_declarations_are_an_error_that_shows_both(text: str) -> None:
-    _, (found,) = resolved(f"import stealth {text} spec s = true")
-    assert found.code == "TLT0204"
-    assert [label.source.name.split("/")[0] for label in found.labels] == ["<test>", "<standard library>"]
+    _, (diagnostic,) = resolved(f"import stealth {text} spec s = true")
+    assert diagnostic.code == "TLT0204"
+    assert [label.source.name.split("/")[0] for label in diagnostic.labels] == ["<test>", "<standard library>"]
 
 
 def test_a_cycle_is_named(tmp_path: Path) -> None:
     write(tmp_path, a="import b", b="import c", c="import a")
-    _, (found,) = resolved("import a spec s = true", str(tmp_path / "main.tltl"))
-    assert (found.code, found.title) == ("TLT0011", "imports form a cycle: a -> b -> c -> a")
-    assert len(found.labels) == 3
+    _, (diagnostic,) = resolved("import a spec s = true", str(tmp_path / "main.tltl"))
+    assert (diagnostic.code, diagnostic.title) == ("TLT0011", "imports form a cycle: a -> b -> c -> a")
+    assert len(diagnostic.labels) == 3
 
 
 def test_a_long_chain_of_imports(tmp_path: Path) -> None:
@@ -110,8 +110,8 @@ def test_a_failed_import_is_the_only_error(tmp_path: Path) -> None:
     assert _in(tmp_path, 'import "nowhere.tltl" spec s = F nothing') == ["TLT0010"]
     assert _in(tmp_path, "import latin spec s = F nothing") == ["TLT0002"]
     assert len(_in(tmp_path, "import outer spec s = F nothing")) == 1
-    _, (found,) = resolved("import latin spec s = true", str(tmp_path / "main.tltl"))
-    assert [label.source.name.endswith("main.tltl") for label in found.labels] == [False, True]
+    _, (diagnostic,) = resolved("import latin spec s = true", str(tmp_path / "main.tltl"))
+    assert [label.source.name.endswith("main.tltl") for label in diagnostic.labels] == [False, True]
 
 
 def test_odd_targets_are_not_found(tmp_path: Path) -> None:
@@ -120,20 +120,20 @@ def test_odd_targets_are_not_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("target", ["man", '"man.tltl"'])
-def test_no_file_is_proposed_to_import_itself(tmp_path: Path, target: str) -> None:
+def test_a_file_is_not_suggested_as_its_own_import(tmp_path: Path, target: str) -> None:
     write(tmp_path, main="")
-    (wrong,) = resolved(f"import {target}", str(tmp_path / "main.tltl"))[1]
-    assert (wrong.code, "did you mean" in (wrong.help or "")) == ("TLT0010", False)
+    (diagnostic,) = resolved(f"import {target}", str(tmp_path / "main.tltl"))[1]
+    assert (diagnostic.code, "did you mean" in (diagnostic.help or "")) == ("TLT0010", False)
 
 
-def test_tests_and_specs_of_an_import_stay_there(tmp_path: Path) -> None:
+def test_specs_and_tests_of_an_import_are_not_imported(tmp_path: Path) -> None:
     write(tmp_path, lib='signal a: bool spec there = F a test "t" for there { step a expect satisfied }')
     program = good("import lib spec here = F a", str(tmp_path / "main.tltl"))
     assert [spec.name for spec in program.specs] == ["here"]
     assert program.tests == ()
 
 
-def test_a_prefix_is_proposed_that_can_be_written(tmp_path: Path) -> None:
+def test_the_suggested_prefix_resolves_a_clash_of_names(tmp_path: Path) -> None:
     write(tmp_path, orbit="signal a: bool let goal = F a")
     clash = "signal b: bool let goal = G b"
     for target, proposed in ((' "./orbit.tltl"', 'import "./orbit.tltl" as lib'), (" orbit", "import orbit as lib")):
@@ -142,7 +142,7 @@ def test_a_prefix_is_proposed_that_can_be_written(tmp_path: Path) -> None:
         assert _in(tmp_path, f"{proposed} {clash} spec s = goal & lib.goal") == []
 
 
-def test_the_standard_library_is_suggested_by_what_its_files_declare() -> None:
+def test_a_library_is_suggested_for_a_name_that_it_declares() -> None:
     assert library_with("near") == "spatial"
     assert library_with("nea") is None
     assert library_with("no_such_name") is None
@@ -155,23 +155,23 @@ def test_the_standard_library_is_read_once_for_all_unknown_names() -> None:
 
 
 def _doubled(folder: Path, files: int) -> None:
-    """Files of which the first imports the second under two names, and so on; the last one has a name of its own."""
+    """Write a chain of files, each of which imports the next one under two aliases; the last declares names."""
     both = {f"m{i}": f"import m{i + 1} as x import m{i + 1} as y" for i in range(files)}
     write(folder, **both, **{f"m{files}": "signal a: bool let goal = F a"})
 
 
-def test_files_that_import_each_other_twice_are_refused_by_one_message(tmp_path: Path) -> None:
+def test_exponentially_many_imported_names_are_one_error(tmp_path: Path) -> None:
     _doubled(tmp_path, 40)
-    _, (found,) = resolved("import m0 spec s = F nothing", str(tmp_path / "main.tltl"))
-    assert (found.code, found.title) == (
+    _, (diagnostic,) = resolved("import m0 spec s = F nothing", str(tmp_path / "main.tltl"))
+    assert (diagnostic.code, diagnostic.title) == (
         "TLT0012",
         f"the imports of all files offer more than {IMPORTED.values:,} names",
     )
-    (label,) = found.labels
+    (label,) = diagnostic.labels
     assert label.source.slice(label.span).startswith("import m")
 
 
-def test_names_that_imports_offer_are_counted_before_they_are_made(tmp_path: Path) -> None:
+def test_imported_names_are_counted_before_they_are_created(tmp_path: Path) -> None:
     _doubled(tmp_path, 40)
     assert calls(lambda: resolved("import m0", str(tmp_path / "main.tltl"))) < 40 * (IMPORTED.values or 0)
 
@@ -182,8 +182,8 @@ def test_files_within_the_limit_keep_all_their_names(tmp_path: Path) -> None:
     assert str(_spec(tmp_path, f"import m0 spec s = {name}").formula) == "F a"
 
 
-def test_a_file_that_is_imported_often_offers_its_names_each_time(tmp_path: Path) -> None:
-    # Each import alone has a hundredth of the names that all of them may have.
+def test_every_import_of_a_file_counts_its_names(tmp_path: Path) -> None:
+    # Each import has a hundredth of the names that are allowed in total.
     many = (IMPORTED.values or 0) // 100
     write(tmp_path, many=f"entity {', '.join(f'e{i}' for i in range(many))}")
     hundred = "\n".join(f"import many as m{i}" for i in range(100))
@@ -191,7 +191,7 @@ def test_a_file_that_is_imported_often_offers_its_names_each_time(tmp_path: Path
     assert _in(tmp_path, f"{hundred}\nimport many (e0)") == ["TLT0012"]
 
 
-def test_long_names_behind_as_are_refused(tmp_path: Path) -> None:
+def test_long_aliases_are_rejected(tmp_path: Path) -> None:
     many = 1_000
     write(tmp_path, many=f"entity {', '.join(f'e{i}' for i in range(many))}")
     assert _in(tmp_path, f"import many as {'x' * (IMPORTED.size // many - 10)}") == []

@@ -1,4 +1,4 @@
-"""The robustness of a comparison has the sign of its truth, however large or small the numbers are."""
+"""The sign of a comparison's robustness agrees with its truth, however large or small the numbers are."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ def varying(name: str, low: float, high: float) -> Quantity:
 
 
 def around(number: float, low: float, high: float) -> list[float]:
-    """The numbers next to one, the ends and 0, as far as they are in the range."""
+    """Return a number, its two neighbours, the ends, 0 and the smallest number, as far as they are in the range."""
     near = (number, nextafter(number, -inf), nextafter(number, inf), low, high, 0.0, LEAST)
     return [x for x in near if low <= x <= high]
 
 
 def holds(expression: Expression, x: float, y: float = 0.0) -> bool:
-    """The truth by both evaluators, which agree; the value is in [-1, 1]."""
-    found = evaluate(expression, {"x": x, "y": y}, {})
-    assert compile_expressions([expression], ("x", "y"), {})[0]((x, y)) == found
-    assert -1.0 <= found <= 1.0
-    return found > 0.0
+    """Return the truth of an expression; asserts that both evaluators agree on a value in [-1, 1]."""
+    result = evaluate(expression, {"x": x, "y": y}, {})
+    assert compile_expressions([expression], ("x", "y"), {})[0]((x, y)) == result
+    assert -1.0 <= result <= 1.0
+    return result > 0.0
 
 
 @settings(max_examples=1000, deadline=None)
 @given(THREE, FINITE)
-def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float], x: float) -> None:
+def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
     side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
     for number in [*around(threshold, low, high), min(max(x, low), high)]:
@@ -56,12 +56,12 @@ def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float],
 
 @settings(max_examples=1000, deadline=None)
 @given(THREE, THREE, FINITE, FINITE)
-def test_two_sides_decide_as_the_exact_comparison_does(
+def test_two_sides_agree_with_the_exact_comparison(
     of_x: Sequence[float], of_y: Sequence[float], x: float, y: float
 ) -> None:
     (low, _, high), (least, _, most) = of_x, of_y
     if not low <= most or not high > least:
-        return  # it is the same everywhere, and refused
+        return  # the comparison is constant, which is an error
     expression = robustness(varying("x", low, high), varying("y", least, most))
     y = min(max(y, least), most)
     for other in {y, *(end for end in (low, high, 0.0) if least <= end <= most)}:
@@ -70,7 +70,7 @@ def test_two_sides_decide_as_the_exact_comparison_does(
 
 
 @given(THREE)
-def test_the_ends_are_one_and_minus_one(ends: Sequence[float]) -> None:
+def test_the_robustness_at_the_ends_is_one_and_minus_one(ends: Sequence[float]) -> None:
     low, threshold, high = ends
     if low < threshold < high:
         expression = robustness(varying("x", low, high), constant(threshold, units.PLAIN))
@@ -106,13 +106,13 @@ def test_extreme_ranges(declared: str, comparison: str, sample: dict[str, float]
     assert all(map(math.isfinite, numbers))
 
 
-def test_a_large_threshold_that_is_met_late_has_a_scale() -> None:
+def test_robustness_is_scaled_for_a_threshold_at_the_end_of_a_large_range() -> None:
     spec = only("signal x in [-1e308, 1e308] spec s = F x > -1e308")
     assert value(spec, "x > -1e+308", x=0.0) == 0.5
     assert value(spec, "x > -1e+308", x=1e308) == 1.0
 
 
-def test_everyday_comparisons_are_scaled_by_a_division_alone() -> None:
+def test_usual_comparisons_are_scaled_by_a_division_only() -> None:
     spec = only("signal x in [0, 100] spec s = F x > 30 & F x < 100 & F x > 99.9")
     assert all(LEAST not in [n.value for n in nodes(a.expression) if isinstance(n, Const)] for a in spec.atoms)
 
@@ -136,7 +136,7 @@ def test_everyday_comparisons_are_scaled_by_a_division_alone() -> None:
         ("signal x: length in [0 m, 1e200 km]", "x * x > 1 m * 1 m"),
     ],
 )
-def test_arithmetic_that_is_too_large_is_refused(declared: str, written: str) -> None:
+def test_arithmetic_with_too_large_values_is_rejected(declared: str, written: str) -> None:
     assert codes(f"{declared} spec s = F ({written})") == ["TLT0319"]
 
 
@@ -157,5 +157,5 @@ def test_other_ranges_and_numbers_keep_their_codes(written: str, code: str) -> N
 
 
 def test_the_help_says_what_to_change() -> None:
-    _, (refused,) = resolved("signal x in [0, 1e200] spec s = F x * x > 1")
-    assert refused.help == "declare smaller ranges for the signals and params that it is computed from"
+    _, (diagnostic,) = resolved("signal x in [0, 1e200] spec s = F x * x > 1")
+    assert diagnostic.help == "declare smaller ranges for the signals and params that it is computed from"

@@ -1,4 +1,4 @@
-"""The check of predicates: what is proved, what is shown to be wrong, and that neither is ever mistaken."""
+"""The check of predicates proves ranges or finds counterexamples, and is correct in both cases."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def cond(left: Expression, name: str, right: Expression | float) -> Condition:
 
 
 def near(close: Expression, far: Expression) -> Expression:
-    """Equation (2) of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024."""
+    """Return closeness by equation (2) of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024."""
     falling = op("-", op("^", op("/", op("-", far, D), op("-", far, close)), 2), 1)
     return When(
         ((cond(D, "<", close), op("-", 1, op("/", D, close))), (cond(D, "<=", far), falling)),
@@ -105,7 +105,7 @@ def test_near_with_far_above_close_is_fine() -> None:
         (op("/", op("-", FAR, CLOSE), op("+", FAR, CLOSE)), 0, 1),
     ],
 )
-def test_right_predicates_are_proved(expression: Expression, low: float, high: float) -> None:
+def test_correct_predicates_are_proved(expression: Expression, low: float, high: float) -> None:
     assert check(expression, low, high) == ()
 
 
@@ -120,18 +120,18 @@ def test_right_predicates_are_proved(expression: Expression, low: float, high: f
         (Const(1.5), "the value is 1.5"),
     ],
 )
-def test_a_wrong_range_is_shown_by_a_point(expression: Expression, message: str) -> None:
+def test_a_wrong_range_has_a_counterexample(expression: Expression, message: str) -> None:
     (finding,) = check(expression)
     assert (finding.kind, finding.message) == ("range_wrong", message)
 
 
-def test_a_narrow_peak_is_called_wrong_only_where_it_is() -> None:
+def test_a_narrow_peak_is_an_error_only_if_it_leaves_the_range() -> None:
     peak = op("/", 1, op("+", 1, op("*", 1e6, op("^", op("-", X, 0.123), 2))))
     assert check(peak, 0, 1) == ()
     assert kinds(peak, 0, 0.9) == ["range_wrong"]
 
 
-def test_what_cannot_be_shown_is_called_unproved() -> None:
+def test_a_range_without_a_proof_is_reported_as_unproved() -> None:
     identity = op("/", Y, op("sqrt", op("+", 1, op("^", Y, 2))))
     assert kinds(identity) == ["range_unproved"]
 
@@ -154,7 +154,7 @@ def test_continuity_between_cases(when: Expression, expected: list[str]) -> None
     assert kinds(when) == expected
 
 
-def test_more_cases_than_can_be_checked_are_not_checked() -> None:
+def test_an_expression_with_too_many_cases_is_not_checked() -> None:
     many: Expression = Const(0.0)
     for number in range(12):
         many = op("+", many, When(((cond(X, "<", number / 12), Const(0.01)),), Const(-0.01)))
@@ -203,12 +203,12 @@ def value_at(expression: Expression, point: dict[str, float]) -> float | None:
 
 
 def samples(seed: int, count: int) -> Iterator[dict[str, float]]:
-    """Points of the ranges, ends and round numbers among them."""
-    chance = random.Random(seed)
+    """Yield random points of the ranges; some coordinates are ends or round numbers."""
+    random_ = random.Random(seed)
     for _ in range(count):
         yield {
-            name: chance.choice(
-                [low, high, chance.uniform(low, high), chance.uniform(low, high), min(max(0.25, low), high)]
+            name: random_.choice(
+                [low, high, random_.uniform(low, high), random_.uniform(low, high), min(max(0.25, low), high)]
             )
             for name, (low, high) in RANGES.items()
         }
@@ -220,13 +220,13 @@ def test_proved_ranges_hold_and_wrong_ones_fail_at_the_witness(
     expression: Expression, declared: tuple[float, float], seed: int
 ) -> None:
     low, high = declared
-    found = {finding.kind: finding for finding in check(expression, low, high)}
-    if "range_wrong" in found:
-        value = value_at(expression, dict(found["range_wrong"].witness))
+    findings = {finding.kind: finding for finding in check(expression, low, high)}
+    if "range_wrong" in findings:
+        value = value_at(expression, dict(findings["range_wrong"].witness))
         assert value is None or not low <= value <= high
-        for name, value in found["range_wrong"].witness.items():
+        for name, value in findings["range_wrong"].witness.items():
             assert RANGES[name][0] <= value <= RANGES[name][1]
-    elif not found.keys() & {"range_unproved", "range_unchecked"}:
+    elif not findings.keys() & {"range_unproved", "range_unchecked"}:
         for point in samples(seed, 1000):
             value = value_at(expression, point)
             assert value is not None
@@ -235,12 +235,12 @@ def test_proved_ranges_hold_and_wrong_ones_fail_at_the_witness(
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(LEAVES, EXPRESSIONS, EXPRESSIONS, st.sampled_from([X, H]), st.integers(0, 10**6))
-def test_values_agree_across_borders_unless_a_finding_says_otherwise(
+def test_values_agree_across_borders_unless_a_jump_is_found(
     at: Expression, inside: Expression, outside: Expression, variable: Signal, seed: int
 ) -> None:
     expression = When(((cond(variable, "<", at), inside),), outside)
-    found = {finding.kind: finding for finding in check(expression, -1e3, 1e3)}
-    if found.keys() & {
+    findings = {finding.kind: finding for finding in check(expression, -1e3, 1e3)}
+    if findings.keys() & {
         "range_wrong",
         "range_unproved",
         "range_unchecked",
@@ -248,8 +248,8 @@ def test_values_agree_across_borders_unless_a_finding_says_otherwise(
         "continuity_unchecked",
     }:
         return
-    if "discontinuous" in found:
-        point = dict(found["discontinuous"].witness)
+    if "discontinuous" in findings:
+        point = dict(findings["discontinuous"].witness)
         across = [value_at(expression, {**point, n: v + s}) for n, v in point.items() for s in (-1e-9, 1e-9)]
         here = value_at(expression, point)
         assert here is not None
@@ -265,7 +265,7 @@ def test_values_agree_across_borders_unless_a_finding_says_otherwise(
 
 
 @pytest.mark.parametrize("side", [(-1e308, 1e308), (-1.7e308, 1.7e308), (1e200, 1.7e308), (-1e308, -1e200)])
-def test_ranges_whose_width_is_no_number(side: tuple[float, float]) -> None:
+def test_ranges_whose_width_overflows(side: tuple[float, float]) -> None:
     signals = {"x": spec.Signal("x", "number", *side)}
     border = side[0] / 2 + side[1] / 2
     jumping = When(((cond(X, ">", border), Const(1.0)),), Const(-1.0))

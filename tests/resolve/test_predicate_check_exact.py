@@ -1,4 +1,4 @@
-"""The sympy proofs by themselves, as the cheaper means leave them little to do."""
+"""The sympy proofs alone; in the full check, cheaper methods leave them little to do."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def proves(value: Expression, low: float, high: float, *constraints: Constraint)
 
 
 @pytest.mark.parametrize("close", [Const(1.0), CLOSE])
-def test_each_case_of_near_and_each_border(close: Expression) -> None:
+def test_each_case_of_near_and_each_border_are_proved(close: Expression) -> None:
     expression = near(close, FAR)
     for case in cases(expression):
         assert proves(case.value, -1.0, 1.0, *case.constraints)
-    found = list(meetings(cases(expression), Region(BOX, {}), frozenset()))
-    assert len(found) == 2
+    borders = list(meetings(cases(expression), Region(BOX, {}), frozenset()))
+    assert len(borders) == 2
     if close != CLOSE:
-        for meeting in found:
+        for meeting in borders:
             difference = op("-", meeting.first.value, meeting.second.value)
             assert proves_within_exactly(difference, meeting.constraints, meeting.region, 0.0, 0.0)
 
@@ -58,7 +58,7 @@ def test_each_case_of_near_and_each_border(close: Expression) -> None:
         (op("-", op("sqrt", H), H), 0, 0.25),
     ],
 )
-def test_bounds_that_are_reached(value: Expression, least: float, most: float) -> None:
+def test_tight_bounds_are_proved(value: Expression, least: float, most: float) -> None:
     assert proves(value, least, most)
 
 
@@ -74,11 +74,11 @@ def test_bounds_that_are_reached(value: Expression, least: float, most: float) -
         (op("-", op("/", X, FAR), 1e-323), 0.0, 1.0),
     ],
 )
-def test_what_is_not_so_is_not_proved(value: Expression, low: float, high: float) -> None:
+def test_false_bounds_are_not_proved(value: Expression, low: float, high: float) -> None:
     assert not proves(value, low, high)
 
 
-def test_values_without_meaning_are_not_hidden_by_comparing_them() -> None:
+def test_min_does_not_hide_a_division_by_zero() -> None:
     task = Task(op("min", 1, op("/", 1, op("-", H, 0.123456))), (), -1e12, 1.0)
     assert not proves_all([task], Region(BOX, {}))
 
@@ -105,15 +105,15 @@ def test_a_proof_holds_at_every_sample(
     region = Region(BOX, {}).where(constraints)
     if region is None or not proves_within_exactly(value, constraints, region, low, low + width):
         return
-    chance = random.Random(seed)
+    random_ = random.Random(seed)
     for _ in range(500):
         point = {}
         for name in NAMES:
             least, most = (max(BOX[name][0], -20.0), min(BOX[name][1], 20.0))
-            point[name.name] = chance.choice([least, most, 0.5, chance.uniform(least, most), chance.uniform(-1, 1)])
+            point[name.name] = random_.choice([least, most, 0.5, random_.uniform(least, most), random_.uniform(-1, 1)])
             point[name.name] = min(max(point[name.name], least), most)
         if limit is not None and not (value_at(limit, point) or -1.0) >= 0:
             continue
-        found = value_at(value, point)
-        assert found is not None
-        assert low - 1e-8 <= found <= low + width + 1e-8
+        actual = value_at(value, point)
+        assert actual is not None
+        assert low - 1e-8 <= actual <= low + width + 1e-8

@@ -1,4 +1,7 @@
-"""Remembered answers: asked once, never trusted when damaged, not needed for the standard library."""
+"""The cache of the predicate check: an answer is computed once, and a damaged file is not trusted.
+
+The standard library needs no cache.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +50,7 @@ def test_an_answer_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         b"[" * 100_000,
     ],
 )
-def test_a_damaged_file_is_as_good_as_none(content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_damaged_cache_is_ignored(content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path))
     memory.answer("one", lambda: NO)
     file = tmp_path / "predicates.json"
@@ -57,13 +60,13 @@ def test_a_damaged_file_is_as_good_as_none(content: bytes, tmp_path: Path, monke
     assert memory.answer("one", refuse) == NO
 
 
-def test_a_folder_that_cannot_be_made_does_no_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cache_folder_that_cannot_be_created_is_ignored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "file" / "below"))
     assert memory.answer("one", lambda: YES) == YES
 
 
-def test_the_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_folder_depends_on_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
     assert memory.cache_folder() is None
     monkeypatch.delenv("TLTLC_CACHE_DIR")
@@ -79,7 +82,7 @@ def ask(name: str, high: float, value: float = 2.0) -> str:
     return memory.question("range", expression, box, frozenset(), -1.0, 1.0)
 
 
-def test_a_question_depends_on_everything_but_names() -> None:
+def test_the_cache_key_depends_on_everything_but_names() -> None:
     assert ask("distance(s1)", 1.0) == ask("distance(s2)", 1.0)
     assert len({ask("a", 1.0), ask("a", 2.0), ask("a", 1.0, 3.0)}) == 3
 

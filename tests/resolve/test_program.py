@@ -1,4 +1,4 @@
-"""The paper's spec, and what a resolved spec says about itself."""
+"""The resolved form of programs: the paper's spec, and the fields of specs and tests."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ spec cover_and_hide {
 """
 
 
-def test_cover_and_hide() -> None:
+def test_the_resolved_form_of_cover_and_hide() -> None:
     spec = only(COVER_AND_HIDE)
     assert str(spec.formula) == "F(near(s1) & X F(near(s2) & X F near(exit))) & G alive"
     assert [atom.name for atom in spec.atoms] == ["near(s1)", "near(s2)", "near(exit)", "alive"]
@@ -42,7 +42,7 @@ def test_cover_and_hide() -> None:
     ]
 
 
-def test_the_formula_form_is_the_same_formula() -> None:
+def test_the_formula_form_and_the_clause_form_are_equal() -> None:
     text = """
     import stealth
     entity s1, s2, exit
@@ -59,12 +59,12 @@ def test_parts_are_the_conjuncts_of_require() -> None:
     assert [str(part.formula) for part in spec.parts] == ["F a & G b & (a -> b) | false", "a", "b"]
 
 
-def test_clauses() -> None:
+def test_the_formulas_of_clauses() -> None:
     text = "signal a: bool signal b: bool spec s { reach a keep b avoid a require a iff b }"
     assert formula(text) == "F a & G b & G !a & (a <-> b)"
 
 
-def test_metadata() -> None:
+def test_the_metadata_of_a_spec() -> None:
     spec = only("clock 20 Hz signal a: bool spec s { limit 0.15 s judge at limit semantics infinite keep a }")
     assert (spec.limit_steps, spec.judge, spec.semantics, spec.clock_s) == (3, "limit", "infinite", 0.05)
 
@@ -111,7 +111,7 @@ def test_a_test_block() -> None:
     ]
 
 
-def test_only_the_specs_that_resolve_are_kept_and_their_tests() -> None:
+def test_only_valid_specs_and_their_tests_are_kept() -> None:
     text = """
     signal a: bool
     spec bad { reach nothing keep b avoid nowhere }
@@ -129,7 +129,7 @@ def test_resolution_is_deterministic() -> None:
     assert resolved(COVER_AND_HIDE) == resolved(COVER_AND_HIDE)
 
 
-def test_overrides() -> None:
+def test_overrides_of_params() -> None:
     text = "import spatial entity e spec s = F near(e)"
     assert only(text, params={"level_size": "35 m"}).params[0].value == 35
     assert only(text, params={"level_size": " 1.5km "}).params[0].value == 1500
@@ -144,7 +144,7 @@ def test_overrides() -> None:
 
 def test_errors_are_in_the_order_of_the_text() -> None:
     text = "spec s = F a\nexclusive b, c\nlet l = G d\nspec t { reach e limit 3 }\npredicate p = f\nparam q = 3 m"
-    _, found = resolved(text)
-    starts = [each.labels[0].span.start for each in found]
+    _, diagnostics = resolved(text)
+    starts = [diagnostic.labels[0].span.start for diagnostic in diagnostics]
     assert starts == sorted(starts)
     assert len(starts) == 7

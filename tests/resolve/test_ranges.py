@@ -1,4 +1,4 @@
-"""The range of an operation holds every value that the evaluator computes, to the last bit."""
+"""The range of an operation contains every value that the evaluator computes, to the last bit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NUMBERS = st.floats(-4, 4) | st.floats(allow_nan=False, allow_infinity=False)
 
 @st.composite
 def ranges(draw: st.DrawFn) -> tuple[tuple[float, float], float]:
-    """A range, and a value in it, often one of its ends."""
+    """Draw a range and a value in it, often one of its ends."""
     low, high = sorted((draw(NUMBERS), draw(NUMBERS)))
     return (low, high), draw(st.sampled_from([low, high]) | st.floats(low, high))
 
@@ -33,25 +33,25 @@ def value(expression: Op, values: dict[str, float]) -> float:
 def test_the_value_of_an_operation_is_in_its_range(op: ArithmeticOp, data: st.DataObject) -> None:
     drawn = [data.draw(ranges()) for _ in range(COUNTS[op])]
     values = {f"x{index}": number for index, (_, number) in enumerate(drawn)}
-    found = value(Op(op, tuple(map(Signal, values))), values)
-    assume(found == found)
+    result = value(Op(op, tuple(map(Signal, values))), values)
+    assume(result == result)
     low, high = range_of(op, tuple(bounds for bounds, _ in drawn))
-    assert low <= found <= high
+    assert low <= result <= high
 
 
 @given(st.integers(-4, 5), ranges())
 def test_the_value_of_a_power_is_in_its_range(exponent: int, drawn: tuple[tuple[float, float], float]) -> None:
     bounds, base = drawn
-    found = value(Op("^", (Signal("x"), Const(float(exponent)))), {"x": base})
+    result = value(Op("^", (Signal("x"), Const(float(exponent)))), {"x": base})
     low, high = range_of("^", (bounds, (float(exponent), float(exponent))))
-    assert low <= found <= high
+    assert low <= result <= high
 
 
 CUBE_ROOT = 1.2287622212704528
-"""By `pow`, its third power is a little smaller than its product with itself."""
+"""A number whose third power by `pow` is slightly smaller than the product of its three factors."""
 
 
-def test_a_comparison_that_a_product_decides_is_taken() -> None:
+def test_a_range_contains_the_power_and_the_product() -> None:
     highest = CUBE_ROOT * CUBE_ROOT * CUBE_ROOT
     assert highest > CUBE_ROOT**3
     declared = f"signal x: number in [0, {CUBE_ROOT!r}]\nspec s = F x^3 > "

@@ -1,4 +1,4 @@
-"""Units, types, and the ranges that arithmetic has."""
+"""Units, types, and the ranges of arithmetic."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from tltlc.resolve.units import in_si
         (4, None, 4),
     ],
 )
-def test_conversion(value: float, unit: str | None, si: float) -> None:
-    found = in_si(value, unit)
-    assert found is not None
-    assert found[0] == si
+def test_conversion_to_si_units(value: float, unit: str | None, si: float) -> None:
+    converted = in_si(value, unit)
+    assert converted is not None
+    assert converted[0] == si
 
 
-def test_steps_are_no_quantity() -> None:
+def test_steps_are_not_a_physical_unit() -> None:
     assert in_si(3, "steps") is None
 
 
@@ -110,7 +110,7 @@ def test_units_that_do_not_fit(comparison: str) -> None:
     assert codes(f"{DECLARED} spec s = F {comparison}") == ["TLT0305"]
 
 
-def test_a_signal_takes_the_place_of_a_unit_except_in_constants() -> None:
+def test_a_signal_named_like_a_unit_shadows_it_except_in_constants() -> None:
     text = "signal h: time in [1 s, 2 s] signal v: speed in [0 km/h, 90 km/h] spec s = F v > 10 m/h"
     spec = only(text)
     (v, h) = spec.signals
@@ -118,14 +118,14 @@ def test_a_signal_takes_the_place_of_a_unit_except_in_constants() -> None:
     assert spec.atoms[0].name == "v > 10 / h"
 
 
-def test_the_message_of_a_wrong_unit_gives_the_right_literal() -> None:
-    _, (found,) = resolved("import spatial entity s1 spec s { keep near(s1, close = 3 s) }")
-    assert (found.code, found.title) == ("TLT0305", "expected a length, found a time")
-    assert found.labels[0].message == "`close` is a length; write `3 m`"
-    assert found.labels[0].source.slice(found.labels[0].span) == "3 s"
+def test_the_message_of_a_wrong_unit_suggests_the_right_one() -> None:
+    _, (diagnostic,) = resolved("import spatial entity s1 spec s { keep near(s1, close = 3 s) }")
+    assert (diagnostic.code, diagnostic.title) == ("TLT0305", "expected a length, found a time")
+    assert diagnostic.labels[0].message == "`close` is a length; write `3 m`"
+    assert diagnostic.labels[0].source.slice(diagnostic.labels[0].span) == "3 s"
 
 
-def test_a_signal_may_be_called_like_a_unit() -> None:
+def test_a_signal_may_have_the_name_of_a_unit() -> None:
     spec = only("signal s in [1, 2] signal m in [0, 1] spec t = F m / s > 0.2 & F 3 m / s > 2 m")
     assert [signal.name for signal in spec.signals] == ["m", "s"]
 
@@ -152,7 +152,7 @@ def test_a_range_contains_every_value(op: str, ends: list[tuple[float, float]], 
     assert low - slack <= value <= high + slack
 
 
-def test_constants_fold_and_params_stay() -> None:
+def test_constants_are_folded_and_params_are_kept() -> None:
     text = "signal x in [0, 9] param p in [1, 2] = 1 predicate q in [0, 1] = x / (3 * (1 + 2)) + 0 * p spec s = F q"
     (atom,) = only(text).atoms
     assert "Const(value=9.0)" in repr(atom.expression)

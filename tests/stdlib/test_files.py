@@ -1,4 +1,4 @@
-"""The libraries and examples themselves: clean, documented, tested; their tests and traces agree with the oracle."""
+"""The libraries and examples have no diagnostics, are documented and tested, and agree with the oracle."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_the_recorded_trace_is_accepted(path: Path) -> None:
 
 
 def _agrees(verdict: str, spec: Spec, trace: list[frozenset[str]]) -> bool:
-    """Whether the oracle says the same of a trace; over infinite traces, of ways in which it may go on."""
+    """Whether the oracle agrees with a verdict; over infinite traces, it judges continuations of the trace."""
     if spec.semantics == "finite":
         return holds(spec.formula, trace) == (verdict in ("satisfied", "holding"))
     answers = {holds_on_lasso(spec.formula, trace, cycle) for cycle in _cycles(spec)}
@@ -89,14 +89,14 @@ def _agrees(verdict: str, spec: Spec, trace: list[frozenset[str]]) -> bool:
 
 
 def _cycles(spec: Spec) -> Iterator[tuple[frozenset[str], ...]]:
-    """Every cycle of up to three samples."""
+    """Yield every cycle of up to three samples that the exclusive atoms allow."""
     names = [atom.name for atom in spec.atoms]
     groups = [{names[place] for place in group} for group in spec.exclusive]
-    chosen = (
-        frozenset(name for name, held in zip(names, row, strict=True) if held)
+    candidates = (
+        frozenset(name for name, is_true in zip(names, row, strict=True) if is_true)
         for row in product((False, True), repeat=len(names))
     )
-    samples = [sample for sample in chosen if all(len(sample & group) <= 1 for group in groups)]
+    samples = [sample for sample in candidates if all(len(sample & group) <= 1 for group in groups)]
     for length in (1, 2, 3):
         yield from product(samples, repeat=length)
 

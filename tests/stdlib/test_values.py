@@ -1,4 +1,4 @@
-"""The standard library's predicates at values computed by hand."""
+"""The predicates of the standard library agree with values that are computed by hand."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from tests.resolve.helpers import only, value
         ("less(x, 40, 10)", {"x": 35}, tanh(0.5)),
     ],
 )
-def test_core(use: str, signals: dict[str, float], expected: float) -> None:
+def test_values_of_core(use: str, signals: dict[str, float], expected: float) -> None:
     spec = only(f"import core signal x in [0, 100] spec s = F {use}")
     assert isclose(value(spec, use, **signals), expected, abs_tol=1e-12)
 
@@ -77,19 +77,19 @@ BOX = "inside_box(0 m, 10 m, -2 m, 2 m, 0 m, 4 m)"
         ("line_of_sight(e)", {"line_of_sight(e)": 0}, -1.0),
     ],
 )
-def test_spatial(use: str, signals: dict[str, float], expected: float) -> None:
+def test_values_of_spatial(use: str, signals: dict[str, float], expected: float) -> None:
     spec = only(f"import spatial entity e spec s = F {use}")
     assert isclose(value(spec, spec.atoms[0].name, **signals), expected, abs_tol=1e-12)
 
 
 @pytest.mark.parametrize("close", [0.5, 1.0, 1.5])
-def test_near_is_minus_three_quarters_half_way(close: float) -> None:
+def test_near_is_minus_three_quarters_halfway(close: float) -> None:
     spec = only(f"import spatial entity e spec s = F near(e, close = {close} m)")
     assert isclose(value(spec, spec.atoms[0].name, **{"distance(e)": (close + 20) / 2}), -0.75)
 
 
 @pytest.mark.parametrize("distance", [1.0, 1.5, 3.0, 5.0, 8.25, 10.0])
-def test_near_is_the_second_case_of_equation_2(distance: float) -> None:
+def test_near_agrees_with_the_second_case_of_equation_2(distance: float) -> None:
     b, big = 1.0, 10.0
     printed = (distance**2 - 2 * big * distance + 2 * b * big - b**2) / (b - big) ** 2
     spec = only("import spatial entity e spec s = F near(e, far = 10 m)")
@@ -120,6 +120,6 @@ def test_near_is_the_second_case_of_equation_2(distance: float) -> None:
         ("open(e)", {"open(e)": 0}, -1.0),
     ],
 )
-def test_stealth(use: str, signals: dict[str, float], expected: float) -> None:
+def test_values_of_stealth(use: str, signals: dict[str, float], expected: float) -> None:
     spec = only(f"import stealth entity e spec s = F {use}")
     assert isclose(value(spec, spec.atoms[0].name, **signals), expected, abs_tol=1e-12)
