@@ -57,6 +57,6 @@ def test_an_interrupted_git_is_an_interrupt(repository: Path, word: str, number:
         "TMPDIR": str(temporary),
     }
     command = [sys.executable, "-m", "tltlc", "breaking", "specs", "--against", "v1"]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=HANG_S, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (128 + number, "", "")
+    result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert (result.returncode, result.stdout, result.stderr) == (128 + number, "", "")
     assert list(temporary.iterdir()) == []

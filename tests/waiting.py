@@ -19,10 +19,10 @@ HANG_S: Final = 900.0
 def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found:
     """Wait until ``event()`` is true, and return its value; raise AssertionError after ``HANG_S`` seconds."""
     deadline = time.monotonic() + HANG_S
-    while not (found := event()):
+    while not (value := event()):
         assert time.monotonic() < deadline, f"waited {HANG_S:g} s in vain for {what}"
         time.sleep(pause_s)
-    return found
+    return value
 
 
 def printed(program: str, data: bytes = b"") -> bytes:

@@ -181,12 +181,12 @@ def test_joining_constrained_transitions_keeps_the_constraint(one: Formula, othe
 
 def test_a_product_over_exclusive_atoms_makes_few_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
     """An earlier version built the transitions for all letters, and restricted them to the possible ones afterwards."""
-    made: list[Diagrams] = []
-    monkeypatch.setattr(build_module, "Diagrams", lambda: made.append(Diagrams()) or made[-1])
+    created: list[Diagrams] = []
+    monkeypatch.setattr(build_module, "Diagrams", lambda: created.append(Diagrams()) or created[-1])
     monkeypatch.setattr(build_module, "_labels", None)
     with pytest.raises(TypeError):
         build(spec_from_formula(any_order(10), exclusive=[names(10)]))
-    (diagrams,) = made
+    (diagrams,) = created
     assert len(diagrams.atom) < 35 * 2**10
 
 

@@ -166,10 +166,10 @@ print([build(spec_from_formula(formula)) for formula in small])
     outputs = set()
     for seed in ("0", "1", "2"):
         environment = {**os.environ, "PYTHONHASHSEED": seed}
-        done = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-c", program], env=environment, cwd=root, capture_output=True, check=True
         )
-        outputs.add(done.stdout)
+        outputs.add(result.stdout)
     assert len(outputs) == 1
 
 

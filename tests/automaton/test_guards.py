@@ -51,9 +51,12 @@ def signed_distance(formula: Formula, values: Sequence[float]) -> float:
         for letter in product((False, True), repeat=len(ATOMS))
         if oracle.holds(formula, [{name for name, value in zip(ATOMS, letter, strict=True) if value}])
     }
-    others = [letter for letter in product((False, True), repeat=len(ATOMS)) if (letter in true) != (here in true)]
+    other_letters = [
+        letter for letter in product((False, True), repeat=len(ATOMS)) if (letter in true) != (here in true)
+    ]
     distance = min(
-        (max(abs(v) for v, a, b in zip(values, here, letter, strict=True) if a != b) for letter in others), default=1.0
+        (max(abs(v) for v, a, b in zip(values, here, letter, strict=True) if a != b) for letter in other_letters),
+        default=1.0,
     )
     return distance if here in true else -distance
 

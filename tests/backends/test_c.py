@@ -58,8 +58,8 @@ def programs_of(folder: Path, compiler: str, fspas: Sequence[Fspa]) -> Programs:
 
 def compiled(folder: Path, compiler: str, source: str, path: Path, *options: str) -> None:
     command = [*COMPILERS[compiler], *STRICT, *SANITIZED, *options, source, "-o", str(path), "-lm"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
 
 
 def check(programs: Programs, traces: Sequence[Sequence[Sample]]) -> None:
@@ -340,8 +340,8 @@ def test_library(compiler: str, tmp_path: Path) -> None:
         *rows,
         "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
     ]
-    done = subprocess.run([str(tmp_path / "library")], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == lines
+    result = subprocess.run([str(tmp_path / "library")], capture_output=True, text=True, check=True)
+    assert result.stdout.splitlines() == lines
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="asks for instructions of x86-64")

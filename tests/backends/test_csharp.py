@@ -42,13 +42,13 @@ def written(fspa: Fspa, folder: Path) -> str:
 
 
 def compiled(folder: Path, *words: str) -> None:
-    done = subprocess.run(["mcs", *STRICT[:-1], *words], cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    result = subprocess.run(["mcs", *STRICT[:-1], *words], cwd=folder, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
 
 
 def ran(folder: Path, *words: str, stdin: bytes = b"") -> Outcome:
-    done = subprocess.run(["mono", *words], input=stdin, capture_output=True, cwd=folder, timeout=HANG_S)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
+    result = subprocess.run(["mono", *words], input=stdin, capture_output=True, cwd=folder, timeout=HANG_S)
+    return result.returncode, result.stdout.decode(), result.stderr.decode()
 
 
 # --- names and texts ------------------------------------------------------------------------------
@@ -289,14 +289,14 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_program_in_other_cultures(program: Path, culture: str) -> None:
     """Some cultures write numbers with commas, or a capital i with a dot."""
     samples = [{**FAR, "distance(s1)": 0.25}, {**FAR, "distance(s2)": 7.5}, {**FAR, "health": -1.5}]
-    done = subprocess.run(
+    result = subprocess.run(
         ["mono", "cover_and_hide_monitor.exe", "--full", "-"],
         input=trace_of(samples, [*FAR]).encode(),
         capture_output=True,
         cwd=program,
         env={**os.environ, "LC_ALL": culture},
     )
-    assert (done.returncode, done.stdout.decode(), done.stderr.decode()) == expected(cover_and_hide(), samples)
+    assert (result.returncode, result.stdout.decode(), result.stderr.decode()) == expected(cover_and_hide(), samples)
 
 
 def test_public_members_have_comments(tmp_path: Path) -> None:

@@ -61,10 +61,10 @@ def run(folder: Path, script: str, *arguments: str, stdin: bytes = b"") -> Outco
     """Run a script, and return its outcome without the banner of the engine."""
     command = ["godot3-server", "--path", ".", "-s", script, *arguments]
     environment = {**os.environ, "LANG": "en"}
-    done = subprocess.run(command, cwd=folder, input=stdin, capture_output=True, env=environment, timeout=HANG_S)
-    banner, _, out = done.stdout.decode().partition("\n \n")
+    result = subprocess.run(command, cwd=folder, input=stdin, capture_output=True, env=environment, timeout=HANG_S)
+    banner, _, out = result.stdout.decode().partition("\n \n")
     assert banner.startswith("Godot Engine v3.")
-    return done.returncode, out, done.stderr.decode()
+    return result.returncode, out, result.stderr.decode()
 
 
 def monitored(folder: Path, fspa: Fspa, trace: str) -> Outcome:
@@ -341,8 +341,8 @@ def test_scripts_for_godot_4_are_parsed(tmp_path: Path) -> None:
         write(tmp_path, fspa, "gdscript")
     scripts = list(tmp_path.glob("*_monitor.gd"))
     mains = [tmp_path / f"{fspa.name}_monitor_main.gd" for fspa in fspas[:2]]
-    done = subprocess.run([str(GDPARSE), *map(str, [*scripts, *mains])], capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    result = subprocess.run([str(GDPARSE), *map(str, [*scripts, *mains])], capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
 
 
 # --- as a library ---------------------------------------------------------------------------------

@@ -57,8 +57,8 @@ def written(fspa: Fspa, folder: Path) -> Path:
 
 
 def ran(module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
-    done = subprocess.run(["node", module.name, *arguments], input=stdin, capture_output=True, cwd=module.parent)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
+    result = subprocess.run(["node", module.name, *arguments], input=stdin, capture_output=True, cwd=module.parent)
+    return result.returncode, result.stdout.decode(), result.stderr.decode()
 
 
 def trace_of(samples: Sequence[Mapping[str, float]]) -> bytes:
@@ -114,9 +114,9 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     assert [row[-1] for row in printed(out)] == [*samples[0]]
 
 
-def awkward(given: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
+def awkward(all_names: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
     """Return an automaton whose signals, params and atoms have these names; each sample makes another atom false."""
-    names = list(dict.fromkeys(given))
+    names = list(dict.fromkeys(all_names))
     fspa = build(spec_from_formula(f.eventually(f.and_(*(f.atom(f"v{index}") for index in range(len(names)))))))
     fspa = replace(
         fspa,
@@ -331,8 +331,8 @@ def test_bundles(tmp_path: Path, platform: str, layout: str) -> None:
     bundle = "use.bundle." + ("mjs" if layout == "esm" else "cjs")
     options = ["--bundle", f"--format={layout}", f"--platform={platform}", "--target=es2022", f"--outfile={bundle}"]
     command = [str(ESBUILD), "use.mjs", *options, "--log-level=warning"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (result.returncode, result.stderr) == (0, "")
     assert ran(tmp_path / bundle) == (0, "pending\n", "")
 
 

@@ -41,8 +41,8 @@ def written(fspa: Fspa, folder: Path) -> Path:
 
 def ran(interpreter: str, module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
     command = [interpreter, module.name, *arguments]
-    done = subprocess.run(command, input=stdin, capture_output=True, cwd=module.parent)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
+    result = subprocess.run(command, input=stdin, capture_output=True, cwd=module.parent)
+    return result.returncode, result.stdout.decode(), result.stderr.decode()
 
 
 # --- names and texts ------------------------------------------------------------------------------

@@ -43,11 +43,11 @@ def test_a_message_begins_with_the_line_or_the_step(
     Path("hide.tltl").write_text(SPEC, encoding="utf-8")
     Path("trace").write_bytes(trace)
     assert tltlc("compile", "hide.tltl", "-t", "python").status == 0
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "hide_monitor.py", "trace"], capture_output=True, text=True, timeout=HANG_S, check=False
     )
-    assert done.returncode == 1
-    assert done.stderr.splitlines()[-1].startswith(f"error: {TRACES[trace]}: ")
+    assert result.returncode == 1
+    assert result.stderr.splitlines()[-1].startswith(f"error: {TRACES[trace]}: ")
     checked = tltlc("monitor", "hide.tltl", "trace")
     kind, number = TRACES[trace].split()
     named = f"{kind} {number}" if kind == "step" or "the trace has no column" not in checked.err else "trace:1:"

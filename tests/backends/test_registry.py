@@ -58,9 +58,9 @@ def test_the_default_targets_load_no_heavy_library() -> None:
         "for name in ('json', 'dot'): backends.target(name)\n"
         "print(*sorted({module.partition('.')[0] for module in sys.modules}))"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     heavy = {"sympy", "networkx", "graphviz", "pygraphviz", "jsonschema", "fastjsonschema", "rich", "numpy", "decimal"}
-    assert not heavy & set(done.stdout.split())
+    assert not heavy & set(result.stdout.split())
 
 
 def test_targets_are_modules_of_the_package() -> None:

@@ -42,13 +42,15 @@ def written(fspa: Fspa, folder: Path) -> str:
 
 def compiled(folder: Path, *words: str, edition: str = "2021") -> None:
     command = ["rustc", "--edition", edition, *STRICT[2:-2], *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
 
 
 def ran(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
-    done = subprocess.run([str(program), *words], input=stdin, capture_output=True, cwd=program.parent, timeout=HANG_S)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
+    result = subprocess.run(
+        [str(program), *words], input=stdin, capture_output=True, cwd=program.parent, timeout=HANG_S
+    )
+    return result.returncode, result.stdout.decode(), result.stderr.decode()
 
 
 # --- names and texts ------------------------------------------------------------------------------
@@ -183,10 +185,10 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
     written(fspa, tmp_path)
     (tmp_path / "host.rs").write_text("pub mod cover_and_hide_monitor;\n")
     words = ["rustdoc", "--edition", "2021", "--crate-name", "host", "host.rs"]
-    done = subprocess.run([*words, "--test"], cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, "running 0 tests" in done.stdout) == (0, True), done.stdout
-    done = subprocess.run([*words, "-D", "warnings"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run([*words, "--test"], cwd=tmp_path, capture_output=True, text=True)
+    assert (result.returncode, "running 0 tests" in result.stdout) == (0, True), result.stdout
+    result = subprocess.run([*words, "-D", "warnings"], cwd=tmp_path, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
     pages = [page.read_text() for page in (tmp_path / "doc" / "host" / "cover_and_hide_monitor").rglob("*.html")]
     assert pages
     assert not any("<script>alert" in page for page in pages)

@@ -307,9 +307,9 @@ def run_script(tmp_path: Path, trace: str | None, *arguments: str, stdin: str = 
     if trace is not None:
         (tmp_path / "trace.csv").write_text(trace, encoding="utf-8", errors="surrogateescape")
     command = [sys.executable, path.name, *arguments]
-    done = subprocess.run(command, input=stdin, capture_output=True, text=True, cwd=tmp_path)
-    assert "Traceback" not in done.stderr
-    return done.returncode, done.stdout, done.stderr
+    result = subprocess.run(command, input=stdin, capture_output=True, text=True, cwd=tmp_path)
+    assert "Traceback" not in result.stderr
+    return result.returncode, result.stdout, result.stderr
 
 
 TRACE = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": 0.1}, {**FAR, "health": -1.0}]

@@ -1,6 +1,6 @@
 """The cache of the predicate check: an answer is computed once, and a damaged file is not trusted.
 
-The standard library needs no cache.
+The check of the standard library needs neither the cache nor sympy.
 """
 
 from __future__ import annotations
@@ -100,5 +100,5 @@ for path in sorted(standard_library().glob("*.tltl")):
 assert "sympy" not in sys.modules, "sympy was imported"
 """
     environment = {**os.environ, "TLTLC_CACHE_DIR": ""}
-    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr

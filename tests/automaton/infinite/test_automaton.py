@@ -208,10 +208,10 @@ for text in ["F G(a | X X b) | F G(c | X X d)", "(G F a -> G F b) & G(c U d | X 
     outputs = set()
     for seed in ("0", "1", "2"):
         environment = {**os.environ, "PYTHONHASHSEED": seed}
-        done = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-c", program], env=environment, cwd=root, capture_output=True, check=True
         )
-        outputs.add(done.stdout)
+        outputs.add(result.stdout)
     (output,) = outputs
     assert output.count(b"acceptance") == 3
 
