@@ -55,7 +55,7 @@ def pytest_configure() -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_teardown() -> Iterator[None]:
-    """Fail a test or an import that changes a signal handler, with which a later test could end the whole process."""
+    """Fail if a test or an import has changed a signal handler: a later test could end the whole process."""
     yield
     changed = [number for number, handler in HANDLERS.items() if signal.getsignal(number) != handler]
     for number in changed:

@@ -29,7 +29,7 @@ ONE = ((0.5, 1.0),)
 
 
 def _object(line: bytes, x: float = 0.5) -> Odd:
-    """Return a trace whose second object is ``line``, in which the value of ``x`` is this."""
+    """Return a trace whose second object is ``line``, with ``x`` as the value of its signal ``x``."""
     return Odd(b'{"x": 0.5, "seen": 1}\n' + line + b"\n", (*ONE, (x, 1.0)))
 
 

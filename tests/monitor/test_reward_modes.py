@@ -90,7 +90,7 @@ def test_the_edge_mode_rewards_leaving_a_state_except_into_a_trap() -> None:
 def test_potential_rewards_sum_to_success_minus_the_initial_potential(
     data: st.DataObject, fspa: Fspa, gamma: float
 ) -> None:
-    """The discounted sum over an episode is the discounted success minus the potential of the initial state."""
+    """The discounted sum over an episode is the discounted reward of success minus the initial potential."""
     fspa = replace(fspa, judge="goal", limit_steps=4)
     monitor = Monitor(fspa, reward=RewardOptions(mode="potential", gamma=gamma))
     trace = data.draw(atom_traces(fspa, max_size=4))

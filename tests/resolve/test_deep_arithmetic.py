@@ -17,7 +17,7 @@ def code(text: str) -> str:
 
 
 def test_depth_inside_conditions_counts() -> None:
-    # Each spec resolves a predicate before the next one uses it, so that the chain is not limited as a whole.
+    # Each spec resolves a predicate before the next one uses it, so that resolution does not follow the chain.
     chain = "".join(
         f"spec s{place} = F p{place} > 0\npredicate p{place + 1} in [-1, 1] = when p{place} < 0.5: 1 otherwise: -1\n"
         for place in range(ARITHMETIC.depth)

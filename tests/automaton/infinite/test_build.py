@@ -143,7 +143,7 @@ def test_labels_keep_the_operators_and_the_order_of_the_source() -> None:
         ("F(a & X F b)", "goal"),
         ("a U b", "goal"),
         ("X X a", "goal"),
-        # After a, every state that can be reached may stay accepting forever.
+        # After a, every run that is not violated is accepted.
         ("a & G b", "goal"),
         ("G p", "limit"),
         ("G F a", "limit"),
