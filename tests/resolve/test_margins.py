@@ -29,7 +29,7 @@ def varying(name: str, low: float, high: float) -> Quantity:
 
 
 def around(number: float, low: float, high: float) -> list[float]:
-    """Return a number, its neighbours, the ends, 0 and the smallest positive number, if they are in the range."""
+    """Return a number, its neighbours, the ends, 0 and ``LEAST``, if they are in the range."""
     near = (number, nextafter(number, -inf), nextafter(number, inf), low, high, 0.0, LEAST)
     return [x for x in near if low <= x <= high]
 
