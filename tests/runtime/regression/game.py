@@ -1,4 +1,4 @@
-"""A small game with a suite: a level of its own, and policies that nobody trained."""
+"""A small game with a suite: its own level and untrained policies."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ EASY = """\
 import stealth
 spec easy { limit 20 steps  reach alive }
 """
-"""A plan that is met at the first step."""
+"""A spec that is met at the first step."""
 
 NEVER = SOON.replace("limit 20 steps", "limit 4 steps")
-"""A plan that nobody meets: the exit is further away."""
+"""A spec that no player can meet: the exit is too far away for the limit."""
 
 SUITE = """\
 seed = 3
@@ -40,13 +40,13 @@ level = "room.toml"
 policy = "soon.safetensors"
 name = "hopeless"
 """
-"""Two cases that pass, and one that never met its spec."""
+"""Two cases that pass, and one whose policy never meets its spec."""
 
 VARIANTS = '[variants]\nv0 = []\nv1 = ["guard_alert"]\n'
 
 
 def write_game(folder: Path, suite: str = SUITE) -> Path:
-    """Write level, policies and suite; the path of the suite."""
+    """Write the level, the policies and the suite; return the path of the suite."""
     folder.mkdir(exist_ok=True)
     (folder / "room.toml").write_text(ROOM + VARIANTS, encoding="utf-8")
     for name, spec in (("easy", EASY), ("soon", SOON)):
@@ -57,14 +57,14 @@ def write_game(folder: Path, suite: str = SUITE) -> Path:
 
 
 def with_baseline(path: Path) -> Suite:
-    """The suite, whose baseline is recorded."""
+    """Record the baseline of the suite; return the suite."""
     suite = read_suite(path)
-    write_baseline(baseline_path(path), tuple(each.reference for each in record_baseline(suite, 1, lambda *_: None)))
+    write_baseline(baseline_path(path), tuple(case.reference for case in record_baseline(suite, 1, lambda *_: None)))
     return suite
 
 
 class Played:
-    """How many episodes of which cases were played."""
+    """A callback that counts the episodes played for each case."""
 
     def __init__(self) -> None:
         self.counts: dict[str, int] = {}
@@ -76,14 +76,14 @@ class Played:
 
 
 def with_few_environments(patch: pytest.MonkeyPatch) -> None:
-    """Have trainings that begin with the policies of cases play in few environments, so that an iteration is short."""
+    """Let retraining use 4 environments, so that an iteration is short."""
     settings = read_settings()
     few = replace(settings, rollout=replace(settings.rollout, envs=4))
     patch.setattr("tltl_runtime.regression.retrain.retrain.read_settings", lambda: few)
 
 
 def edit(name: str, old: str, new: str) -> None:
-    """Change a text in a file, once."""
+    """Replace the first occurrence of a text in a file."""
     text = Path(name).read_text(encoding="utf-8")
     assert old in text
     Path(name).write_text(text.replace(old, new, 1), encoding="utf-8")

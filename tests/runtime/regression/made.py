@@ -1,4 +1,4 @@
-"""Accounts and reports that are made by hand, for tests."""
+"""Handmade accounts, references, cases and suites for tests."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ name = "guard"
 kind = "guard"
 route = [[5.0, 8.5, 0.0]]
 """
-"""A level of one's own."""
+"""The file of a user's level."""
 
 
 def made(
@@ -75,7 +75,7 @@ def made(
 
 
 def several(passed: int, failed: int = 0) -> list[Account]:
-    """Episodes of which the first ``failed`` do not meet the spec."""
+    """Accounts of episodes; the first ``failed`` of them do not meet the spec."""
     return [made(index, index >= failed) for index in range(passed + failed)]
 
 

@@ -1,4 +1,4 @@
-"""The small game with its baseline, and what a first run of its suite has left, for tests that go on from there."""
+"""Fixtures: the small game with its baseline and the results of a first run of its suite."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltl_runtime.regression.verdict.run import regress
 
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A game with its baseline and what a first run of its suite has left in ``run``."""
+    """A game with its baseline; the folder ``run`` has the results of a first run of its suite."""
     folder = tmp_path_factory.mktemp("recorded")
     suite = with_baseline(write_game(folder))
     list(regress(suite, suite.cases, baseline_of(suite), folder / "run", 1, Played()))

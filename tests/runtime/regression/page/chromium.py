@@ -1,4 +1,4 @@
-"""A real browser for tests: Debian's Chromium without a window, driven by Playwright."""
+"""A real browser for tests: Debian's headless Chromium, driven by Playwright."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MISSING += [name for name in ("playwright",) if find_spec(name) is None]
 
 
 HANG_MS = 1000 * HANG_S
-"""As Playwright takes it, in milliseconds."""
+"""The timeout in milliseconds, the unit of Playwright."""
 
 
 @contextmanager
@@ -40,23 +40,23 @@ def browser() -> Iterator[Browser]:
 
 @contextmanager
 def opened(browser: Browser, path: Path, address: str = "", **context: Any) -> Iterator[Page]:
-    """A page of its own that shows a file; at the end of the block nothing else was asked for, and nothing went wrong.
+    """Open a file in a new page; on exit, assert that nothing else was requested and that no error occurred.
 
     ``context`` is what Playwright's ``new_context`` takes, such as ``viewport`` and ``color_scheme``.
     """
-    made = browser.new_context(**context)
-    made.set_default_timeout(HANG_MS)
+    page_context = browser.new_context(**context)
+    page_context.set_default_timeout(HANG_MS)
     try:
-        page = made.new_page()
-        wrong: list[str] = []
-        asked: list[str] = []
-        page.on("console", lambda message: wrong.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("dialog", lambda dialog: (wrong.append(f"dialog: {dialog.message}"), dialog.dismiss()))
-        page.on("request", lambda request: asked.append(request.url))
+        page = page_context.new_page()
+        errors: list[str] = []
+        requests: list[str] = []
+        page.on("console", lambda message: errors.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("dialog", lambda dialog: (errors.append(f"dialog: {dialog.message}"), dialog.dismiss()))
+        page.on("request", lambda request: requests.append(request.url))
         page.goto(f"{path.as_uri()}{address}")
         yield page
-        assert wrong == []
-        assert [url.partition("#")[0] for url in asked if not url.startswith("data:")] == [path.as_uri()]
+        assert errors == []
+        assert [url.partition("#")[0] for url in requests if not url.startswith("data:")] == [path.as_uri()]
     finally:
-        made.close()
+        page_context.close()

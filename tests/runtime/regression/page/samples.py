@@ -1,4 +1,4 @@
-"""Reports on cases that the scripted expert has played: real episodes, real levels, nothing trained."""
+"""Reports on cases that the scripted expert played: real episodes on real levels, without a trained policy."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ def navigation() -> tuple[Episode, ...]:
 
 
 def branching() -> tuple[Episode, ...]:
-    """One with two enemies, movers and a laser."""
+    """One episode with two enemies, movers and a laser."""
     return _played("branching", "v0", 1)
 
 
 def cover_and_hide_met() -> tuple[Episode, ...]:
-    """Two that meet the spec."""
+    """Two episodes that meet the spec."""
     return _played("cover_and_hide", "v0", 2)
 
 
 def cover_and_hide_failed() -> tuple[Episode, ...]:
-    """Three of a player who hides from nobody."""
+    """Three episodes of a player that does not hide."""
     return _played("cover_and_hide", "v0", 3, careful=False)
 
 
@@ -43,18 +43,18 @@ def _played(level: str, variant: str, count: int, *, careful: bool = True) -> tu
     env = RecordEpisode(make_env(level, variant), "expert")
     try:
         expert = Expert(env, careful=careful)
-        found = []
+        episodes = []
         for seed in range(count):
             play_episode(env, expert, seed)
-            found.append(env.episode)
-        return tuple(found)
+            episodes.append(env.episode)
+        return tuple(episodes)
     finally:
         env.close()
 
 
 @cache
 def branching_that_takes_its_time() -> Episode:
-    """One of a player who walks in circles until the limit of the spec."""
+    """An episode of a player that walks in circles until the limit of the spec."""
     env = RecordEpisode(make_env("branching", "v0"), "nobody")
     try:
         env.reset(seed=0)
@@ -68,7 +68,7 @@ def branching_that_takes_its_time() -> Episode:
 
 
 def account_of(index: int, episode: Episode) -> Account:
-    """The account of an episode as if it had been played in a case."""
+    """The account of an episode, as if a case had played it."""
     states = episode.states.tolist()
     unmet = states[-2] if episode.verdict == "violated" else states[-1]
     played = Played(
@@ -95,11 +95,13 @@ def reported(
     before: Sequence[Episode],
     recorded: Iterable[int] | None = None,
 ) -> ReportedCase:
-    """The report on episodes of one level, of which those of the indices ``recorded`` have a recording (all)."""
+    """The report on episodes of one level; only the indices ``recorded`` have a recording (default: all)."""
     level, fspa = now[0].level, now[0].fspa
-    accounts, used = ([account_of(index, each) for index, each in enumerate(episodes)] for episodes in (now, before))
-    told = findings(level, fspa, accounts, used)
-    passed = sum(each.success for each in accounts)
+    accounts, used = (
+        [account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
+    )
+    explanation = findings(level, fspa, accounts, used)
+    passed = sum(account.success for account in accounts)
     report = CaseReport(
         name=name,
         level=level.name,
@@ -108,7 +110,7 @@ def reported(
         causes=(f"met in {passed} of {len(now)} episodes",),
         figures=figures_of(accounts),
         baseline=figures_of(used),
-        explanation=told,
+        explanation=explanation,
         accounts=tuple(accounts),
     )
     indices = range(len(now)) if recorded is None else recorded

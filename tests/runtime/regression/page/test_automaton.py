@@ -1,4 +1,4 @@
-"""The automaton with the episodes that came through it."""
+"""The drawing of the automaton with the counts of the episodes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tltlc.backends.drawing.picture_content import shown
 
 
 def accounts(episodes: tuple[Episode, ...]) -> list[Account]:
-    return [samples.account_of(index, each) for index, each in enumerate(episodes)]
+    return [samples.account_of(index, episode) for index, episode in enumerate(episodes)]
 
 
 @pytest.fixture(scope="module")
@@ -41,58 +41,67 @@ def before() -> Traffic:
 
 @pytest.fixture(scope="module")
 def root(fspa: Fspa, now: Traffic, before: Traffic) -> ElementTree.Element:
-    made = drawn(fspa)
-    assert made.svg is not None and made.notes == ()
-    return ElementTree.fromstring(picture(fspa, made.svg, now, before))
+    drawing = drawn(fspa)
+    assert drawing.svg is not None and drawing.notes == ()
+    return ElementTree.fromstring(picture(fspa, drawing.svg, now, before))
 
 
-def test_each_state_has_its_counts(root: ElementTree.Element, fspa: Fspa, now: Traffic, before: Traffic) -> None:
-    groups = {each.get("data-states"): each for each in root.iter("g") if each.get("data-states")}
+def test_each_state_shows_its_counts(root: ElementTree.Element, fspa: Fspa, now: Traffic, before: Traffic) -> None:
+    groups = {element.get("data-states"): element for element in root.iter("g") if element.get("data-states")}
     assert groups.keys() == {str(state.id) for state in fspa.states}
     for state in fspa.states:
         group = groups[str(state.id)]
-        assert [each.text for each in group.findall("g[@class='badge name']/text")] == [f"state {state.id}"]
-        for when, seen in (("now", now), ("before", before)):
+        assert [element.text for element in group.findall("g[@class='badge name']/text")] == [f"state {state.id}"]
+        for when, counts in (("now", now), ("before", before)):
             badges = group.find(f"g[@class='counts {when}']")
             assert badges is not None
-            texts = [each.text for each in badges.iter("text")]
-            failed = seen.failed.get(state.id, 0)
-            assert texts == [str(seen.visited.get(state.id, 0)), *([f"{failed} failed"] if failed else [])]
+            texts = [element.text for element in badges.iter("text")]
+            failed = counts.failed.get(state.id, 0)
+            assert texts == [str(counts.visited.get(state.id, 0)), *([f"{failed} failed"] if failed else [])]
         title = group.find("title")
         assert title is not None and title.text is not None
         assert f"visited by {now.visited.get(state.id, 0)} of {now.episodes} episodes" in title.text
     assert any(now.failed.values())
 
 
-def test_edges_are_the_thicker_the_more_episodes_took_them(root: ElementTree.Element, now: Traffic) -> None:
+def test_edges_are_thicker_the_more_episodes_took_them(root: ElementTree.Element, now: Traffic) -> None:
     took = Counter(edge for edges in now.took for edge in edges)
     widths = {}
-    for each in root.iter("g"):
-        title = each.findtext("title") or ""
+    for element in root.iter("g"):
+        title = element.findtext("title") or ""
         if title.startswith("From state"):
             ends = tuple(int(word) for word in title.partition(";")[0].split() if word.isdigit())
-            styles = dict(part.split(": ") for part in (each.get("style") or "").split("; "))
+            styles = dict(part.split(": ") for part in (element.get("style") or "").split("; "))
             widths[ends] = float(styles["--took-now"])
-            assert ("untaken-now" in (each.get("class") or "")) == (ends not in took)
+            assert ("untaken-now" in (element.get("class") or "")) == (ends not in took)
     assert widths.keys() >= took.keys()
     ordered = sorted(widths, key=lambda ends: took.get(ends, 0))
     assert all(widths[one] <= widths[other] for one, other in pairwise(ordered))
     assert widths[ordered[-1]] > widths[ordered[0]]
 
 
-def test_the_picture_can_stand_in_a_page_beside_others(root: ElementTree.Element) -> None:
+def test_the_picture_has_no_ids_and_no_links(root: ElementTree.Element) -> None:
     assert root.tag == "svg" and root.get("role") == "img"
-    assert not any(each.get("id") for each in root.iter())
-    assert {each.tag for each in root.iter()} <= {"svg", "g", "title", "path", "polygon", "ellipse", "text", "rect"}
-    assert not any("href" in key for each in root.iter() for key in each.attrib)
+    assert not any(element.get("id") for element in root.iter())
+    assert {element.tag for element in root.iter()} <= {
+        "svg",
+        "g",
+        "title",
+        "path",
+        "polygon",
+        "ellipse",
+        "text",
+        "rect",
+    }
+    assert not any("href" in key for element in root.iter() for key in element.attrib)
 
 
 @pytest.mark.parametrize("episodes", [samples.navigation, samples.cover_and_hide_met, samples.branching])
-def test_names_of_states_cover_no_distance(episodes: Callable[[], tuple[Episode, ...]]) -> None:
+def test_state_names_do_not_cover_distances(episodes: Callable[[], tuple[Episode, ...]]) -> None:
     fspa, empty = episodes()[0].fspa, traffic([])
     svg = drawn(fspa).svg
     assert svg is not None
-    seen = 0
+    checked = 0
     for group in ElementTree.fromstring(picture(fspa, svg, empty, empty)).iter("g"):
         if group.get("data-states"):
             outline, *_, mark = group.iter("path")
@@ -103,38 +112,40 @@ def test_names_of_states_cover_no_distance(episodes: Callable[[], tuple[Episode,
             left, top, right, _ = extent(outline)
             assert x + width <= mark_left or y + height <= mark_top
             assert left - 5 <= x and x + width <= right + 5 and y + height >= top - 5, "it is at its state"
-            seen += 1
-    assert seen == len(fspa.states)
+            checked += 1
+    assert checked == len(fspa.states)
 
 
-def test_no_edge_runs_over_the_badges_of_a_state(root: ElementTree.Element) -> None:
-    kinds = [(each.get("class") or "").split()[0] for graph in root for each in graph if each.get("class")]
+def test_nodes_are_drawn_after_edges(root: ElementTree.Element) -> None:
+    kinds = [(element.get("class") or "").split()[0] for graph in root for element in graph if element.get("class")]
     assert kinds == sorted(kinds) and {"edge", "node"} <= set(kinds)
 
 
 def extent(path: ElementTree.Element) -> tuple[float, float, float, float]:
-    numbers = [float(each) for each in re.findall(r"-?\d+(?:\.\d+)?", path.get("d") or "")]
+    numbers = [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", path.get("d") or "")]
     return min(numbers[::2]), min(numbers[1::2]), max(numbers[::2]), max(numbers[1::2])
 
 
-def test_runs_of_states_that_count_are_one_group() -> None:
+def test_a_folded_run_of_states_is_one_group() -> None:
     (fspa,) = compile_text("clock 1 Hz  signal seen: bool  spec wait = F[0,9] seen")
     empty = traffic([])
-    # Each episode but one leaves the run of states 2 to 9 from another one, to state 1.
+    # Four episodes leave the run of states 2 to 9, each from a different state, to state 1.
     took = tuple(
         frozenset({(0, 2), *((state, state + 1) for state in range(2, last)), (last, 1)}) for last in range(2, 6)
     )
-    seen = Traffic(5, {0: 5, 1: 5, 2: 4, 3: 3, 4: 2, 5: 1}, {}, (*took, frozenset({(0, 1)})))
-    made = drawn(fspa)
-    assert made.svg is not None
-    root = ElementTree.fromstring(picture(fspa, made.svg, seen, empty))
-    groups = [(each.get("data-states") or "").split() for each in root.iter("g") if each.get("data-states")]
+    counts = Traffic(5, {0: 5, 1: 5, 2: 4, 3: 3, 4: 2, 5: 1}, {}, (*took, frozenset({(0, 1)})))
+    drawing = drawn(fspa)
+    assert drawing.svg is not None
+    root = ElementTree.fromstring(picture(fspa, drawing.svg, counts, empty))
+    groups = [(element.get("data-states") or "").split() for element in root.iter("g") if element.get("data-states")]
     assert sorted(int(state) for group in groups for state in group) == [state.id for state in fspa.states]
     (folded,) = [group for group in groups if len(group) > 1]
     texts = {
-        (each.get("data-states") or "").split()[0]: [text.text for text in each.findall("g[@class='counts now']//text")]
-        for each in root.iter("g")
-        if each.get("data-states")
+        (element.get("data-states") or "").split()[0]: [
+            text.text for text in element.findall("g[@class='counts now']//text")
+        ]
+        for element in root.iter("g")
+        if element.get("data-states")
     }
     assert texts[folded[0]][0] == "4"
     titles = [title.text or "" for title in root.iter("title")]
@@ -142,46 +153,46 @@ def test_runs_of_states_that_count_are_one_group() -> None:
     assert "; now: taken by 4 of 5 episodes" in leaving
 
 
-def test_episodes_that_enter_a_run_at_different_states_have_all_visited_it() -> None:
+def test_a_folded_run_counts_episodes_that_enter_at_any_of_its_states() -> None:
     (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
-    # In which one of the two is still to come.
+    # The states in which one of the two atoms has not been true yet.
     inner = {state.id for state in shown(fspa).folded[4]}
     entering = [(edge.source, edge.target) for edge in fspa.edges if edge.source not in inner and edge.target in inner]
     assert len({target for _, target in entering}) == len(entering) == 7
     took = tuple(frozenset({edge}) for edge in entering)
-    seen = Traffic(len(took), Counter(target for _, target in entering), {}, took)
-    made = drawn(fspa)
-    assert made.svg is not None
-    root = ElementTree.fromstring(picture(fspa, made.svg, seen, traffic([])))
-    (group,) = (each for each in root.iter("g") if (each.get("data-states") or "").startswith("4 "))
+    counts = Traffic(len(took), Counter(target for _, target in entering), {}, took)
+    drawing = drawn(fspa)
+    assert drawing.svg is not None
+    root = ElementTree.fromstring(picture(fspa, drawing.svg, counts, traffic([])))
+    (group,) = (element for element in root.iter("g") if (element.get("data-states") or "").startswith("4 "))
     assert f"now: visited by {len(took)} of {len(took)} episodes" in (group.findtext("title") or "")
 
 
-def test_an_edge_between_the_ends_of_two_runs_counts_where_it_is_drawn() -> None:
+def test_an_edge_between_two_folded_runs_is_counted_at_the_drawn_edge() -> None:
     (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
     folded = shown(fspa).folded
     ends = {run[-1].id: first for first, run in folded.items()}
-    # By the last steps of a run: to behind its own end, to behind that of another one, to success.
-    found = [(edge.source, edge.target) for edge in fspa.edges if edge.source in ends]
+    # The edges of the last states of the runs: beyond the own end, beyond the end of another run, to success.
+    last_edges = [(edge.source, edge.target) for edge in fspa.edges if edge.source in ends]
     drawn_ends = {(edge.source, edge.target) for edge in shown(fspa).edges}
-    crossing = [edge for edge in found if (ends[edge[0]], edge[1]) not in drawn_ends]
+    crossing = [edge for edge in last_edges if (ends[edge[0]], edge[1]) not in drawn_ends]
     assert len(crossing) == 2
-    made = drawn(fspa)
-    assert made.svg is not None
+    drawing = drawn(fspa)
+    assert drawing.svg is not None
     for edge in crossing:
-        seen = Traffic(1, {}, {}, (frozenset({edge}),))
-        root = ElementTree.fromstring(picture(fspa, made.svg, seen, seen))
+        counts = Traffic(1, {}, {}, (frozenset({edge}),))
+        root = ElementTree.fromstring(picture(fspa, drawing.svg, counts, counts))
         titles = [title.text or "" for title in root.iter("title")]
         (taken,) = (title for title in titles if "taken by 1 of 1" in title)
         source, target = (int(word) for word in taken.partition(";")[0].split() if word.isdigit())
         assert source == ends[edge[0]] and target in folded and target != source
 
 
-def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_layout_that_takes_too_long_gives_a_note(fspa: Fspa, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.regression.report.page.automaton._LAYOUT_LIMIT_S", 0.0)
-    made = drawn(fspa)
-    assert made.svg is None
-    assert made.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
+    drawing = drawn(fspa)
+    assert drawing.svg is None
+    assert drawing.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
 
 
 def test_the_table_has_the_same_numbers(fspa: Fspa, now: Traffic, before: Traffic) -> None:

@@ -1,4 +1,4 @@
-"""The page in a real browser: it opens episodes, plays them beside their automaton, and fits on small screens."""
+"""The report page in a real browser: it opens and plays episodes, and fits on small screens."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def tab(browser: Browser, file: Path) -> Iterator[Tab]:
 
 
 def current(tab: Tab) -> str | None:
-    """The states of the group that is highlighted in the automaton of the case."""
+    """The states of the highlighted group in the automaton of the case."""
     groups = tab.locator(f"#{CASE} .automaton .current")
     assert groups.count() == 1
     return groups.get_attribute("data-states")
@@ -61,7 +61,7 @@ def scrub(tab: Tab, step: int) -> None:
 
 
 def stop_the_clock(tab: Tab) -> None:
-    """From now on time passes on the page only where the test says so, by ``tab.clock.run_for``."""
+    """Stop the clock of the page; only ``tab.clock.run_for`` advances it."""
     tab.clock.install(time=0)
     tab.clock.pause_at(1000)
 
@@ -77,17 +77,17 @@ def test_the_table_has_a_row_for_each_case(tab: Tab) -> None:
     expect(tab.locator(f"#{CASE} h2")).to_be_in_viewport()
 
 
-def test_the_filter_leaves_findings(tab: Tab) -> None:
+def test_the_filter_hides_cases_that_pass(tab: Tab) -> None:
     tab.get_by_label("only findings").check()
     assert [row.is_visible() for row in tab.locator(".verdicts tbody tr").all()] == [False, True, True]
-    assert [each.is_visible() for each in tab.locator("section.case").all()] == [False, True, True]
+    assert [section.is_visible() for section in tab.locator("section.case").all()] == [False, True, True]
     tab.get_by_label("only findings").uncheck()
-    assert all(each.is_visible() for each in tab.locator("section.case").all())
+    assert all(section.is_visible() for section in tab.locator("section.case").all())
 
 
 @pytest.fixture(name="still")
 def _still(browser: Browser, file: Path) -> Iterator[Tab]:
-    """The page for people who want nothing to move by itself."""
+    """The page in a browser that prefers reduced motion."""
     with chromium.opened(browser, file, reduced_motion="reduce", **WIDE) as opened:
         yield opened
 
@@ -123,7 +123,7 @@ def test_a_link_in_an_explanation_plays_its_episode(tab: Tab) -> None:
     expect(tab.locator(f"#{CASE} .play")).to_have_attribute("aria-label", "play")
 
 
-def test_keys_are_the_players_after_a_link_and_the_link_leads_there_again(still: Tab) -> None:
+def test_after_a_link_keys_control_the_player_and_the_link_works_again(still: Tab) -> None:
     tab = still
     link = tab.locator(f"#{CASE} .reasons a.episode").first
     step = int((link.get_attribute("href") or "").split("/")[2])
@@ -133,7 +133,7 @@ def test_keys_are_the_players_after_a_link_and_the_link_leads_there_again(still:
     tab.keyboard.press("ArrowRight")
     expect(moment).to_contain_text(f"step {step + 1} of ")
     tab.keyboard.press("ArrowLeft")
-    # The address is that of the link again, and so nothing about it changes by a click.
+    # The address already is the address of the link, so a click does not change it.
     tab.wait_for_function(f"location.hash.endsWith('/{step}')")
     tab.evaluate("scrollTo(0, 0)")
     link.click()
@@ -141,7 +141,7 @@ def test_keys_are_the_players_after_a_link_and_the_link_leads_there_again(still:
     expect(moment).to_contain_text(f"step {step} of ")
 
 
-def test_scrubbing_shows_the_state_the_values_and_the_map_of_a_step(browser: Browser, file: Path) -> None:
+def test_the_slider_shows_the_state_the_values_and_the_map_of_a_step(browser: Browser, file: Path) -> None:
     episode = samples.suite().cases[1].episodes[0]
     states = episode.states.tolist()
     changes = [row for row in range(1, len(states)) if states[row] != states[row - 1]]
@@ -159,14 +159,16 @@ def test_scrubbing_shows_the_state_the_values_and_the_map_of_a_step(browser: Bro
             atoms = tab.locator(f"#{CASE} .atoms td.number").all_inner_texts()
             assert [float(text) for text in atoms] == pytest.approx(episode.atoms[row - 1].tolist(), abs=0.0051)
             level, (x, y, _) = episode.level, episode.snapshots[row].player.position
-            found = [float(place.get_attribute(name) or "nan") for name in ("cx", "cy")]
-            assert found == pytest.approx([100 * (x - level.bounds.low[0]), 100 * (level.bounds.high[1] - y)], abs=0.51)
+            centre = [float(place.get_attribute(name) or "nan") for name in ("cx", "cy")]
+            assert centre == pytest.approx(
+                [100 * (x - level.bounds.low[0]), 100 * (level.bounds.high[1] - y)], abs=0.51
+            )
         assert place.get_attribute("cx") != start
         assert tab.locator(f"#{CASE} .map .cone").count() == len(episode.level.enemies)
         expect(tab).to_have_url(re.compile(f"#{CASE}/0/{len(states) - 1}$"))
 
 
-def test_keys_play_and_step(browser: Browser, file: Path) -> None:
+def test_keys_play_and_step_through_an_episode(browser: Browser, file: Path) -> None:
     with chromium.opened(browser, file, f"#{CASE}/1/5", **WIDE) as tab:
         moment = tab.locator(f"#{CASE} .moment")
         for key, step in (("ArrowRight", 6), ("ArrowRight", 7), ("ArrowLeft", 6), ("Home", 0)):
@@ -188,7 +190,7 @@ def test_keys_play_and_step(browser: Browser, file: Path) -> None:
 
 
 @pytest.mark.parametrize("address", ["#%", "#%/0/1", f"#{CASE}/0/%"])
-def test_an_address_that_is_none_shows_the_page(browser: Browser, file: Path, address: str) -> None:
+def test_an_invalid_address_shows_the_page(browser: Browser, file: Path, address: str) -> None:
     with chromium.opened(browser, file, address, **WIDE) as tab:
         assert not tab.locator(f"#{CASE} .controls").is_visible()
         tab.locator(f"#{CASE} .reasons a.episode").first.click()
@@ -196,13 +198,13 @@ def test_an_address_that_is_none_shows_the_page(browser: Browser, file: Path, ad
 
 
 @pytest.mark.parametrize(("step", "shown"), [("1.5", 2), ("-3", 0), ("x", 0)])
-def test_a_step_that_is_none_opens_the_next_one(browser: Browser, file: Path, step: str, shown: int) -> None:
+def test_an_invalid_step_opens_the_nearest_valid_step(browser: Browser, file: Path, step: str, shown: int) -> None:
     with chromium.opened(browser, file, f"#{CASE}/0/{step}", **WIDE) as tab:
         assert tab.locator(f"#{CASE} .moment").inner_text().startswith(f"step {shown} of ")
         assert "NaN" not in tab.locator(f"#{CASE} .player").inner_text()
 
 
-def test_episodes_are_chosen_and_left(tab: Tab) -> None:
+def test_an_episode_is_selected_and_closed(tab: Tab) -> None:
     which = tab.locator(f"#{CASE} .which")
     which.scroll_into_view_if_needed()
     tab.locator(f"#{CASE} .map .ways polyline").first.wait_for(state="attached")
@@ -224,28 +226,28 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
     def ends(kind: str) -> int:
         return section.locator(f".map .ends path.{kind}").count()
 
-    failed = sum(not each.success for each in case.report.accounts)
+    failed = sum(not account.success for account in case.report.accounts)
     assert (ends("violation") + ends("limit"), ends("success")) == (failed, len(case.report.accounts) - failed)
     assert section.locator(".map .ends a").count() == len(case.episodes)
     assert (
         section.locator(".counts.now").first.is_visible() and not section.locator(".counts.before").first.is_visible()
     )
     section.get_by_label("baseline").check()
-    assert ends("success") == sum(each.success for each in case.before) > 0
+    assert ends("success") == sum(account.success for account in case.before) > 0
     assert (
         section.locator(".counts.before").first.is_visible() and not section.locator(".counts.now").first.is_visible()
     )
     section.get_by_label("time spent").check()
     assert section.locator(".map .cell.time").count() > 3 and section.locator(".map .way").count() == 0
     section.get_by_label("failed ends").check()
-    assert section.locator(".map .cell.failed").count() == 0  # nothing failed before
+    assert section.locator(".map .cell.failed").count() == 0  # no episode of the baseline failed
     section.get_by_label("now", exact=True).check()
     assert section.locator(".map .cell.failed").count() > 0
     legend = section.locator(".legend.shown")
     expect(legend).to_have_text(re.compile(r"^strongest: \d+ failed episodes?, of now and baseline$"))
 
 
-def test_the_legend_of_ways_has_the_states_that_colour_one(tab: Tab) -> None:
+def test_the_legend_lists_the_states_whose_colours_are_drawn(tab: Tab) -> None:
     case = samples.suite().cases[1]
     section = tab.locator(f"#{CASE}")
     section.scroll_into_view_if_needed()
@@ -255,13 +257,13 @@ def test_the_legend_of_ways_has_the_states_that_colour_one(tab: Tab) -> None:
     shown = patches.evaluate_all("patches => patches.map((patch) => patch.getAttribute('fill'))")
     assert set(shown) == set(colours) and len(shown) == len(set(shown))
     words = section.locator(".legend.shown").inner_text()
-    left_out = {each.arrivals[-1].state for each in case.report.accounts if each.end == "violation"}
+    left_out = {account.arrivals[-1].state for account in case.report.accounts if account.end == "violation"}
     assert left_out and not any(f"state {state}:" in words for state in left_out)
 
 
 @pytest.fixture(scope="module")
 def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page of a case whose level has a wall that the baseline's had not."""
+    """The page of a case whose level has a wall that the level of the baseline lacks."""
     path = tmp_path_factory.mktemp("changed") / "report.html"
     case = samples.suite().cases[1]
     assert case.level is not None
@@ -271,13 +273,13 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_the_ways_of_the_baseline_are_shown_on_its_level(browser: Browser, changed: Path) -> None:
+def test_the_paths_of_the_baseline_are_drawn_on_its_level(browser: Browser, changed: Path) -> None:
     with chromium.opened(browser, changed, f"#{CASE}", **WIDE) as tab:
-        now, before = (tab.locator(f"#{CASE} .drawn.{when}") for when in ("now", "before"))
-        wall = "rect:has(title:text-is('new_wall'))"
+        now, before = (tab.locator(f"#{CASE} .drawn.{section}") for section in ("now", "before"))
+        new_wall = "rect:has(title:text-is('new_wall'))"
         expect(now).to_be_visible()
         expect(before).to_be_hidden()
-        assert (now.locator(wall).count(), before.locator(wall).count()) == (1, 0)
+        assert (now.locator(new_wall).count(), before.locator(new_wall).count()) == (1, 0)
         expect(now).to_contain_text("The level as it is now: cover_and_hide v0.")
         tab.locator(f"#{CASE}").get_by_label("baseline").check()
         expect(now).to_be_hidden()
@@ -286,7 +288,7 @@ def test_the_ways_of_the_baseline_are_shown_on_its_level(browser: Browser, chang
         assert before.locator(".way").count() > 0
         tab.locator(f"#{CASE}").get_by_label("time spent").check()
         assert before.locator(".cell.time").count() > 0
-        # Episodes are recorded now.
+        # Opening a recorded episode switches to `now`: only current episodes have recordings.
         tab.locator(f"#{CASE} .which").select_option("1")
         expect(now.locator(".player-body")).to_be_attached()
         expect(now).to_be_visible()
@@ -298,7 +300,7 @@ def test_the_ways_of_the_baseline_are_shown_on_its_level(browser: Browser, chang
         expect(when.get_by_label("now", exact=True)).to_be_checked()
         expect(now.locator(".cell.time").first).to_be_attached()
         expect(now).to_be_visible()
-        # So it is of one whose link is followed.
+        # A link to an episode switches to `now`, too.
         when.get_by_label("baseline").check()
         expect(before).to_be_visible()
         tab.locator(f"#{CASE} .reasons a.episode").first.click()
@@ -306,7 +308,7 @@ def test_the_ways_of_the_baseline_are_shown_on_its_level(browser: Browser, chang
         expect(when.get_by_label("now", exact=True)).to_be_checked()
 
 
-def test_an_atom_that_does_not_hold_looks_so(browser: Browser, file: Path) -> None:
+def test_the_bars_of_atoms_show_which_hold(browser: Browser, file: Path) -> None:
     case = samples.suite().cases[1]
     assert case.fspa is not None
     with chromium.opened(browser, file, f"#{CASE}/0/0", **WIDE) as tab:
@@ -329,7 +331,7 @@ def test_an_atom_that_does_not_hold_looks_so(browser: Browser, file: Path) -> No
         assert alive.get_attribute("class") == "fails"
 
 
-def test_names_in_texts_of_the_player_stand_out(browser: Browser, file: Path) -> None:
+def test_names_in_the_text_of_the_player_are_code(browser: Browser, file: Path) -> None:
     last = len(samples.suite().cases[1].episodes[0].actions)
     with chromium.opened(browser, file, f"#{CASE}/0/{last}", **WIDE) as tab:
         state = tab.locator(f"#{CASE} .state")
@@ -337,7 +339,7 @@ def test_names_in_texts_of_the_player_stand_out(browser: Browser, file: Path) ->
         assert "guard" in state.locator("code").all_inner_texts()
 
 
-def test_the_legend_of_an_episode_tells_who_is_who(browser: Browser, file: Path) -> None:
+def test_the_legend_of_an_episode_lists_its_bodies(browser: Browser, file: Path) -> None:
     with chromium.opened(browser, file, f"#{CASE}/0/5", **WIDE) as tab:
         legend = " ".join(tab.locator(f"#{CASE} .legend.shown li").all_inner_texts())
         assert all(words in legend for words in ("the player", "an enemy: patrol", "what an enemy sees"))
@@ -356,7 +358,7 @@ def test_nothing_scrolls_sideways_on_a_small_screen(browser: Browser, file: Path
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_texts_stand_out(browser: Browser, file: Path, scheme: str) -> None:
+def test_texts_have_enough_contrast(browser: Browser, file: Path, scheme: str) -> None:
     with chromium.opened(browser, file, f"#{CASE}/0/20", color_scheme=scheme, **WIDE) as tab:
         for selector in (".verdict.pass", ".verdict.fail", ".facts", ".hint", ".verdicts a", ".reasons li", ".state"):
             colour = tab.locator(selector).first.evaluate("each => getComputedStyle(each).color")
@@ -365,7 +367,7 @@ def test_texts_stand_out(browser: Browser, file: Path, scheme: str) -> None:
 
 
 def contrast(one: str, other: str) -> float:
-    """As WCAG 2.2 defines it, of two colours as a browser writes them."""
+    """The contrast ratio of two colours as WCAG 2.2 defines it; the colours are as browsers write them."""
 
     def luminance(colour: str) -> float:
         red, green, blue = (int(part) / 255 for part in re.findall(r"\d+", colour)[:3])
@@ -376,12 +378,12 @@ def contrast(one: str, other: str) -> float:
     return (light + 0.05) / (dark + 0.05)
 
 
-def test_names_run_nothing(browser: Browser, tmp_path: Path) -> None:
+def test_names_are_not_run_as_scripts(browser: Browser, tmp_path: Path) -> None:
     suite = samples.suite()
     case = suite.cases[1]
     assert case.level is not None
     evil = "</script><b onclick='x'>"
-    enemies = tuple(replace(each, name=evil) for each in case.level.enemies)
+    enemies = tuple(replace(enemy, name=evil) for enemy in case.level.enemies)
     level = replace(case.level, name=evil, enemies=enemies)
     report = replace(case.report, name=evil, level=evil, causes=(evil, *case.report.causes))
     path = tmp_path / "evil.html"
@@ -393,7 +395,7 @@ def test_names_run_nothing(browser: Browser, tmp_path: Path) -> None:
         assert titles and all(title.startswith(f"{evil}: ") for title in titles)
 
 
-def test_it_says_where_scripts_are_needed(browser: Browser, file: Path) -> None:
+def test_without_scripts_a_note_is_shown(browser: Browser, file: Path) -> None:
     with chromium.opened(browser, file, java_script_enabled=False, **WIDE) as tab:
         assert tab.locator("noscript p").is_visible()
         assert tab.locator(".verdicts tbody tr").count() == len(samples.suite().cases)

@@ -11,24 +11,24 @@ from tltl_runtime.regression.report.page.curves import progress_curves, progress
 from tltlc.core.record import replace
 
 
-def test_a_curve_for_each_recorded_episode() -> None:
+def test_each_recorded_episode_has_a_curve() -> None:
     episodes = {3: samples.cover_and_hide_met()[0], 8: samples.cover_and_hide_failed()[0]}
     root = ElementTree.fromstring(progress_curves(episodes))
-    curves = {each.get("data-episode"): each for each in root.iter("polyline")}
+    curves = {element.get("data-episode"): element for element in root.iter("polyline")}
     assert [curves[index].get("class") for index in ("3", "8")] == ["curve success", "curve failure"]
     for index, episode in episodes.items():
         points = [tuple(map(float, point.split(","))) for point in curves[str(index)].get("points", "").split()]
-        assert points == sorted(points, key=lambda point: (point[0], -point[1]))  # time goes on, progress never falls
+        assert points == sorted(points, key=lambda point: (point[0], -point[1]))  # time increases, progress never falls
         heights = {y for _, y in points}
         assert len(heights) == len(set(episode.progress.round(4).tolist()))
 
 
-def test_shares_add_up() -> None:
-    known = samples.account_of(0, samples.navigation()[0])
-    failed = [replace(known, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
-    root = ElementTree.fromstring(progress_distribution([*failed, known], [known]))
+def test_the_bars_show_the_shares_of_episodes() -> None:
+    account = samples.account_of(0, samples.navigation()[0])
+    failed = [replace(account, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
+    root = ElementTree.fromstring(progress_distribution([*failed, account], [account]))
     bars = list(root.iter("rect"))
-    assert [each.findtext("title") for each in bars] == [
+    assert [element.findtext("title") for element in bars] == [
         "progress 0.0 to 0.1, now: 25% of the episodes",
         "progress 0.5 to 0.6, now: 25% of the episodes",
         "progress 0.9 to 1.0, now: 25% of the episodes",
@@ -40,18 +40,24 @@ def test_shares_add_up() -> None:
     assert float(before.get("height", "nan")) == pytest.approx(4 * float(met.get("height", "nan")), abs=0.04)
 
 
-def test_bars_stand_where_their_values_are_written() -> None:
-    known = samples.account_of(0, samples.navigation()[0])
-    root = ElementTree.fromstring(progress_distribution([replace(known, success=False, progress=0.58), known], []))
-    ticks = {each.text: float(each.get("x", "nan")) for each in root.iter("text") if "tick x" in each.get("class", "")}
-    (failed, met) = [(float(each.get("x", "nan")), float(each.get("width", "nan"))) for each in root.iter("rect")]
+def test_bars_stand_at_the_labels_of_their_values() -> None:
+    account = samples.account_of(0, samples.navigation()[0])
+    root = ElementTree.fromstring(progress_distribution([replace(account, success=False, progress=0.58), account], []))
+    ticks = {
+        element.text: float(element.get("x", "nan"))
+        for element in root.iter("text")
+        if "tick x" in element.get("class", "")
+    }
+    (failed, met) = [
+        (float(element.get("x", "nan")), float(element.get("width", "nan"))) for element in root.iter("rect")
+    ]
     assert ticks["0.5"] < failed[0] and sum(failed) < ticks["0.6"]
     assert met[0] < ticks["1 (met)"] == pytest.approx(met[0] + met[1] / 2, abs=0.01)
-    shares = [each.text for each in root.iter("text") if "tick y" in each.get("class", "")]
+    shares = [element.text for element in root.iter("text") if "tick y" in element.get("class", "")]
     assert shares == ["0%", "25%", "50%", "75%", "100%"]
 
 
-def test_no_baseline_is_no_fault() -> None:
-    known = samples.account_of(0, samples.navigation()[0])
-    root = ElementTree.fromstring(progress_distribution([known], []))
-    assert [each.get("class") for each in root.iter("rect")] == ["share now"]
+def test_without_a_baseline_only_current_shares_are_drawn() -> None:
+    account = samples.account_of(0, samples.navigation()[0])
+    root = ElementTree.fromstring(progress_distribution([account], []))
+    assert [element.get("class") for element in root.iter("rect")] == ["share now"]

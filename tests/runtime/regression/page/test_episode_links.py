@@ -1,4 +1,4 @@
-"""Links say which episodes they play, and from where."""
+"""Links to episodes: which episodes they play, and from which step."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ MET = dict(enumerate(samples.cover_and_hide_met()))
         ("fails otherwise", (0, 9), "play the end of episode: 0"),
     ],
 )
-def test_what_links_play(text: str, episodes: tuple[int, ...], words: str) -> None:
-    said = Finding(text, episodes, others=text.startswith("reaches"))
-    found = episode_links(said, FAILED, "a")
-    assert found is not None and re.sub(r"<.*?>", "", found).strip() == words
+def test_links_play_the_episodes_of_a_finding(text: str, episodes: tuple[int, ...], words: str) -> None:
+    finding = Finding(text, episodes, others=text.startswith("reaches"))
+    links = episode_links(finding, FAILED, "a")
+    assert links is not None and re.sub(r"<.*?>", "", links).strip() == words
     for index in re.findall(r"\d", words.partition(":")[2]):
-        assert f'title="play the end of episode {index}"' in found
+        assert f'title="play the end of episode {index}"' in links
 
 
-def test_successes_are_played_from_their_start() -> None:
-    found = episode_links(Finding("successes are longer", (0, 1)), MET, "a")
-    assert found is not None and re.sub(r"<.*?>", "", found).strip() == "play episodes: 0 1"
-    assert re.findall(r'href="#(.*?)"', found) == ["a/0/0", "a/1/0"]
-    assert 'title="play episode 1"' in found
+def test_links_play_successes_from_the_start() -> None:
+    links = episode_links(Finding("successes are longer", (0, 1)), MET, "a")
+    assert links is not None and re.sub(r"<.*?>", "", links).strip() == "play episodes: 0 1"
+    assert re.findall(r'href="#(.*?)"', links) == ["a/0/0", "a/1/0"]
+    assert 'title="play episode 1"' in links
 
 
-def test_what_is_not_recorded_has_no_links() -> None:
+def test_a_finding_without_recordings_has_no_links() -> None:
     assert episode_links(Finding("fails", (7,)), FAILED, "a") is None

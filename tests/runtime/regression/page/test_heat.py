@@ -1,4 +1,4 @@
-"""Heat maps: what is counted where."""
+"""The heat maps of time spent and of failed ends."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from tltlc.core.record import replace
 BOUNDS = Box((0.0, 0.0, 0.0), (10.0, 4.0, 3.0))
 
 
-def test_time_is_counted_in_the_cells_of_the_way() -> None:
-    known = samples.account_of(0, samples.navigation()[0])
-    # Three seconds in the north-western corner, one at the eastern bound.
-    one = replace(known, way=((0.1, 3.9, 0, 0.0), (0.3, 3.7, 0, 2.95), (10.0, 0.1, 1, 3.0), (10.0, 0.1, 1, 4.0)))
-    other = replace(known, way=((0.1, 3.9, 0, 0.0), (0.1, 3.9, 0, 1.0)))
-    found = time_spent(BOUNDS, [one, other])
-    assert (found.cell, found.columns) == (TIME_CELL, 20)
-    assert found.values == ((0, 2.0), (7 * 20 + 19, 0.5))
+def test_time_is_counted_in_the_cells_of_the_path() -> None:
+    account = samples.account_of(0, samples.navigation()[0])
+    # Three seconds in the north-west corner, one second at the eastern bound.
+    one = replace(account, way=((0.1, 3.9, 0, 0.0), (0.3, 3.7, 0, 2.95), (10.0, 0.1, 1, 3.0), (10.0, 0.1, 1, 4.0)))
+    other = replace(account, way=((0.1, 3.9, 0, 0.0), (0.1, 3.9, 0, 1.0)))
+    heat = time_spent(BOUNDS, [one, other])
+    assert (heat.cell, heat.columns) == (TIME_CELL, 20)
+    assert heat.values == ((0, 2.0), (7 * 20 + 19, 0.5))
 
 
-def test_all_of_the_time_is_there() -> None:
+def test_the_cells_add_up_to_the_length_of_the_episodes() -> None:
     episodes = samples.navigation()
-    accounts = [samples.account_of(index, each) for index, each in enumerate(episodes)]
-    found = time_spent(episodes[0].level.bounds, accounts)
-    seconds = sum(each.snapshots[-1].time for each in episodes) / len(episodes)
-    assert sum(value for _, value in found.values) == pytest.approx(seconds, abs=0.1)
+    accounts = [samples.account_of(index, episode) for index, episode in enumerate(episodes)]
+    heat = time_spent(episodes[0].level.bounds, accounts)
+    seconds = sum(episode.snapshots[-1].time for episode in episodes) / len(episodes)
+    assert sum(value for _, value in heat.values) == pytest.approx(seconds, abs=0.1)
 
 
-def test_ends_of_failures_alone_are_counted() -> None:
-    known = samples.account_of(0, samples.navigation()[0])
-    failed = replace(known, success=False, place=(9.5, 0.5, 0.0))
-    found = failed_ends(BOUNDS, [known, failed, failed, replace(failed, place=(0.0, 4.0, 0.0))])
-    assert (found.cell, found.columns) == (ENDS_CELL, 10)
-    assert found.values == ((0, 1.0), (39, 2.0))
+def test_only_ends_of_failures_are_counted() -> None:
+    account = samples.account_of(0, samples.navigation()[0])
+    failed = replace(account, success=False, place=(9.5, 0.5, 0.0))
+    heat = failed_ends(BOUNDS, [account, failed, failed, replace(failed, place=(0.0, 4.0, 0.0))])
+    assert (heat.cell, heat.columns) == (ENDS_CELL, 10)
+    assert heat.values == ((0, 1.0), (39, 2.0))

@@ -1,4 +1,4 @@
-"""Elements in which no text can be taken for markup."""
+"""Elements of the page: all text is escaped."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ JSON = st.recursive(
 
 
 def test_texts_and_attributes_are_escaped() -> None:
-    made = element("p", "a < b & c", element("b", "bold"), title='"<&', class_="one", data_row=3)
-    assert made == '<p title="&quot;&lt;&amp;" class="one" data-row="3">a &lt; b &amp; c<b>bold</b></p>'
+    markup = element("p", "a < b & c", element("b", "bold"), title='"<&', class_="one", data_row=3)
+    assert markup == '<p title="&quot;&lt;&amp;" class="one" data-row="3">a &lt; b &amp; c<b>bold</b></p>'
 
 
-def test_attributes_without_a_value_and_elements_without_an_end() -> None:
+def test_attributes_without_values_and_void_elements() -> None:
     assert element("input", checked=True, disabled=False, name=None) == "<input checked>"
     assert element("p", None) == "<p></p>"
 
 
-def test_parts_are_escaped_one_by_one() -> None:
+def test_joined_parts_are_escaped_one_by_one() -> None:
     assert joined(["<", Markup("<br>"), None, 7]) == "&lt;<br>7"
 
 
@@ -41,11 +41,11 @@ def test_numbers_are_short() -> None:
 
 
 @given(JSON)
-def test_data_in_a_script_is_itself_and_ends_none(data: Any) -> None:
+def test_json_in_a_script_is_unchanged_and_does_not_end_the_script(data: Any) -> None:
     text = as_script(data)
     assert json.loads(text) == data
     assert not set("<>&\u2028\u2029") & set(text)
 
 
-def test_the_end_of_a_script_is_no_end() -> None:
+def test_a_closing_script_tag_in_data_is_escaped() -> None:
     assert as_script("</script><b><!--") == '"\\u003c/script\\u003e\\u003cb\\u003e\\u003c!--"'

@@ -1,4 +1,4 @@
-"""What the player of the page knows of an episode is what was recorded."""
+"""The data of an episode in the page match the recording."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def episode(request: pytest.FixtureRequest) -> Episode:
     return samples.branching()[0]
 
 
-def test_every_row_is_there(episode: Episode) -> None:
+def test_every_row_of_the_recording_is_in_the_data(episode: Episode) -> None:
     data = json.loads(json.dumps(recorded(4, episode)))
     shots, bounds = episode.snapshots, episode.level.bounds
     assert data["index"] == 4
@@ -47,7 +47,7 @@ def test_every_row_is_there(episode: Episode) -> None:
             assert x / 100 == pytest.approx(east - bounds.low[0], abs=0.00501)
             assert y / 100 == pytest.approx(bounds.high[1] - north, abs=0.00501)
             assert (yaw - degrees(angle) + 180) % 360 - 180 == pytest.approx(0, abs=0.51)
-        # Half a turn between two rows would be drawn the wrong way round.
+        # A difference of more than half a turn would turn the drawn body the wrong way.
         assert all(abs(one - other) <= 180 for one, other in pairwise(yaws))
     for place in range(len(episode.level.barriers)):
         assert unrun(data["open"][place]) == [shot.open[place] for shot in shots]

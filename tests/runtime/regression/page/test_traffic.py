@@ -1,4 +1,4 @@
-"""How many episodes came to which states."""
+"""The counts of episodes per state and edge."""
 
 from __future__ import annotations
 
@@ -6,28 +6,28 @@ from tests.runtime.regression.page import samples
 from tltl_runtime.regression.report.page.traffic import traffic
 
 
-def test_every_episode_is_counted_where_it_was() -> None:
+def test_every_episode_is_counted_in_the_states_it_visited() -> None:
     episodes = samples.cover_and_hide_failed()
-    found = traffic([samples.account_of(index, each) for index, each in enumerate(episodes)])
-    assert found.episodes == len(episodes) and found.visited[0] == len(episodes)
-    for state, count in found.visited.items():
-        assert count == sum(state in each.states.tolist() for each in episodes)
-    assert sum(found.failed.values()) == sum(not each.success for each in episodes) > 0
+    counts = traffic([samples.account_of(index, episode) for index, episode in enumerate(episodes)])
+    assert counts.episodes == len(episodes) and counts.visited[0] == len(episodes)
+    for state, count in counts.visited.items():
+        assert count == sum(state in episode.states.tolist() for episode in episodes)
+    assert sum(counts.failed.values()) == sum(not episode.success for episode in episodes) > 0
     edges = {(edge.source, edge.target) for edge in episodes[0].fspa.edges}
-    took = frozenset[tuple[int, int]]().union(*found.took)
+    took = frozenset[tuple[int, int]]().union(*counts.took)
     assert took and took <= edges
     assert all(source != target for source, target in took)
 
 
-def test_an_episode_that_breaks_the_spec_fails_in_the_state_before() -> None:
+def test_a_violation_counts_as_failed_in_the_state_before_the_trap() -> None:
     (episode,) = samples.cover_and_hide_failed()[:1]
     assert episode.end == "violation"
-    found = traffic([samples.account_of(0, episode)])
-    assert found.failed == {int(episode.states[-2]): 1}
-    (took,) = found.took
+    counts = traffic([samples.account_of(0, episode)])
+    assert counts.failed == {int(episode.states[-2]): 1}
+    (took,) = counts.took
     assert (int(episode.states[-2]), int(episode.states[-1])) in took
 
 
-def test_nothing_comes_of_no_episodes() -> None:
-    found = traffic([])
-    assert (found.episodes, dict(found.visited), dict(found.failed), found.took) == (0, {}, {}, ())
+def test_without_episodes_all_counts_are_empty() -> None:
+    counts = traffic([])
+    assert (counts.episodes, dict(counts.visited), dict(counts.failed), counts.took) == (0, {}, {}, ())
