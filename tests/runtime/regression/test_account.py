@@ -1,4 +1,4 @@
-"""Accounts of real episodes: of the scripted expert, and of one that minds no enemy."""
+"""Accounts of real episodes, played by the scripted expert and by a player that ignores enemies."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _found(episode: Episode) -> Account:
     return samples.account_of(0, episode)
 
 
-def test_every_state_that_was_entered_is_told_once(episode: Episode, found: Account) -> None:
+def test_every_entered_state_has_an_arrival(episode: Episode, found: Account) -> None:
     states = [arrival.state for arrival in found.arrivals]
     assert states[0] == 0 and all(one != other for one, other in pairwise(states))
     assert set(states) == set(episode.states.tolist())
@@ -39,54 +39,56 @@ def test_every_state_that_was_entered_is_told_once(episode: Episode, found: Acco
         assert episode.fspa.states[states[-1]].distance == 0
 
 
-def test_a_success_has_no_shortcoming(found: Account) -> None:
+def test_a_success_has_no_cause_of_failure(found: Account) -> None:
     if found.success:
         assert (found.nearest, found.seen_by, found.cause) == (None, (), "success")
 
 
-def test_it_can_be_kept(found: Account) -> None:
+def test_an_account_survives_json(found: Account) -> None:
     assert from_json(Account, to_json(found), "account") == found
 
 
-def test_who_dies_is_told_with_who_killed_and_how_near_it_came() -> None:
+def test_a_death_has_its_killers_and_the_closest_approach() -> None:
     episode = samples.cover_and_hide_failed()[0]
-    found = samples.account_of(0, episode)
-    assert not found.success
-    assert found.cause in ("killed", "violated")
-    assert found.by
-    assert found.seen_by == ("guard",)
-    assert found.broke == ("alive",)
-    near = found.nearest
-    assert near is not None and near.robustness <= 0.0
-    if near.target is not None:
-        column = [signal.name for signal in episode.fspa.signals].index(f"distance({near.target})")
-        rows = rows_away(episode, found)
-        assert near.distance == pytest.approx(min(episode.signals[row + 1, column] for row in rows), abs=0.01)
+    account = samples.account_of(0, episode)
+    assert not account.success
+    assert account.cause in ("killed", "violated")
+    assert account.by
+    assert account.seen_by == ("guard",)
+    assert account.broke == ("alive",)
+    nearest = account.nearest
+    assert nearest is not None and nearest.robustness <= 0.0
+    if nearest.target is not None:
+        column = [signal.name for signal in episode.fspa.signals].index(f"distance({nearest.target})")
+        rows = rows_away(episode, account)
+        assert nearest.distance == pytest.approx(min(episode.signals[row + 1, column] for row in rows), abs=0.01)
 
 
-def rows_away(episode: Episode, found: Account) -> list[int]:
-    """The decisions in the state in which the episode failed that did not make the atom true that was the limit."""
-    assert found.nearest is not None
-    atom = [each.name for each in episode.fspa.atoms].index(found.nearest.atom)
+def rows_away(episode: Episode, account: Account) -> list[int]:
+    """The decisions in the state where the episode failed that left the limiting atom false."""
+    assert account.nearest is not None
+    atom = [atom_record.name for atom_record in episode.fspa.atoms].index(account.nearest.atom)
     steps = range(len(episode.actions))
-    return [step for step in steps if episode.states[step] == found.unmet and episode.atoms[step, atom] <= 0.0]
+    return [step for step in steps if episode.states[step] == account.unmet and episode.atoms[step, atom] <= 0.0]
 
 
-def test_the_closest_approach_is_the_least_distance_whatever_else_the_guard_asks() -> None:
+def test_the_closest_approach_is_the_least_distance_to_the_target() -> None:
     episode = samples.cover_and_hide_failed()[0]
-    found = samples.account_of(0, episode)
-    assert found.nearest is not None and found.nearest.target is not None
-    column = [signal.name for signal in episode.fspa.signals].index(f"distance({found.nearest.target})")
-    rows = rows_away(episode, found)
+    account = samples.account_of(0, episode)
+    assert account.nearest is not None and account.nearest.target is not None
+    column = [signal.name for signal in episode.fspa.signals].index(f"distance({account.nearest.target})")
+    rows = rows_away(episode, account)
     signals = episode.signals.copy()
     signals[rows[0] + 1, column] = 0.25
     nearer = samples.account_of(0, replace(episode, signals=signals)).nearest
-    assert nearer == replace(found.nearest, distance=0.25), "the guard was as near as before"
+    assert nearer == replace(account.nearest, distance=0.25), "the guard was as near as before"
 
 
-def test_what_is_told_of_episodes_that_fail_now() -> None:
+def test_findings_compare_failures_with_the_baseline() -> None:
     now, before = samples.cover_and_hide_failed(), samples.cover_and_hide_met()
-    accounts, used = ([samples.account_of(index, each) for index, each in enumerate(one)] for one in (now, before))
+    accounts, used = (
+        [samples.account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
+    )
     stage, *ends = findings(now[0].level, now[0].fspa, accounts, used)
     assert stage.text.endswith("before: in 2 of 2 episodes") and stage.episodes
     assert ends

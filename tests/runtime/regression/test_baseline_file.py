@@ -1,4 +1,4 @@
-"""The baseline beside a suite: written, read again, and asked for figures."""
+"""The baseline file of a suite: writing it, reading it, and looking up references."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ SUITE = suite()
 NEAREST = Nearest("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)
 
 
-def test_it_is_read_as_it_was_written(tmp_path: Path) -> None:
+def test_a_baseline_is_read_as_it_was_written(tmp_path: Path) -> None:
     path = tmp_path / "game.baseline.json"
     failed = made(1, False, nearest=NEAREST, by=("guard",), seen_by=("guard",), states=(0, 2, 1))
-    known = (reference([made(0), failed]), reference(several(3), level="vault", variant="v1+wide"))
-    write_baseline(path, known)
-    assert read_baseline(path) == known
+    references = (reference([made(0), failed]), reference(several(3), level="vault", variant="v1+wide"))
+    write_baseline(path, references)
+    assert read_baseline(path) == references
     again = tmp_path / "again.json"
-    write_baseline(again, known)
+    write_baseline(again, references)
     assert again.read_bytes() == path.read_bytes()
-    # A line an episode: what changes of one is one line of a difference.
+    # Each episode is one line, so that a change of an episode is one line of a diff.
     lines = path.read_text(encoding="utf-8").splitlines()
     assert sum(line.startswith('{"index":') for line in lines) == 5
 
 
-def test_its_place() -> None:
+def test_the_baseline_lies_beside_the_suite() -> None:
     assert baseline_path(Path("levels/game.toml")) == Path("levels/game.baseline.json")
 
 
@@ -65,7 +65,7 @@ def test_its_place() -> None:
         ("way", []),
     ],
 )
-def test_what_is_broken_is_refused(tmp_path: Path, key: str, value: object) -> None:
+def test_a_wrong_value_is_rejected(tmp_path: Path, key: str, value: object) -> None:
     path = tmp_path / "game.baseline.json"
     write_baseline(path, (reference([made(0)]),))
     document = json.loads(path.read_text(encoding="utf-8"))
@@ -73,17 +73,17 @@ def test_what_is_broken_is_refused(tmp_path: Path, key: str, value: object) -> N
     path.write_text(json.dumps(document), encoding="utf-8")
     with pytest.raises(TltlError) as error:
         read_baseline(path)
-    (found,) = error.value.diagnostics
-    assert found.code == "TLT0902"
-    assert key in found.title
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0902"
+    assert key in diagnostic.title
 
 
 @pytest.mark.parametrize(("key", "path"), [("arrivals", ("state",)), ("way", (2,)), ("unmet", ())])
-def test_states_must_be_those_of_the_automaton(tmp_path: Path, key: str, path: tuple[str | int, ...]) -> None:
-    played, (there,) = suite(path=tmp_path / "game.toml"), compile_text(EASY)
-    count = len(there.states)
-    write_baseline(played.baseline, (reference(several(2)),))
-    document = json.loads(played.baseline.read_text(encoding="utf-8"))
+def test_states_that_the_automaton_lacks_are_rejected(tmp_path: Path, key: str, path: tuple[str | int, ...]) -> None:
+    tested_suite, (fspa,) = suite(path=tmp_path / "game.toml"), compile_text(EASY)
+    count = len(fspa.states)
+    write_baseline(tested_suite.baseline, (reference(several(2)),))
+    document = json.loads(tested_suite.baseline.read_text(encoding="utf-8"))
 
     def with_state(state: int) -> None:
         account = document["references"][0]["accounts"][1]
@@ -91,46 +91,46 @@ def test_states_must_be_those_of_the_automaton(tmp_path: Path, key: str, path: t
             account[key][-1][path[0]] = state
         else:
             account[key] = state
-        played.baseline.write_text(json.dumps(document), encoding="utf-8")
+        tested_suite.baseline.write_text(json.dumps(document), encoding="utf-8")
 
     with_state(count - 1)
-    (known,) = baseline_of(played)
-    check_states(known, there, played)
+    (baseline_reference,) = baseline_of(tested_suite)
+    check_states(baseline_reference, fspa, tested_suite)
     with_state(count)
-    (known,) = baseline_of(played)
+    (baseline_reference,) = baseline_of(tested_suite)
     with pytest.raises(TltlError, match=f"TLT0902: .* episode 1 of `room:v0` has the state {count}, and "):
-        check_states(known, there, played)
+        check_states(baseline_reference, fspa, tested_suite)
     with_state(-1)
     with pytest.raises(TltlError, match=r"TLT0902: .*references\[0\]\.accounts\[1\]: it has the state -1"):
-        baseline_of(played)
+        baseline_of(tested_suite)
 
 
-def test_a_sum_of_rewards_may_be_rounded(tmp_path: Path) -> None:
-    known = (reference([made(0, False, reward=-1.0000000000000002, progress=0.0)]),)
-    write_baseline(tmp_path / "game.baseline.json", known)
-    assert read_baseline(tmp_path / "game.baseline.json") == known
+def test_a_reward_may_exceed_its_range_by_rounding(tmp_path: Path) -> None:
+    references = (reference([made(0, False, reward=-1.0000000000000002, progress=0.0)]),)
+    write_baseline(tmp_path / "game.baseline.json", references)
+    assert read_baseline(tmp_path / "game.baseline.json") == references
 
 
 @pytest.mark.parametrize("text", ["[]", "3", "{}", "[" * 100_000, "\xff", '{"format": "tltl-episode"}'])
-def test_what_is_something_else_is_refused(tmp_path: Path, text: str) -> None:
+def test_a_file_that_is_no_baseline_is_rejected(tmp_path: Path, text: str) -> None:
     path = tmp_path / "game.baseline.json"
     path.write_bytes(text.encode("latin-1"))
     with pytest.raises(TltlError) as error:
         read_baseline(path)
-    assert [found.code for found in error.value.diagnostics] == ["TLT0900"]
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["TLT0900"]
 
 
-def test_figures_are_found_whatever_the_level_has_become() -> None:
-    known = (reference(variant="v1"), reference(several(2)))
+def test_a_reference_is_found_although_the_level_has_changed() -> None:
+    references = (reference(variant="v1"), reference(several(2)))
     wanted = replace(PLAYED, level_hash="0" * 64, files=(), versions={})
-    assert reference_of(known, wanted, SUITE) == known[1]
+    assert reference_of(references, wanted, SUITE) == references[1]
 
 
-def test_levels_of_one_name_are_told_apart() -> None:
+def test_levels_with_the_same_name_are_told_apart() -> None:
     known = tuple(reference(several(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new")))
     for each in known:
         assert reference_of(known, replace(PLAYED, place=each.played.place), SUITE) == each
-    # A level that comes with the package has no place, and is no other one either.
+    # A shipped level has no place, and is told apart from user levels, too.
     shipped = reference(several(3), place="")
     for each in ((shipped, *known), (*known, shipped)):
         assert [reference_of(each, replace(PLAYED, place=place), SUITE) for place in ("old/room.toml", "")] == [
@@ -153,33 +153,33 @@ def test_levels_of_one_name_are_told_apart() -> None:
         ({"seed": 8}, "the baseline has no figures of `room:v0` with this seed"),
     ],
 )
-def test_figures_that_are_missing(changed: dict[str, object], title: str) -> None:
+def test_a_missing_reference_is_reported(changed: dict[str, object], title: str) -> None:
     with pytest.raises(TltlError) as error:
         reference_of((reference(several(2)),), replace(PLAYED, **changed), suite(path=Path("a game.toml")))
-    (found,) = error.value.diagnostics
-    assert (found.code, found.title) == ("TLT0903", title)
-    assert found.help == "record it: tltlc baseline 'a game.toml'"
+    (diagnostic,) = error.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == ("TLT0903", title)
+    assert diagnostic.help == "record it: tltlc baseline 'a game.toml'"
 
 
-def test_a_suite_without_a_baseline(tmp_path: Path) -> None:
+def test_a_missing_baseline_is_reported(tmp_path: Path) -> None:
     with pytest.raises(TltlError) as error:
         baseline_of(suite(path=tmp_path / "game.toml"))
-    (found,) = error.value.diagnostics
-    assert found.code == "TLT0903"
-    assert found.help == f"record it: tltlc baseline {tmp_path / 'game.toml'}"
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0903"
+    assert diagnostic.help == f"record it: tltlc baseline {tmp_path / 'game.toml'}"
     write_baseline(tmp_path / "game.baseline.json", (reference(several(1)),))
     assert baseline_of(suite(path=tmp_path / "game.toml")) == (reference(several(1)),)
     assert baseline_path(SHIPPED).parent == SHIPPED.parent
 
 
-def test_a_baseline_that_cannot_be_looked_at_is_not_missing() -> None:
+def test_a_baseline_that_cannot_be_read_is_not_reported_as_missing() -> None:
     with pytest.raises(TltlError, match="TLT0001: cannot read `aaa"):
         baseline_of(replace(suite(), baseline=Path("a" * 300)))
 
 
 @pytest.mark.parametrize("path", [Path("game.toml"), SHIPPED])
-def test_what_records_a_baseline_writes_the_one_that_is_missing(path: Path) -> None:
-    """That of the package is written only where this is said."""
+def test_the_suggested_command_writes_the_missing_baseline(path: Path) -> None:
+    """The baseline inside the package is written only with an explicit ``--output``."""
     named = replace(suite(path=path), baseline=Path("a night.json"))
     words = "" if path == SHIPPED else " game.toml"
     assert baseline_command(named) == f"tltlc baseline{words} --output 'a night.json'"
@@ -189,11 +189,11 @@ def test_what_records_a_baseline_writes_the_one_that_is_missing(path: Path) -> N
 
 
 @pytest.mark.parametrize("indices", [[], [1], [0, 2], [0, 0], [1, 0]])
-def test_episodes_must_be_there_in_their_order(tmp_path: Path, indices: list[int]) -> None:
+def test_missing_or_unordered_episodes_are_rejected(tmp_path: Path, indices: list[int]) -> None:
     path = tmp_path / "game.baseline.json"
     write_baseline(path, (reference(several(1)), reference([made(index) for index in indices])))
     with pytest.raises(TltlError) as error:
         read_baseline(path)
-    (found,) = error.value.diagnostics
-    assert found.code == "TLT0902"
-    assert "baseline.references[1].accounts: the episodes must be there from number 0 on" in found.title
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0902"
+    assert "baseline.references[1].accounts: the episodes must be there from number 0 on" in diagnostic.title

@@ -1,4 +1,4 @@
-"""The report on a case that was played."""
+"""The report on a played case."""
 
 from __future__ import annotations
 
@@ -16,24 +16,26 @@ from tltl_runtime.regression.verdict.verdict import judge
 from tltlc.core.record import replace
 
 
-def test_it_tells_which_keys_of_a_file_have_changed(game: Path) -> None:
+def test_the_report_lists_the_changed_keys_of_a_file(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [8.0, 7.0, 0.0]")
     (done,) = regress(suite, suite.cases[:1], baseline_of(suite), Path("run"), 1, Played())
-    (said,) = done.report.edits
-    assert said.startswith("changed since the baseline: room.toml (") and "[8, 7, 0]" in said.replace(".0", "")
+    (text,) = done.report.edits
+    assert text.startswith("changed since the baseline: room.toml (") and "[8, 7, 0]" in text.replace(".0", "")
 
 
-def test_the_headline_is_no_failure_that_comes_no_more_often_than_before(game: Path) -> None:
+def test_the_headline_is_no_failure_that_is_as_frequent_as_before(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    one, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
+    ready_case, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
     now = several(47, 3)
 
     def headline(before: int) -> str:
         compared = replace(reference, accounts=tuple(several(before, 50 - before)))
-        judgement = judge(now, compared.accounts, 50, one.case.thresholds, 0.05)
+        judgement = judge(now, compared.accounts, 50, ready_case.case.thresholds, 0.05)
         assert judgement is not None and judgement.verdict == "review"
-        return report_on(Result(one, compared, judgement, tuple(Recorded(each, b"") for each in now))).headline
+        return report_on(
+            Result(ready_case, compared, judgement, tuple(Recorded(account, b"") for account in now))
+        ).headline
 
     assert headline(47).startswith("met in 47 of 50 episodes (94%), before in 47 of 50 (94%): ")
     assert headline(50) == "runs out of time in the middle in 3 of 50 episodes"

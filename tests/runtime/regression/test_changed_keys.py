@@ -1,4 +1,4 @@
-"""Which keys of a file have changed, in words."""
+"""The description of the changed keys of a file."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ at = [0.0, 0.0, 0.0]
         ("[look]\ntilt = 5", "look = 5", '`look` {"tilt": 5} → 5'),
     ],
 )
-def test_what_has_changed(old: str, new: str, said: str) -> None:
+def test_changed_keys_are_listed_with_their_values(old: str, new: str, said: str) -> None:
     assert old in GUARD
     assert changed_keys(GUARD, GUARD.replace(old, new)) == said
 
@@ -53,20 +53,20 @@ def test_what_has_changed(old: str, new: str, said: str) -> None:
         ('"block_2"', '"block_1"', '`solid.2.name` "block_2" → "block_1"'),
     ],
 )
-def test_tables_in_lists_go_by_their_names_else_by_their_positions(old: str, new: str, said: str) -> None:
+def test_tables_in_lists_are_identified_by_name_or_position(old: str, new: str, said: str) -> None:
     assert old in ROOM
     assert changed_keys(ROOM, ROOM.replace(old, new)) == said
 
 
-def test_long_values_are_not_shown_nor_more_than_three_keys() -> None:
+def test_long_values_and_more_than_three_keys_are_not_shown() -> None:
     assert changed_keys('doc = "A guard."', f'doc = "{"A guard that walks. " * 3}"') == "`doc`"
-    old, new = ("".join(f"key_{row} = {row + more}\n" for row in range(7)) for more in (0, 1))
+    old, new = ("".join(f"key_{row} = {row + offset}\n" for row in range(7)) for offset in (0, 1))
     assert changed_keys(old, new) == "`key_0` 0 → 1, `key_1` 1 → 2, `key_2` 2 → 3 and 4 more"
 
 
-def test_where_no_value_has_changed_that_is_said() -> None:
+def test_a_change_of_layout_alone_is_reported() -> None:
     assert changed_keys(GUARD, f"# Slow.\n{GUARD.replace(' = ', '=')}") == "its layout"
 
 
-def test_of_what_is_no_toml_nothing_is_said() -> None:
+def test_invalid_toml_gives_no_description() -> None:
     assert changed_keys(GUARD, "walk_speed = ") == changed_keys("?", GUARD) == ""

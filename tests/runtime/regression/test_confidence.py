@@ -1,4 +1,4 @@
-"""The statistics of verdicts hold what they promise, however often they are looked at."""
+"""The statistics of verdicts keep their error bounds, however often they are evaluated."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ EPISODES = 150
 
 
 def most(error: float) -> int:
-    """Of the sequences, more than so many go wrong once in a million times, where each does with that probability."""
+    """The number of wrong sequences that is exceeded with probability 1e-6.
+
+    Each of the :data:`SEQUENCES` is wrong with probability ``error``.
+    """
     left, count = 1.0, -1
     while left > 1e-6:
         count += 1
@@ -24,7 +27,7 @@ def most(error: float) -> int:
 
 
 def ever_outside(rate: float, error: float, seed: int, interval: object = rate_interval) -> int:
-    """In how many sequences the rate is at any time outside of its interval."""
+    """The number of sequences in which the rate is ever outside its interval."""
     met = np.random.default_rng(seed).random((SEQUENCES, EPISODES)) < rate
     known: dict[tuple[int, int], bool] = {}
 
@@ -35,16 +38,18 @@ def ever_outside(rate: float, error: float, seed: int, interval: object = rate_i
         return known[passed, failed]
 
     counts = met.cumsum(axis=1)
-    return sum(any(is_outside(int(each), row + 1 - int(each)) for row, each in enumerate(line)) for line in counts)
+    return sum(
+        any(is_outside(int(passed), row + 1 - int(passed)) for row, passed in enumerate(line)) for line in counts
+    )
 
 
 @pytest.mark.parametrize("rate", [0.5, 0.85, 0.97])
 @pytest.mark.parametrize("error", [0.2, 0.05])
-def test_the_rate_is_seldom_ever_outside(rate: float, error: float) -> None:
+def test_the_rate_is_rarely_ever_outside_its_interval(rate: float, error: float) -> None:
     assert ever_outside(rate, error, seed=3) <= most(error)
 
 
-def test_an_interval_that_is_made_for_one_look_does_not_hold_for_many() -> None:
+def test_an_interval_for_one_evaluation_fails_when_evaluated_often() -> None:
     def once(passed: int, failed: int, error: float) -> tuple[float, float]:
         assert error == 0.05
         return wilson(passed, passed + failed)
@@ -53,7 +58,7 @@ def test_an_interval_that_is_made_for_one_look_does_not_hold_for_many() -> None:
 
 
 @pytest.mark.parametrize(("passed", "failed"), [(0, 0), (25, 0), (0, 25), (24, 1), (190, 10), (7, 93)])
-def test_an_interval_is_around_what_was_seen(passed: int, failed: int) -> None:
+def test_an_interval_contains_the_observed_rate(passed: int, failed: int) -> None:
     low, high = rate_interval(passed, failed, 0.05)
     assert 0.0 <= low <= high <= 1.0
     if passed + failed:
@@ -63,14 +68,14 @@ def test_an_interval_is_around_what_was_seen(passed: int, failed: int) -> None:
     assert (1 - mirrored[1], 1 - mirrored[0]) == pytest.approx((low, high), abs=1e-9)
 
 
-def test_more_episodes_and_more_error_make_it_narrower() -> None:
+def test_more_episodes_and_a_larger_error_narrow_the_interval() -> None:
     widths = [high - low for low, high in (rate_interval(9 * n, n, 0.05) for n in (1, 4, 16, 64, 256))]
     assert widths == sorted(widths, reverse=True) and widths[-1] < 0.08
     wide, narrow = rate_interval(90, 10, 0.001), rate_interval(90, 10, 0.2)
     assert wide[0] < narrow[0] < 0.9 < narrow[1] < wide[1]
 
 
-def test_the_lower_end_is_where_the_stake_is_what_the_page_says() -> None:
+def test_the_lower_end_follows_the_formula_of_the_page() -> None:
     passed, failed, error = 40, 3, 0.01
     low, _ = rate_interval(passed, failed, error)
     start = asin(sqrt(low))
@@ -80,41 +85,41 @@ def test_the_lower_end_is_where_the_stake_is_what_the_page_says() -> None:
 
 
 @pytest.mark.parametrize("counts", [(-1, 3, 0.05), (3, -1, 0.05), (3, 3, 0.0), (3, 3, 1.0)])
-def test_what_has_no_interval(counts: tuple[int, int, float]) -> None:
+def test_invalid_counts_have_no_interval(counts: tuple[int, int, float]) -> None:
     with pytest.raises(ValueError, match="no interval"):
         rate_interval(*counts)
 
 
 def rewards(seed: int, mean: float, count: int = 120) -> list[float]:
-    """Of episodes that succeed as a rule, with some noise, and fail now and then; their mean is as given."""
+    """Noisy rewards of episodes of which 95 % succeed; the expected reward is ``mean``."""
     rng = np.random.default_rng(seed)
     met = rng.random(count) < 0.95
     drawn = np.where(met, rng.uniform(-0.15, 0.15, count) + 0.05, rng.uniform(-0.15, 0.15, count) - 0.95)
-    found: list[float] = (drawn + mean).tolist()
-    return found
+    values: list[float] = (drawn + mean).tolist()
+    return values
 
 
 @pytest.mark.parametrize("error", [0.3, 0.1, 0.03])
 @pytest.mark.parametrize("mean", [0.65, 0.75])
-def test_what_has_not_changed_by_more_is_seldom_ever_called_changed(error: float, mean: float) -> None:
-    # Both means are ends of what counts as unchanged: nothing is harder to tell from a change.
-    found = sum(mean_p_value(rewards(seed, mean), 0.65, 0.75) <= error for seed in range(SEQUENCES))
-    assert found <= most(error)
+def test_an_unchanged_mean_is_rarely_called_changed(error: float, mean: float) -> None:
+    # Both means are ends of the range that counts as unchanged, where a change is hardest to rule out.
+    false_alarms = sum(mean_p_value(rewards(seed, mean), 0.65, 0.75) <= error for seed in range(SEQUENCES))
+    assert false_alarms <= most(error)
 
 
-def test_what_has_changed_by_more_is_found() -> None:
+def test_a_changed_mean_is_detected() -> None:
     for mean in (0.5, 0.9):
         low, high = (0.65, 0.75) if mean < 0.7 else (0.5, 0.6)
         assert sum(mean_p_value(rewards(seed, mean - 0.1), low, high) <= 0.01 for seed in range(50)) > 45
 
 
 def test_a_p_value_never_rises() -> None:
-    found = rewards(2, 0.6)
-    values = [mean_p_value(found[:count], 0.65, 0.75) for count in range(1, 121)]
+    episode_rewards = rewards(2, 0.6)
+    values = [mean_p_value(episode_rewards[:count], 0.65, 0.75) for count in range(1, 121)]
     assert values == sorted(values, reverse=True) and values[-1] < 1.0
 
 
-def test_a_p_value_is_what_the_page_says() -> None:
+def test_a_p_value_follows_the_formula_of_the_page() -> None:
     values, low, high, least, top = [0.1, 0.2, 0.7], 0.4, 0.5, -1.0, 1.0
     shares = [0.05, 0.2, 0.5, 0.9]
     stakes, greatest = [1.0] * (2 * len(shares)), 1.0
@@ -127,24 +132,24 @@ def test_a_p_value_is_what_the_page_says() -> None:
     assert mean_p_value(values, low, high) == pytest.approx(1 / greatest)
 
 
-def test_no_stake_is_ever_lost_altogether() -> None:
-    """The worst that can come, for long, and then what refutes the interval after all."""
+def test_no_bet_loses_its_whole_stake() -> None:
+    """Alternate the worst value for a bet with the value that refutes the interval."""
     for worst, then in ((1.0, -1.0), (-1.0, 1.0)):
         assert mean_p_value([worst, then] * 200, -0.1 + worst / 2, 0.1 + worst / 2) < 1e-6
 
 
 @pytest.mark.parametrize(("value", "low", "high"), [(0.9, 1.0, 1.0), (-0.9, -1.0, -1.0)])
-def test_what_no_value_exceeds_is_refuted_by_the_first_that_is_less(value: float, low: float, high: float) -> None:
+def test_an_extreme_mean_is_refuted_by_the_first_different_value(value: float, low: float, high: float) -> None:
     assert mean_p_value([low], low, high) == 1.0
     assert mean_p_value([low, value], low, high) < 1e-4
 
 
-def test_values_inside_of_the_interval_refute_nothing() -> None:
+def test_values_inside_the_interval_refute_nothing() -> None:
     assert mean_p_value([0.1, 0.2, 0.15] * 100, 0.1, 0.2) == 1.0
     assert mean_p_value([], 0.1, 0.2) == 1.0
 
 
 @pytest.mark.parametrize("ends", [(0.2, 0.1, -1.0, 1.0), (0.1, 0.2, 1.0, 1.0), (float("nan"), 0.2, -1.0, 1.0)])
-def test_what_is_no_interval_of_means(ends: tuple[float, float, float, float]) -> None:
+def test_invalid_intervals_of_means_are_rejected(ends: tuple[float, float, float, float]) -> None:
     with pytest.raises(ValueError, match="no mean"):
         mean_p_value([0.1], *ends)

@@ -1,4 +1,4 @@
-"""From files to the cases that a change of them concerns."""
+"""The selection of the cases that depend on changed files."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 
 def concerned(suite: Suite, *names: str) -> list[int]:
-    found = select(suite, names)
-    assert sorted([*found.cases, *found.left_out], key=suite.cases.index) == list(suite.cases)
-    return [suite.cases.index(case) for case in found.cases]
+    selection = select(suite, names)
+    assert sorted([*selection.cases, *selection.left_out], key=suite.cases.index) == list(suite.cases)
+    return [suite.cases.index(case) for case in selection.cases]
 
 
 @pytest.mark.parametrize(
@@ -82,14 +82,14 @@ def concerned(suite: Suite, *names: str) -> list[int]:
         ("vault.toml", BOTH),
         ("vault", BOTH),
         ("game/levels/assets/crates.toml", BOTH),
-        # The package has another one, which `branching` uses.
+        # The package has an asset of the same name, which `branching` uses.
         ("assets/crates", [0, 1, 3]),
         ("crates", [0, 1, 3]),
         ("game/levels/overlays/wide.toml", [1]),
         ("overlays/wide.toml", [1]),
         ("game/edits/wide.toml", [3]),
         ("wide", [1, 3]),
-        # The guard of the package is a kind of enemy of two levels; overlays of its own come beside it.
+        # `vault` and `branching` have an enemy of the kind `guard`; the overlay `guard_alert` has another name.
         ("guard", [0, 1, 3]),
         ("guard_alert.toml", [3]),
         ("navigation.toml", [2]),
@@ -115,19 +115,21 @@ def concerned(suite: Suite, *names: str) -> list[int]:
         ("", []),
     ],
 )
-def test_a_file_and_the_cases_that_depend_on_it(suite: Suite, name: str, cases: list[int]) -> None:
+def test_a_name_selects_the_cases_that_depend_on_it(suite: Suite, name: str, cases: list[int]) -> None:
     assert concerned(suite, *filter(None, [name])) == cases
     assert select(suite, [name]).unknown == (() if cases else (name,)) or not name
 
 
-def test_paths_from_elsewhere(suite: Suite, monkeypatch: pytest.MonkeyPatch) -> None:
-    there = read_suite(suite.path.absolute())
+def test_paths_are_relative_to_the_working_directory_or_the_checkout(
+    suite: Suite, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    absolute_suite = read_suite(suite.path.absolute())
     monkeypatch.chdir("game/levels")
-    assert concerned(there, "vault.toml") == concerned(there, "../levels/./vault.toml") == BOTH
-    assert concerned(there, "../edits/wide.toml") == [3]
-    assert concerned(there, str(there.path)) == ALL
-    # What `git diff --name-only` says begins at the top of the checkout.
-    assert concerned(there, "game/levels/assets/crates.toml") == BOTH
+    assert concerned(absolute_suite, "vault.toml") == concerned(absolute_suite, "../levels/./vault.toml") == BOTH
+    assert concerned(absolute_suite, "../edits/wide.toml") == [3]
+    assert concerned(absolute_suite, str(absolute_suite.path)) == ALL
+    # `git diff --name-only` lists paths relative to the top of the checkout.
+    assert concerned(absolute_suite, "game/levels/assets/crates.toml") == BOTH
 
 
 @pytest.mark.parametrize(
@@ -140,7 +142,7 @@ def test_paths_from_elsewhere(suite: Suite, monkeypatch: pytest.MonkeyPatch) -> 
     ],
 )
 @pytest.mark.skipif(os.name == "nt", reason="no such names there")
-def test_names_as_git_quotes_them(suite: Suite, name: str, quoted: str) -> None:
+def test_names_quoted_by_git_are_understood(suite: Suite, name: str, quoted: str) -> None:
     Path("game/levels/assets/crates.toml").rename(f"game/levels/assets/{name}.toml")
     text = (VAULT + ROOM).replace('"crates"', json.dumps(name, ensure_ascii=False))
     Path("game/levels/vault.toml").write_text(text, encoding="utf-8")
@@ -148,7 +150,7 @@ def test_names_as_git_quotes_them(suite: Suite, name: str, quoted: str) -> None:
     assert select(suite, [quoted[1:]]).unknown == (quoted[1:],), "quotes come in pairs"
 
 
-def test_what_git_tells_of_a_renamed_asset(suite: Suite) -> None:
+def test_the_output_of_git_for_a_renamed_asset_is_understood(suite: Suite) -> None:
     def git(*words: str) -> list[str]:
         names = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
         return subprocess.run(["git", *names, *words], check=True, capture_output=True, text=True).stdout.splitlines()
@@ -159,14 +161,14 @@ def test_what_git_tells_of_a_renamed_asset(suite: Suite) -> None:
     git("add", ".")
     git("commit", "--quiet", "--message", "All.")
     git("mv", "game/levels/assets/crates.toml", "game/levels/assets/kisten_für_alle.toml")
-    told = git("-c", "core.quotePath=off", "diff", "--no-renames", "--name-only", "HEAD")
-    assert told == ["game/levels/assets/crates.toml", "game/levels/assets/kisten_für_alle.toml"]
-    assert concerned(suite, *told) == BOTH
+    changed = git("-c", "core.quotePath=off", "diff", "--no-renames", "--name-only", "HEAD")
+    assert changed == ["game/levels/assets/crates.toml", "game/levels/assets/kisten_für_alle.toml"]
+    assert concerned(suite, *changed) == BOTH
     assert concerned(suite, *git("diff", "--no-renames", "--name-only", "HEAD")) == BOTH
 
 
-def test_the_project_file_says_where_imports_are(suite: Suite) -> None:
-    """One that is made nearer to a spec, too."""
+def test_specs_depend_on_their_project_file(suite: Suite) -> None:
+    """A project file that would be created closer to a spec counts, too."""
     assert concerned(suite, "game/tltl.toml") == [0, 1, 3]
     assert concerned(suite, "tltl.toml") == ALL
     assert concerned(suite, "game/levels/tltl.toml") == BOTH
@@ -182,25 +184,25 @@ def test_a_name_may_have_dots(suite: Suite) -> None:
     assert concerned(suite, "assets/crates.v2") == concerned(suite, "assets/crates.v2.toml") == BOTH
 
 
-def test_several_names_and_unknown_ones(suite: Suite) -> None:
-    found = select(suite, ["navigation.toml", "README.md", "src/game.py", "vault", "README.md"])
-    assert [suite.cases.index(case) for case in found.cases] == [0, 1, 2]
-    assert [case.name for case in found.left_out] == ["branching:v0+guard_alert+wide"]
-    assert found.unknown == ("README.md", "src/game.py")
+def test_several_names_and_unknown_names(suite: Suite) -> None:
+    selection = select(suite, ["navigation.toml", "README.md", "src/game.py", "vault", "README.md"])
+    assert [suite.cases.index(case) for case in selection.cases] == [0, 1, 2]
+    assert [case.name for case in selection.left_out] == ["branching:v0+guard_alert+wide"]
+    assert selection.unknown == ("README.md", "src/game.py")
 
 
-def test_a_file_that_is_a_link_counts_by_its_own_name_and_by_where_it_leads(suite: Suite) -> None:
+def test_a_link_counts_by_its_own_name_and_by_its_target(suite: Suite) -> None:
     asset = Path("game/levels/assets/crates.toml")
     Path("lib").mkdir()
     asset.rename("lib/hard_crates.toml")
     asset.symlink_to(Path("lib/hard_crates.toml").resolve())
-    here = Path.cwd().name
-    for name in (f"{here}/game/levels/assets/crates.toml", "lib/hard_crates.toml", "hard_crates"):
+    checkout = Path.cwd().name
+    for name in (f"{checkout}/game/levels/assets/crates.toml", "lib/hard_crates.toml", "hard_crates"):
         assert concerned(suite, name) == BOTH, name
 
 
-def test_what_would_take_the_place_of_another_file_counts(suite: Suite) -> None:
-    """An asset that is deleted beside a level, or made there, changes which one the level uses."""
+def test_a_file_that_would_take_precedence_counts(suite: Suite) -> None:
+    """Deleting or creating an asset beside a level changes which asset the level uses."""
     Path("game/levels/assets/crates.toml").unlink()
     assert concerned(suite, "game/levels/assets/crates.toml") == BOTH
     assert concerned(suite, "game/levels/assets/guard.toml") == BOTH
@@ -217,7 +219,7 @@ def test_what_would_take_the_place_of_another_file_counts(suite: Suite) -> None:
         "use = 3\nenemy = 'guard'\nvariants = 7\n",
     ],
 )
-def test_a_level_that_does_not_load_depends_on_what_can_be_read_of_it(suite: Suite, damage: str) -> None:
+def test_a_broken_level_depends_on_the_files_that_can_be_read_from_it(suite: Suite, damage: str) -> None:
     Path("game/levels/vault.toml").write_text(damage + VAULT + ROOM, encoding="utf-8")
     assert concerned(suite, "game/levels/vault.toml") == BOTH
     assert concerned(suite, "crates", "guard") == [*BOTH, 3]
@@ -226,19 +228,19 @@ def test_a_level_that_does_not_load_depends_on_what_can_be_read_of_it(suite: Sui
     assert concerned(suite, "game/levels/vault.toml") == BOTH
 
 
-def test_a_spec_that_cannot_be_read_still_counts(suite: Suite) -> None:
+def test_a_broken_spec_still_counts(suite: Suite) -> None:
     Path("game/plans.tltl").write_text("import own\nspec careful = ((\n", encoding="utf-8")
     assert concerned(suite, "own.tltl") == [3]
     Path("game/plans.tltl").write_bytes(b"\0")
     assert concerned(suite, "plans.tltl") == [3]
 
 
-def test_specs_that_import_each_other_are_no_circle_without_end(suite: Suite) -> None:
+def test_circular_imports_end(suite: Suite) -> None:
     Path("game/own.tltl").write_text('import "plans.tltl"\n', encoding="utf-8")
     assert concerned(suite, "own.tltl") == [3]
 
 
-def test_libraries_of_a_project(suite: Suite) -> None:
+def test_the_libraries_of_a_project_count(suite: Suite) -> None:
     Path("game/tltl.toml").write_text('libraries = ["shared"]\n', encoding="utf-8")
     Path("game/shared").mkdir()
     Path("game/own.tltl").rename("game/shared/own.tltl")
@@ -246,7 +248,7 @@ def test_libraries_of_a_project(suite: Suite) -> None:
     assert concerned(suite, "game/own.tltl") == [3], "it would be taken first"
 
 
-def test_all_that_a_shipped_level_was_read_from_is_known() -> None:
+def test_a_shipped_case_depends_on_all_files_of_its_level() -> None:
     suite = read_suite(SHIPPED)
     for case in suite.cases:
         known = dependencies(suite, case)

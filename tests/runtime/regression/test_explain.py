@@ -1,4 +1,4 @@
-"""What is told of episodes against those of the baseline."""
+"""The findings that explain episodes in comparison with the baseline."""
 
 from __future__ import annotations
 
@@ -39,43 +39,43 @@ def _fspa() -> Fspa:
     return fspa
 
 
-def to(fspa: Fspa, stages: int) -> list[int]:
-    """The states of an episode that passed so many stages."""
+def states_after(fspa: Fspa, stages: int) -> list[int]:
+    """The states of an episode that completed this many stages."""
     distances = [3 - stage for stage in range(stages + 1)]
-    return [next(each.id for each in fspa.states if each.distance == wanted) for wanted in distances]
+    return [next(state.id for state in fspa.states if state.distance == distance) for distance in distances]
 
 
-def good(fspa: Fspa, count: int = 25) -> list[Account]:
-    return [made(index, states=to(fspa, 3)) for index in range(count)]
+def successes(fspa: Fspa, count: int = 25) -> list[Account]:
+    return [made(index, states=states_after(fspa, 3)) for index in range(count)]
 
 
-def told(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> list[str]:
-    return [each.text for each in findings(level, fspa, now, before or good(fspa))]
+def sentences(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> list[str]:
+    return [finding.text for finding in findings(level, fspa, now, before or successes(fspa))]
 
 
-def test_all_as_before(level: Level, fspa: Fspa) -> None:
-    (only,) = findings(level, fspa, good(fspa), good(fspa))
+def test_equal_episodes_are_as_before(level: Level, fspa: Fspa) -> None:
+    (only,) = findings(level, fspa, successes(fspa), successes(fspa))
     assert only.text == "reaches `s1`, `s2`, `exit` as before"
     assert only.episodes == ()
 
 
 @pytest.mark.parametrize(("fewer", "said"), [(1, "`s2`, `exit` as before"), (2, "then reaches `exit` in 38 of 40")])
-def test_one_in_twenty_that_come_no_farther_is_not_as_before(level: Level, fspa: Fspa, fewer: int, said: str) -> None:
-    now = good(fspa, 40)
+def test_one_failure_in_twenty_is_not_as_before(level: Level, fspa: Fspa, fewer: int, said: str) -> None:
+    now = successes(fspa, 40)
     for index in range(fewer):
-        now[index] = made(index, False, states=to(fspa, 2))
-    assert said in told(level, fspa, now, good(fspa, 40))[0]
+        now[index] = made(index, False, states=states_after(fspa, 2))
+    assert said in sentences(level, fspa, now, successes(fspa, 40))[0]
 
 
-def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: Level, fspa: Fspa) -> None:
+def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Level, fspa: Fspa) -> None:
     near = Nearest("near(exit)", -0.2, NORTH, "exit", 3.2)
     died = {"cause": "killed", "by": ("guard",), "seen_by": ("guard",), "place": NORTH, "nearest": near}
-    now = good(fspa)
+    now = successes(fspa)
     for index in range(14):
-        now[index] = made(index, False, states=to(fspa, 2), **died)  # type: ignore[arg-type]
-    # The one that came nearest to the guard did so with its target farther away.
+        now[index] = made(index, False, states=states_after(fspa, 2), **died)  # type: ignore[arg-type]
+    # The episode with the best robustness was farther from its target.
     now[3] = replace(now[3], nearest=replace(near, robustness=-0.1, distance=6.0))
-    stage, end = findings(level, fspa, now, good(fspa))
+    stage, end = findings(level, fspa, now, successes(fspa))
     assert stage.text == (
         "reaches `s1`, `s2` as before, then reaches `exit` in 11 of 25 episodes; before: in 25 of 25 episodes"
     )
@@ -87,21 +87,23 @@ def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: 
     )
 
 
-def test_of_many_episodes_the_share_is_told_too(level: Level, fspa: Fspa) -> None:
-    now = good(fspa, 40)
+def test_a_share_is_added_for_many_episodes(level: Level, fspa: Fspa) -> None:
+    now = successes(fspa, 40)
     now[:14] = deaths(fspa, 14)[:14]
-    (stage, *_) = told(level, fspa, now, good(fspa, 40))
+    (stage, *_) = sentences(level, fspa, now, successes(fspa, 40))
     assert stage.endswith("then reaches `exit` in 26 of 40 episodes (65%); before: in 40 of 40 episodes")
 
 
-def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, fspa: Fspa) -> None:
-    now = good(fspa)
+def test_ends_are_grouped_by_kind_and_place_most_frequent_first(level: Level, fspa: Fspa) -> None:
+    now = successes(fspa)
     for index in range(5):
-        now[index] = made(index, False, states=to(fspa, 0), cause="violated", by=("seen",), seen_by=("guard",))
+        now[index] = made(
+            index, False, states=states_after(fspa, 0), cause="violated", by=("seen",), seen_by=("guard",)
+        )
     for index in range(5, 12):
-        now[index] = made(index, False, states=to(fspa, 1), place=(8.5, 8.0, 0.0))
-    texts = told(level, fspa, now)
-    assert [each.partition("; in state")[0] for each in texts[1:]] == [
+        now[index] = made(index, False, states=states_after(fspa, 1), place=(8.5, 8.0, 0.0))
+    texts = sentences(level, fspa, now)
+    assert [text.partition("; in state")[0] for text in texts[1:]] == [
         "runs out of time near `exit` in 7 of 25 episodes; before: in 0 of 25 episodes",
         "breaks the spec in the middle (`seen`), seen by `guard`, in 5 of 25 episodes; before: in 0 of 25 episodes",
     ]
@@ -109,9 +111,10 @@ def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, f
 
 def deaths(fspa: Fspa, count: int, **changed: object) -> list[Account]:
     died = [
-        made(index, False, states=to(fspa, 2), cause="killed", by=("guard",), place=NORTH) for index in range(count)
+        made(index, False, states=states_after(fspa, 2), cause="killed", by=("guard",), place=NORTH)
+        for index in range(count)
     ]
-    return [*(replace(each, **changed) for each in died), *good(fspa)[count:]]
+    return [*(replace(account, **changed) for account in died), *successes(fspa)[count:]]
 
 
 @pytest.mark.parametrize(
@@ -123,101 +126,105 @@ def deaths(fspa: Fspa, count: int, **changed: object) -> list[Account]:
         (1, ""),
     ],
 )
-def test_who_saw_the_player_is_said_of_most_of_the_episodes(level: Level, fspa: Fspa, saw: int, words: str) -> None:
+def test_an_enemy_that_saw_the_player_in_most_episodes_is_named(level: Level, fspa: Fspa, saw: int, words: str) -> None:
     now = deaths(fspa, 14, seen_by=("guard",))
-    now[:saw] = [replace(each, seen_by=("guard", "camera")) for each in now[:saw]]
-    assert told(level, fspa, now)[1].startswith(f"dies in the north hall by `guard`{words} in 14 of 25 episodes")
+    now[:saw] = [replace(account, seen_by=("guard", "camera")) for account in now[:saw]]
+    assert sentences(level, fspa, now)[1].startswith(f"dies in the north hall by `guard`{words} in 14 of 25 episodes")
 
 
-def test_a_death_names_what_broke(level: Level, fspa: Fspa) -> None:
+def test_a_death_names_the_broken_atom(level: Level, fspa: Fspa) -> None:
     now = deaths(fspa, 14, broke=("alive",), seen_by=("guard", "camera"))
-    end = told(level, fspa, now)[1]
+    end = sentences(level, fspa, now)[1]
     assert end.startswith("dies in the north hall by `guard`, breaking `alive`, seen by `camera`, in 14 of 25")
 
 
-def test_ends_of_two_stages_are_told_apart(level: Level, fspa: Fspa) -> None:
-    now = [made(index, False, states=to(fspa, 1 if index < 14 else 2)) for index in range(25)]
-    ends = [each for each in findings(level, fspa, now, good(fspa)) if "runs out of time" in each.text]
-    same = "runs out of time in the middle before it reaches"
-    assert [(each.text.partition(" of 25")[0], len(each.episodes)) for each in ends] == [
-        (f"{same} `s2` in 14", 14),
-        (f"{same} `exit` in 11", 11),
+def test_ends_in_two_stages_have_separate_sentences(level: Level, fspa: Fspa) -> None:
+    now = [made(index, False, states=states_after(fspa, 1 if index < 14 else 2)) for index in range(25)]
+    ends = [finding for finding in findings(level, fspa, now, successes(fspa)) if "runs out of time" in finding.text]
+    prefix = "runs out of time in the middle before it reaches"
+    assert [(finding.text.partition(" of 25")[0], len(finding.episodes)) for finding in ends] == [
+        (f"{prefix} `s2` in 14", 14),
+        (f"{prefix} `exit` in 11", 11),
     ]
 
 
 def timed_out(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Account:
-    return made(index, False, states=to(fspa, stage), place=place)
+    return made(index, False, states=states_after(fspa, stage), place=place)
 
 
 def died(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Account:
-    return made(index, False, states=to(fspa, stage), place=place, cause="killed", by=("guard",))
+    return made(index, False, states=states_after(fspa, stage), place=place, cause="killed", by=("guard",))
 
 
-def last(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> str:
-    return told(level, fspa, now, before or good(fspa, 40))[-1]
+def last_sentence(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> str:
+    return sentences(level, fspa, now, before or successes(fspa, 40))[-1]
 
 
-def test_ends_of_few_episodes_are_told_together(level: Level, fspa: Fspa) -> None:
-    now = good(fspa, 40)
+def test_rare_ends_share_one_sentence(level: Level, fspa: Fspa) -> None:
+    now = successes(fspa, 40)
     now[:3] = [timed_out(fspa, index, 1) for index in range(3)]
-    assert "; in state" in last(level, fspa, now)
+    assert "; in state" in last_sentence(level, fspa, now)
     now[0] = timed_out(fspa, 0, 0)
-    (_, rest) = findings(level, fspa, now, good(fspa, 40))
+    (_, rest) = findings(level, fspa, now, successes(fspa, 40))
     text = "runs out of time in the middle in 3 of 40 episodes; before: in 0 of 40 episodes"
     assert (rest.text, rest.episodes) == (text, (0, 1, 2))
     now[1] = timed_out(fspa, 1, 1, NORTH)
-    assert last(level, fspa, now) == text.replace("the middle", "different places")
+    assert last_sentence(level, fspa, now) == text.replace("the middle", "different places")
     now[2] = died(fspa, 2, 1)
-    assert last(level, fspa, now) == "fails in 3 of 40 episodes; before: in 0 of 40 episodes"
+    assert last_sentence(level, fspa, now) == "fails in 3 of 40 episodes; before: in 0 of 40 episodes"
 
 
-def test_ends_that_are_left_say_that_they_are_of_the_cause_of_others(level: Level, fspa: Fspa) -> None:
-    now = good(fspa, 40)
+def test_remaining_ends_with_a_known_cause_name_it(level: Level, fspa: Fspa) -> None:
+    now = successes(fspa, 40)
     now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
     now[4:7] = [died(fspa, index, 1, (2.0 + 4.0 * (index % 2), 5.0, 0.0)) for index in range(4, 7)]
-    # Those of the baseline count that died elsewhere, too, in the same stage.
-    before = good(fspa, 40)
+    # The baseline counts episodes that died elsewhere in the same stage.
+    before = successes(fspa, 40)
     before[:4] = [died(fspa, 0, 1), died(fspa, 1, 2), died(fspa, 2, 1, NORTH), timed_out(fspa, 3, 1)]
     text = "dies elsewhere by `guard` before it reaches `s2` in 3 of 40 episodes; before: in 1 of 40 episodes"
-    assert last(level, fspa, now, before) == text
+    assert last_sentence(level, fspa, now, before) == text
     now[4] = died(fspa, 4, 0)
-    assert last(level, fspa, now, before) == (
+    assert last_sentence(level, fspa, now, before) == (
         "dies elsewhere by `guard` in 3 of 40 episodes; before: in 2 of 40 episodes"
     )
 
 
-def test_a_cause_that_alone_is_left_is_told_be_it_of_one_episode(level: Level, fspa: Fspa) -> None:
-    now = good(fspa, 40)
+def test_a_single_remaining_cause_is_named(level: Level, fspa: Fspa) -> None:
+    now = successes(fspa, 40)
     now[0] = died(fspa, 0, 2, NORTH)
-    assert last(level, fspa, now) == (
+    assert last_sentence(level, fspa, now) == (
         "dies in the north hall by `guard` in 1 of 40 episodes; before: in 0 of 40 episodes"
     )
-    # Where others died there, too, it is the stage that differs.
+    # If other episodes died in the same place, the sentence names the stage.
     now[1:5] = [died(fspa, index, 1, NORTH) for index in range(1, 5)]
-    assert last(level, fspa, now).startswith("dies in the north hall by `guard` before it reaches `exit` in 1 of 40")
+    assert last_sentence(level, fspa, now).startswith(
+        "dies in the north hall by `guard` before it reaches `exit` in 1 of 40"
+    )
     now[5] = died(fspa, 5, 0, NORTH)
-    assert last(level, fspa, now).startswith("dies in the north hall by `guard` at other stages in 2 of 40")
+    assert last_sentence(level, fspa, now).startswith("dies in the north hall by `guard` at other stages in 2 of 40")
 
 
-def test_causes_that_are_few_are_told_as_one(level: Level, fspa: Fspa) -> None:
-    now = good(fspa, 40)
+def test_rare_causes_share_one_sentence(level: Level, fspa: Fspa) -> None:
+    now = successes(fspa, 40)
     now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
     now[4:6] = [died(fspa, 4, 1), timed_out(fspa, 5, 1)]
-    assert last(level, fspa, now, now) == "fails otherwise in 2 of 40 episodes; before: in 2 of 40 episodes"
+    assert last_sentence(level, fspa, now, now) == "fails otherwise in 2 of 40 episodes; before: in 2 of 40 episodes"
 
 
-def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
-    now = [made(index, index >= 10, states=to(fspa, 3 if index >= 10 else 2)) for index in range(25)]
-    texts = told(level, fspa, now, now)
+def test_ends_show_the_counts_of_the_baseline(level: Level, fspa: Fspa) -> None:
+    now = [made(index, index >= 10, states=states_after(fspa, 3 if index >= 10 else 2)) for index in range(25)]
+    texts = sentences(level, fspa, now, now)
     assert texts[0] == "reaches `s1`, `s2` as before"
     assert texts[1].startswith("runs out of time in the middle in 10 of 25 episodes; before: in 10 of 25 episodes; ")
 
 
-def test_the_state_in_which_they_failed_is_told_with_what_remained(level: Level, fspa: Fspa) -> None:
-    first, other = to(fspa, 1)
-    now = [made(index, False, states=to(fspa, 0), unmet=first if index < 14 else other) for index in range(25)]
-    # Of two stages there are two sentences, each of one state.
-    ends = [text for text in told(level, fspa, now) if "where this remained" in text]
+def test_the_state_of_failure_is_described_with_what_remained(level: Level, fspa: Fspa) -> None:
+    first, other = states_after(fspa, 1)
+    now = [
+        made(index, False, states=states_after(fspa, 0), unmet=first if index < 14 else other) for index in range(25)
+    ]
+    # Each stage has its own sentence with its own state.
+    ends = [text for text in sentences(level, fspa, now) if "where this remained" in text]
     assert [text.rpartition("; ")[2].partition(",")[0] for text in ends] == [f"in state {first}", f"in state {other}"]
     assert ends[0].endswith(f"where this remained: {fspa.states[first].label.english}")
 
@@ -226,64 +233,66 @@ ANY_ORDER = SPEC.replace("near(s1) then near(s2) then near(exit)", "near(s1)  re
 
 
 def after(fspa: Fspa, *reached: str) -> list[int]:
-    """The states of an episode that reaches these entities."""
+    """The states of an episode that reaches these entities in this order."""
     states = [0]
     for name in reached:
-        row = [each.name == f"near({name})" or each.name == "alive" for each in fspa.atoms]
+        letter = [atom_record.name == f"near({name})" or atom_record.name == "alive" for atom_record in fspa.atoms]
         states.append(
             next(
                 edge.target
                 for edge in fspa.edges_from(states[-1])
-                if any(all(row[atom] == holds for atom, holds in prime) for prime in edge.guard.primes)
+                if any(all(letter[atom] == holds for atom, holds in prime) for prime in edge.guard.primes)
             )
         )
     return states
 
 
-def test_stages_in_any_order_are_told_by_what_was_done(level: Level) -> None:
+def test_stages_in_any_order_are_described_by_what_was_reached(level: Level) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("s1", "s2")]
     before = [made(index, states=after(fspa, *ways[0])) for index in range(25)]
     now = [made(index, index >= 15, states=after(fspa, *ways[index < 15])) for index in range(25)]
-    stage = told(level, fspa, now, before)[0]
+    stage = sentences(level, fspa, now, before)[0]
     assert stage.endswith("as before, then reaches `exit` in 10 of 25 episodes; before: in 25 of 25 episodes")
 
 
-def test_stages_that_differ_from_episode_to_episode_are_told_by_their_distance(level: Level) -> None:
+def test_stages_that_differ_between_episodes_are_described_by_distance(level: Level) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("exit", "s1", "s2")]
     before = [made(index, states=after(fspa, *ways[index % 2])) for index in range(25)]
     now = [
         made(index, index >= 15, states=after(fspa, *ways[index % 2][: 2 if index < 15 else 3])) for index in range(25)
     ]
-    stage = told(level, fspa, now, before)[0]
+    stage = sentences(level, fspa, now, before)[0]
     assert stage.endswith(
         ", then comes within 1 transition of acceptance as before, "
         "then meets the spec in 10 of 25 episodes; before: in 25 of 25 episodes"
     )
 
 
-def test_what_is_true_of_less_than_half_is_told_as_most_often(level: Level, fspa: Fspa) -> None:
+def test_a_limit_of_less_than_half_is_called_most_often(level: Level, fspa: Fspa) -> None:
     near = [
         Nearest("alive", -0.5, MIDDLE),
         *(Nearest(f"near({name})", -0.4, MIDDLE, name, 2.5) for name in ("s1", "s2")),
     ]
-    now = [made(index, False, states=to(fspa, 0), nearest=near[index % 3]) for index in range(25)]
-    assert "; most often the limit is `alive`, -0.50 at best; in state 0, " in told(level, fspa, now)[1]
+    now = [made(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
+    assert "; most often the limit is `alive`, -0.50 at best; in state 0, " in sentences(level, fspa, now)[1]
 
 
-def test_where_no_distance_is_the_limit_the_atom_is_named(level: Level, fspa: Fspa) -> None:
+def test_a_limit_that_is_no_distance_names_the_atom(level: Level, fspa: Fspa) -> None:
     near = [Nearest("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
-    now = [made(index, False, states=to(fspa, 0), nearest=near[index % 3]) for index in range(25)]
-    assert told(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
+    now = [made(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
+    assert sentences(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
 
 
-def test_what_limited_most_episodes_is_told_and_not_what_limited_the_best_one(level: Level, fspa: Fspa) -> None:
-    one, most = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
-    now = [made(index, False, states=to(fspa, 0), nearest=one if index == 7 else most) for index in range(25)]
+def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
+    best, most = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
+    now = [
+        made(index, False, states=states_after(fspa, 0), nearest=best if index == 7 else most) for index in range(25)
+    ]
     assert (
         "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
-        in told(level, fspa, now)[1]
+        in sentences(level, fspa, now)[1]
     )
 
 
@@ -295,52 +304,54 @@ def test_what_limited_most_episodes_is_told_and_not_what_limited_the_best_one(le
         (1.0, "1.00 m (`near(s1)` is the limit, less would do); "),
     ],
 )
-def test_near_misses_are_told_with_the_places_that_they_take(level: Level, fspa: Fspa, came: float, said: str) -> None:
+def test_near_misses_have_enough_decimals(level: Level, fspa: Fspa, came: float, said: str) -> None:
     near = Nearest("near(s1)", -0.01, MIDDLE, "s1", came)
-    now = [made(index, False, states=to(fspa, 0), nearest=near) for index in range(25)]
-    assert f"; closest approach to `s1`: {said}" in told(level, fspa, now)[1]
+    now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
+    assert f"; closest approach to `s1`: {said}" in sentences(level, fspa, now)[1]
 
 
-def test_what_is_near_enough_by_a_param_of_its_own_is_not_told(level: Level) -> None:
+def test_a_distance_that_depends_on_a_param_has_no_threshold(level: Level) -> None:
     (fspa,) = compile_text(
         SPEC.replace("near(s1)", "near(s1, close=arm)").replace("spec", "param arm: length = 2 m\nspec")
     )
     near = Nearest("near(s1, close=arm)", -0.4, MIDDLE, "s1", 2.5)
-    now = [made(index, False, states=to(fspa, 0), nearest=near) for index in range(25)]
+    now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert (
         "; closest approach to `s1`: 2.5 m (`near(s1, close=arm)` is the limit); "
-        in told(level, fspa, now, good(fspa))[1]
+        in sentences(level, fspa, now, successes(fspa))[1]
     )
 
 
-def test_who_was_there_when_the_spec_broke_lacked_nothing_else(level: Level, fspa: Fspa) -> None:
+def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fspa: Fspa) -> None:
     not_yet = Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
-    there = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
-    now = [made(index, False, states=to(fspa, 0), arrived=index < 14, **there) for index in range(25)]  # type: ignore[arg-type]
-    end = told(level, fspa, now)[1]
+    account_fields = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
+    now = [
+        made(index, False, states=states_after(fspa, 0), arrived=index < 14, **account_fields) for index in range(25)
+    ]  # type: ignore[arg-type]
+    end = sentences(level, fspa, now)[1]
     assert "; 14 of them were at `s1` when it broke; in state 0, where this remained: " in end
-    few = [replace(each, arrived=each.index < 3) for each in now]
-    others = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
-    assert f"; 3 of them were at `s1` when it broke; {others}" in told(level, fspa, few)[1]
+    few = [replace(account, arrived=account.index < 3) for account in now]
+    approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
+    assert f"; 3 of them were at `s1` when it broke; {approach}" in sentences(level, fspa, few)[1]
 
 
-def test_an_atom_that_should_not_hold_is_told_as_such(level: Level, fspa: Fspa) -> None:
+def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fspa) -> None:
     near = Nearest("visible", -1.0, MIDDLE, wanted=False)
-    now = [made(index, False, states=to(fspa, 0), nearest=near) for index in range(25)]
-    assert "; the limit is that `visible` holds; " in told(level, fspa, now)[1]
-    open_ = [replace(each, nearest=Nearest("open", -1.0, MIDDLE)) for each in now]
-    assert "; the limit is `open`; " in told(level, fspa, open_)[1]
+    now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
+    assert "; the limit is that `visible` holds; " in sentences(level, fspa, now)[1]
+    open_ = [replace(account, nearest=Nearest("open", -1.0, MIDDLE)) for account in now]
+    assert "; the limit is `open`; " in sentences(level, fspa, open_)[1]
 
 
-def test_killers_are_the_same_in_any_order(level: Level, fspa: Fspa) -> None:
+def test_the_order_of_killers_does_not_count(level: Level, fspa: Fspa) -> None:
     now = deaths(fspa, 14)
-    now[:14] = [replace(each, by=("b", "a") if each.index % 2 else ("a", "b")) for each in now[:14]]
-    assert told(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
+    now[:14] = [replace(account, by=("b", "a") if account.index % 2 else ("a", "b")) for account in now[:14]]
+    assert sentences(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
 
 
-def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:
-    now = [made(index, False, states=to(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
-    assert "runs out of time in the east, at `outer_east`, in 25 of 25" in told(level, fspa, now)[1]
+def test_an_obstacle_is_named(level: Level, fspa: Fspa) -> None:
+    now = [made(index, False, states=states_after(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
+    assert "runs out of time in the east, at `outer_east`, in 25 of 25" in sentences(level, fspa, now)[1]
 
 
 @pytest.mark.parametrize(
@@ -351,22 +362,24 @@ def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:
         (110, None),
     ],
 )
-def test_how_long_successes_take(level: Level, fspa: Fspa, steps: int, text: str | None) -> None:
-    now = [replace(each, steps=steps) for each in good(fspa)]
-    assert told(level, fspa, now)[1:] == ([text] if text else [])
+def test_longer_and_shorter_successes_are_described(level: Level, fspa: Fspa, steps: int, text: str | None) -> None:
+    now = [replace(account, steps=steps) for account in successes(fspa)]
+    assert sentences(level, fspa, now)[1:] == ([text] if text else [])
 
 
-def test_another_way(level: Level, fspa: Fspa) -> None:
+def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None:
     through = ((2.0, 2.0, 0, 0.0), (5.0, 9.0, 1, 2.0), (8.0, 8.0, 2, 4.0))
-    now = [replace(each, way=through) if each.index < 20 else each for each in good(fspa)]
+    now = [replace(account, way=through) if account.index < 20 else account for account in successes(fspa)]
     text = "80% of the successful episodes pass through the north hall; before: 0%"
-    assert told(level, fspa, now)[1:] == [text]
-    assert told(level, fspa, good(fspa), now)[1:] == [text.replace("80%", "0%").replace("before: 0%", "before: 80%")]
+    assert sentences(level, fspa, now)[1:] == [text]
+    assert sentences(level, fspa, successes(fspa), now)[1:] == [
+        text.replace("80%", "0%").replace("before: 0%", "before: 80%")
+    ]
 
 
-def test_every_episode_that_is_named_is_there(level: Level, fspa: Fspa) -> None:
-    now = [made(index, index % 3 > 0, states=to(fspa, index % 4)) for index in range(30)]
-    known = {each.index for each in now}
-    for finding in findings(level, fspa, now, good(fspa)):
+def test_findings_refer_to_existing_episodes(level: Level, fspa: Fspa) -> None:
+    now = [made(index, index % 3 > 0, states=states_after(fspa, index % 4)) for index in range(30)]
+    known = {account.index for account in now}
+    for finding in findings(level, fspa, now, successes(fspa)):
         assert set(finding.episodes) <= known
         assert list(finding.episodes) == sorted(set(finding.episodes))

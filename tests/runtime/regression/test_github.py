@@ -1,4 +1,4 @@
-"""Findings as workflow commands of GitHub Actions."""
+"""Verdicts as workflow commands of GitHub Actions."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 def annotated(suite: Suite, report: CaseReport, root: str = "..") -> tuple[str, ...]:
     (line,) = findings_as_commands(suite, [report], Path(root))
-    found = COMMAND.fullmatch(line)
-    assert found, line
-    return tuple(map(unquote, found.groups()))
+    match = COMMAND.fullmatch(line)
+    assert match, line
+    return tuple(map(unquote, match.groups()))
 
 
-def test_each_finding_is_a_command(suite: Suite) -> None:
+def test_each_fail_and_review_is_a_command(suite: Suite) -> None:
     report = CaseReport(NAME, "room", "v0", "fail", ("dies: 100% of\n  them", "more"))
     assert annotated(suite, report) == (
         "error",
@@ -50,7 +50,7 @@ def test_each_finding_is_a_command(suite: Suite) -> None:
     assert list(findings_as_commands(suite, [replace(report, verdict="pass")], Path())) == []
 
 
-def test_the_file_is_what_has_changed(suite: Suite) -> None:
+def test_a_command_names_the_changed_file(suite: Suite) -> None:
     before = reference().played
     report = CaseReport(NAME, "room", "v0", "fail", ("why",), played=PLAYED, reference=before)
     assert annotated(suite, report)[1] == "game/game.toml", "nothing has changed"
@@ -60,7 +60,7 @@ def test_the_file_is_what_has_changed(suite: Suite) -> None:
     assert annotated(suite, replace(report, played=both))[1] == "game/levels/assets/guard.toml"
 
 
-def test_a_file_that_cannot_be_looked_at_is_not_shown(suite: Suite) -> None:
+def test_an_unreadable_file_is_not_named(suite: Suite) -> None:
     name = f"assets/{'a' * 300}.toml"
     level = Path("levels/room.toml")
     level.write_text(ROOM.replace('kind = "guard"', f'kind = "{"a" * 300}"'), encoding="utf-8")
@@ -69,14 +69,14 @@ def test_a_file_that_cannot_be_looked_at_is_not_shown(suite: Suite) -> None:
     assert annotated(suite, report)[1] == "game/game.toml"
 
 
-def test_paths_begin_at_the_top_of_the_checkout(suite: Suite) -> None:
+def test_paths_are_relative_to_the_checkout(suite: Suite) -> None:
     report = CaseReport(NAME, "room", "v0", "fail", ("why",))
     assert annotated(suite, report, ".")[1] == "levels/room.toml"
-    # A path outside cannot be shown beside anything, and is told as it is.
+    # A path outside the checkout stays as it is.
     assert annotated(suite, report, "levels/assets")[1] == "levels/room.toml"
 
 
-def test_of_a_level_that_does_not_load_the_line_is_named(suite: Suite) -> None:
+def test_a_level_that_does_not_load_has_a_line_number(suite: Suite) -> None:
     report = CaseReport(NAME, "room", "v0", "fail", ("why",), fault_at=("levels/assets/guard.toml", 6))
     (line,) = findings_as_commands(suite, [report], Path(".."))
     assert line.startswith("::error file=game/levels/assets/guard.toml,line=6,title=")

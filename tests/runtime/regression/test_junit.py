@@ -1,4 +1,4 @@
-"""JUnit XML, by the rules of the schema junit-10 and as its readers count."""
+"""The JUnit XML report, checked against the rules of the schema junit-10."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tltlc.core.record import replace
 TESTSUITE = {"name", "tests", "failures", "errors", "skipped"}
 TESTSUITE |= {"group", "time", "timestamp", "hostname", "id", "package", "file", "log", "url"}
 RULES: dict[str, tuple[set[str], set[str], set[str]]] = {
-    # attributes, those that must be there, children
+    # attributes, required attributes, children
     "testsuites": ({"name", "time", "tests", "failures", "errors"}, set(), {"testsuite"}),
     "testsuite": (
         TESTSUITE,
@@ -39,7 +39,7 @@ RULES: dict[str, tuple[set[str], set[str], set[str]]] = {
     "system-out": (set(), set(), set()),
     "system-err": (set(), set(), set()),
 }
-"""What the schema says of the elements: its own words are https://github.com/jenkinsci/xunit-plugin's."""
+"""The rules of the schema, from https://github.com/jenkinsci/xunit-plugin."""
 TEXTS = {"failure", "error", "skipped", "system-out", "system-err"}
 
 GOOD = CaseReport("room:v0", "room", "v0", "pass", ("met in 40 of 40 episodes",), figures=figures_of(several(40)))
@@ -50,7 +50,7 @@ SUITE: Suite = suite(case("room:v0"), case("room:v1"), case("room:v2"), path=Pat
 
 
 def check(element: ET.Element) -> None:
-    """Hold an element against the schema."""
+    """Check an element and its children against the schema."""
     known, needed, children = RULES[element.tag]
     assert needed <= set(element.attrib) <= known, element.tag
     assert {child.tag for child in element} <= children
@@ -69,11 +69,11 @@ def read(reports: tuple[CaseReport, ...]) -> ET.Element:
     return root
 
 
-def test_a_case_is_a_testcase() -> None:
+def test_each_case_is_a_testcase() -> None:
     (tests,) = read((GOOD, DOUBTED, BAD))
     assert tests.attrib == {"name": "game", "tests": "3", "failures": "1", "errors": "1", "skipped": "0"}
     good, doubted, bad = tests.iter("testcase")
-    assert [each.attrib for each in (good, doubted)] == [
+    assert [testcase.attrib for testcase in (good, doubted)] == [
         {"name": "room:v0", "classname": "game"},
         {"name": "room:v1", "classname": "game"},
     ]
@@ -87,8 +87,8 @@ def test_a_case_is_a_testcase() -> None:
 
 def test_figures_are_properties() -> None:
     root = read((GOOD, BAD))
-    found = {each.get("name"): each.get("value") for each in root.iter("property")}
-    assert found == {
+    properties = {element.get("name"): element.get("value") for element in root.iter("property")}
+    assert properties == {
         "seed": "7",
         "error": "0.05",
         "room:v0.verdict": "pass",
@@ -104,7 +104,7 @@ def test_figures_are_properties() -> None:
     }
 
 
-def test_what_a_training_came_to() -> None:
+def test_the_outcome_of_a_retraining_is_included() -> None:
     trained = Trained("met", 4096, 60.0, 200_000, True, 97)
     retrained = Retrained(
         "learned", "feasible: <after> …", trained, figures_of(several(3, 1)), (0.2, 0.9), None, "p", None
@@ -112,9 +112,9 @@ def test_what_a_training_came_to() -> None:
     root = read((replace(BAD, retrained=retrained), GOOD))
     bad, _ = root.iter("testcase")
     assert [(child.tag, child.text) for child in bad][1:] == [("system-out", "feasible: <after> …")]
-    found = {each.get("name"): each.get("value") for each in root.iter("property")}
-    assert (found["room:v2.retrained"], found["room:v2.retrained_pass_rate"]) == ("learned", "0.7500")
-    assert "room:v0.retrained" not in found
+    properties = {element.get("name"): element.get("value") for element in root.iter("property")}
+    assert (properties["room:v2.retrained"], properties["room:v2.retrained_pass_rate"]) == ("learned", "0.7500")
+    assert "room:v0.retrained" not in properties
 
 
 def test_cases_that_were_not_judged_are_errors() -> None:
@@ -122,19 +122,19 @@ def test_cases_that_were_not_judged_are_errors() -> None:
     check(root)
     (tests,) = root
     assert (tests.get("tests"), tests.get("failures"), tests.get("errors")) == ("3", "0", "2")
-    assert [each.get("name") for each in tests.iter("testcase") if each.find("error") is not None] == [
+    assert [testcase.get("name") for testcase in tests.iter("testcase") if testcase.find("error") is not None] == [
         "room:v1",
         "room:v2",
     ]
 
 
-def test_no_cases() -> None:
+def test_a_report_without_cases_is_valid() -> None:
     (tests,) = read(())
     assert (tests.get("tests"), tests.get("failures"), tests.get("errors")) == ("0", "0", "0")
 
 
 @pytest.mark.parametrize("odd", ["\0", "\x1b[31m", "\x0b", "\ufffe", "]]>", "<![CDATA[", "&#0;", "\U0001f512", "\r"])
-def test_any_text_is_xml(odd: str) -> None:
+def test_any_text_gives_valid_xml(odd: str) -> None:
     text = f"a{odd}b"
     report = replace(BAD, name=f"room{odd}", causes=(text, "more"))
     root = read((report,))
@@ -143,7 +143,7 @@ def test_any_text_is_xml(odd: str) -> None:
     assert (failure.text or "").replace("\n", "\r").startswith(shown.replace("\n", "\r"))
 
 
-def test_a_case_without_reasons() -> None:
+def test_a_case_without_reasons_is_valid() -> None:
     root = read((replace(GOOD, causes=()), replace(DOUBTED, causes=())))
     good, doubted = root.iter("testcase")
     assert not list(good)

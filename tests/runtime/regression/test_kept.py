@@ -1,4 +1,4 @@
-"""What is kept for the next run, and when that does not take it."""
+"""The cache of results between runs, and when it is not used."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ EPISODES = (Went(True, 1.0, 0.5), Went(False, 0.25, -0.75))
 KIND = tuple[Went, ...]
 
 
-def test_what_was_kept_is_read_again_as_long_as_nothing_has_changed(tmp_path: Path) -> None:
+def test_a_cached_result_is_used_while_its_inputs_are_unchanged(tmp_path: Path) -> None:
     path, inputs = tmp_path / "kept.json", inputs_hash(["level", 3])
     path.write_text(kept_text(inputs, EPISODES), encoding="utf-8")
     assert read_kept(KIND, path, inputs) == EPISODES
     assert read_kept(KIND, path, inputs_hash(["level", 4])) is None
 
 
-def test_a_pipe_keeps_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pipe_is_not_read_as_a_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pipes.put_beside(tmp_path / "kept.json")
     pipes.forbid(monkeypatch)
     assert read_kept(KIND, tmp_path / "kept.json", inputs_hash([1])) is None
 
 
-def test_the_code_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_change_of_the_code_changes_the_hash(monkeypatch: pytest.MonkeyPatch) -> None:
     before = inputs_hash([1])
     assert before == inputs_hash([1])
     monkeypatch.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "0" * 64)
@@ -50,7 +50,7 @@ def test_the_code_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
         None,
     ],
 )
-def test_what_cannot_be_taken_is_made_again(tmp_path: Path, text: str | None) -> None:
+def test_an_invalid_cache_file_is_ignored(tmp_path: Path, text: str | None) -> None:
     path = tmp_path / "kept.json"
     if text is not None:
         path.write_bytes(text.encode("latin-1"))

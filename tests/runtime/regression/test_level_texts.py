@@ -1,4 +1,4 @@
-"""The texts of the files of levels, beside a baseline: they are those that were played, and make the level again."""
+"""The texts of level files in a baseline: they are the played texts, and the level can be rebuilt from them."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 
 @pytest.mark.parametrize("name", level_names())
-def test_every_file_of_a_level_has_its_text(name: str) -> None:
+def test_every_file_of_a_level_has_a_text(name: str) -> None:
     for variant in variants(name):
         level = load_level(name, variant)
         texts = level_texts(name, variant, level.files)
         assert tuple((file, text_sha256(text)) for file, text in texts) == level.files
 
 
-def test_an_overlay_that_lies_elsewhere_has_its_text(tmp_path: Path) -> None:
+def test_an_overlay_in_another_folder_has_a_text(tmp_path: Path) -> None:
     overlay = tmp_path / "mine" / "slow.toml"
     overlay.parent.mkdir()
     overlay.write_bytes(b'doc = "Slow."\r\n[change.guard]\r\nwalk_speed = 0.5\r\n')
@@ -40,16 +40,16 @@ def test_an_overlay_that_lies_elsewhere_has_its_text(tmp_path: Path) -> None:
     assert "overlays/slow.toml" not in dict(level_texts("cover_and_hide", variant, files)), "it is another one"
 
 
-def test_a_baseline_keeps_the_texts_that_were_played(game: Path) -> None:
+def test_a_baseline_stores_the_texts_that_were_played(game: Path) -> None:
     (good, bad) = baseline_of(read_suite(Path("game.toml")))
     assert tuple((name, text_sha256(text)) for name, text in good.texts) == good.played.files
     assert good.texts == bad.texts and dict(good.texts)["room.toml"] == Path("room.toml").read_text(encoding="utf-8")
-    # Each is there once, a line of it in a line, so that a change of it can be read.
+    # Each text is stored once and line by line, so that a diff of the baseline is readable.
     lines = Path("game.baseline.json").read_text(encoding="utf-8").splitlines()
     assert lines.count('"at = [8.0, 8.0, 0.0]",') == 1
 
 
-def test_the_level_is_made_again_whatever_has_become_of_its_files(game: Path) -> None:
+def test_the_level_is_rebuilt_although_its_files_have_changed(game: Path) -> None:
     (good, _) = baseline_of(read_suite(Path("game.toml")))
     edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [2.0, 8.0, 0.0]")
     level = designed(good)
@@ -58,7 +58,7 @@ def test_the_level_is_made_again_whatever_has_become_of_its_files(game: Path) ->
 
 
 @pytest.mark.parametrize("reference", read_baseline(read_suite(SHIPPED).baseline), ids=lambda one: one.played.level)
-def test_the_shipped_levels_are_made_again(reference: Reference) -> None:
+def test_the_shipped_levels_are_rebuilt(reference: Reference) -> None:
     level = designed(reference)
     assert level is not None and level_hash(level) == reference.played.level_hash
 
@@ -75,23 +75,23 @@ def test_the_shipped_levels_are_made_again(reference: Reference) -> None:
         (("room.toml", "x = 1"), ("overlays/a.toml", "y = 1"), ("overlays/a.toml", "y = 2")),
     ],
 )
-def test_texts_that_make_no_level(files: tuple[tuple[str, str], ...]) -> None:
+def test_invalid_texts_give_no_level(files: tuple[tuple[str, str], ...]) -> None:
     played = replace(PLAYED, files=tuple((name, text_sha256(text)) for name, text in files))
     assert designed(Reference(played, tuple(several(1)), files)) is None
 
 
-def test_a_text_that_is_missing_makes_no_level(game: Path) -> None:
+def test_missing_texts_give_no_level(game: Path) -> None:
     (good, _) = baseline_of(read_suite(Path("game.toml")))
     assert designed(replace(good, texts=good.texts[:1])) is None
     assert designed(replace(good, texts=())) is None
 
 
-def test_texts_that_were_edited_are_refused(tmp_path: Path) -> None:
+def test_edited_texts_are_rejected(tmp_path: Path) -> None:
     path, text = tmp_path / "game.baseline.json", "one\ntwo\n"
     played = replace(PLAYED, files=(("room.toml", text_sha256(text)),))
-    known = (Reference(played, tuple(several(1)), (("room.toml", text),)),)
-    write_baseline(path, known)
-    assert read_baseline(path) == known
+    references = (Reference(played, tuple(several(1)), (("room.toml", text),)),)
+    write_baseline(path, references)
+    assert read_baseline(path) == references
     document = json.loads(path.read_text(encoding="utf-8"))
     document["texts"][text_sha256(text)][0] = "three"
     path.write_text(json.dumps(document), encoding="utf-8")
@@ -99,4 +99,4 @@ def test_texts_that_were_edited_are_refused(tmp_path: Path) -> None:
         read_baseline(path)
     document["texts"] = {}
     path.write_text(json.dumps(document), encoding="utf-8")
-    assert [each.texts for each in read_baseline(path)] == [()]
+    assert [reference.texts for reference in read_baseline(path)] == [()]

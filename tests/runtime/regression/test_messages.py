@@ -1,6 +1,6 @@
-"""Messages on suites and baselines that cannot be read: the cases in ``tests/golden/suite``.
+"""Messages about unreadable suites and baselines: the cases in ``tests/golden/suite``.
 
-``UPDATE_GOLDEN=1`` in the environment writes the expected texts anew: read what changed.
+``UPDATE_GOLDEN=1`` in the environment rewrites the expected texts; review the changes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ CASES = cases("suite")
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_message(
+def test_the_message_is_as_expected(
     case: Case,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -27,10 +27,10 @@ def test_message(
     case.unpack(tmp_path / "case")
     monkeypatch.chdir(tmp_path / "case")
     before = sorted(Path().rglob("*"))
-    found = tltlc(*case.arguments)
-    case.check(found.err)
-    assert (found.out, found.status) == ("", 2 if case.name.startswith(("TLT0720", "TLT0800")) else 1)
-    assert case.name[:7] in found.err
-    messages = re.split(r"^(?=error\[)", found.err, flags=re.MULTILINE)[1:]
+    result = tltlc(*case.arguments)
+    case.check(result.err)
+    assert (result.out, result.status) == ("", 2 if case.name.startswith(("TLT0720", "TLT0800")) else 1)
+    assert case.name[:7] in result.err
+    messages = re.split(r"^(?=error\[)", result.err, flags=re.MULTILINE)[1:]
     assert all("  help: " in message for message in messages)
     assert sorted(Path().rglob("*")) == before, "nothing was played, nothing is left"

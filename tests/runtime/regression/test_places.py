@@ -1,4 +1,4 @@
-"""What people call a place in a level."""
+"""Names of places in a level, and the obstacles at a place."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ size = [1.0, 1.0, 3.0]
 
 
 def ends(*feet: Point) -> list[tuple[Point, tuple[str, ...]]]:
-    """Where players are; no barrier is shut."""
-    return [(each, ()) for each in feet]
+    """The positions of players, without closed barriers."""
+    return [(position, ()) for position in feet]
 
 
 @pytest.fixture(name="level", scope="module")
@@ -53,48 +53,48 @@ def _level(tmp_path_factory: pytest.TempPathFactory) -> Level:
         ((9.4, 5.0, 0.0), "in the east"),
     ],
 )
-def test_a_region_then_what_is_near_then_the_part_of_the_map(level: Level, point: Point, name: str) -> None:
+def test_a_place_is_named_by_region_then_entity_then_direction(level: Level, point: Point, name: str) -> None:
     assert place_name(level, point) == name
 
 
-def test_what_is_near(level: Level) -> None:
+def test_the_nearest_entity_is_within_two_and_a_half_metres(level: Level) -> None:
     assert nearest_entity(level, (5.0, 4.4, 0.0)) == "lever"
     assert nearest_entity(level, (5.0, 4.6, 0.0)) is None
 
 
-def test_what_is_in_the_way(level: Level) -> None:
+def test_an_obstacle_of_most_players_is_in_the_way(level: Level) -> None:
     at_pillar = [(6.2, 4.8 + row / 10, 0.0) for row in range(5)]
     assert in_the_way(level, ends(*at_pillar)) == ["pillar"]
     assert in_the_way(level, ends((4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
-    # Half of them are elsewhere: nothing stopped most.
+    # Half of the players are elsewhere, so no obstacle stopped most of them.
     assert in_the_way(level, ends(*at_pillar[:2], (4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
     assert in_the_way(level, []) == []
 
 
-def test_in_a_corner_all_that_is_touched_is_named_the_most_frequent_first(level: Level) -> None:
+def test_in_a_corner_all_touched_walls_are_named_most_frequent_first(level: Level) -> None:
     corner, wall = (9.6, 0.4, 0.0), (9.6, 4.0, 0.0)
     assert in_the_way(level, ends(corner, corner, wall)) == ["outer_east", "outer_south"]
     assert in_the_way(level, ends(corner, wall, wall)) == ["outer_east"]
 
 
-def test_what_one_stands_on_is_not_in_the_way(level: Level) -> None:
+def test_a_solid_below_the_feet_is_not_in_the_way(level: Level) -> None:
     assert in_the_way(level, ends((7.0, 5.0, 3.0))) == []
 
 
-def test_a_gate_is_in_the_way_while_it_is_shut() -> None:
+def test_a_gate_is_in_the_way_while_it_is_closed() -> None:
     level = load_level("navigation")
-    (gate, *_) = (each for each in level.barriers if each.kind == "solid")
+    (gate, *_) = (barrier for barrier in level.barriers if barrier.kind == "solid")
     at_gate = gate.box.low[0] - 0.4, (gate.box.low[1] + gate.box.high[1]) / 2, gate.box.low[2]
     assert gate.name in in_the_way(level, [(at_gate, (gate.name,))])
     assert gate.name not in in_the_way(level, [(at_gate, ())])
 
 
-def test_what_stands_behind_another_is_not_in_the_way(level: Level) -> None:
-    pillar = next(each for each in level.solids if each.name == "pillar")
+def test_a_solid_behind_another_one_is_not_in_the_way(level: Level) -> None:
+    pillar = next(solid for solid in level.solids if solid.name == "pillar")
     low = (pillar.box.high[0], pillar.box.low[1], 0.0)
     behind = replace(pillar, name="behind", box=Box(low, (low[0] + 1.0, pillar.box.high[1], 3.0)))
     thin = replace(pillar, box=Box((low[0] - 0.2, low[1], 0.0), pillar.box.high))
-    both = replace(level, solids=(*(each for each in level.solids if each is not pillar), thin, behind))
+    both = replace(level, solids=(*(solid for solid in level.solids if solid is not pillar), thin, behind))
     before = (low[0] - 0.5, 5.0, 0.0)
     assert in_the_way(both, ends(before)) == ["pillar"]
     assert in_the_way(replace(both, solids=both.solids[-1:]), ends(before)) == ["behind"]

@@ -1,4 +1,4 @@
-"""docs/regression.md says what is so: every key, every field, every number."""
+"""docs/regression.md matches the code: every key, every field, every number."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ PAGE = (DOCS / "regression.md").read_text(encoding="utf-8")
 
 
 def rows(heading: str) -> dict[str, str]:
-    """The rows of the table whose first column is called so: the names in the first cell, and the rest."""
+    """The rows of the table whose first column has this heading, by the names in the first cell."""
     table = re.search(rf"^\| {heading} \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, re.MULTILINE)
     assert table, heading
-    found = {}
+    cells = {}
     for line in table[1].splitlines():
         first, rest = line.strip("| ").split(" | ", 1)
-        found |= dict.fromkeys(re.findall(r"`\[*([\w.]+)\]*`", first), rest)
-    return found
+        cells |= dict.fromkeys(re.findall(r"`\[*([\w.]+)\]*`", first), rest)
+    return cells
 
 
-def test_every_key_of_a_suite_is_told_and_no_other() -> None:
+def test_the_page_lists_exactly_the_keys_of_a_suite() -> None:
     source = Path(suite_module.__file__).read_text(encoding="utf-8")
     read = set(re.findall(r"(?:table|found)\.(?:number|whole|text|names|tables?)\(\"(\w+)\"", source))
     read |= set(re.findall(r"\b_text\(table, \"(\w+)\"", source))
     read |= set(Thresholds.__match_args__)
-    told = {*rows("key"), *rows("key of a case"), *rows("key of thresholds")}
-    assert {name.rpartition(".")[2] for name in told} == read
+    documented = {*rows("key"), *rows("key of a case"), *rows("key of thresholds")}
+    assert {name.rpartition(".")[2] for name in documented} == read
 
 
-def test_the_defaults_are_those() -> None:
-    told = rows("key of thresholds")
-    assert {name: float(rest.rpartition("|")[2]) for name, rest in told.items()} == {
+def test_the_page_has_the_defaults() -> None:
+    documented = rows("key of thresholds")
+    assert {name: float(rest.rpartition("|")[2]) for name, rest in documented.items()} == {
         name: getattr(Thresholds(), name) for name in Thresholds.__match_args__
     }
     assert rows("key")["episodes"].endswith(f"| {MOST_EPISODES}")
@@ -56,7 +56,7 @@ def test_the_defaults_are_those() -> None:
     assert f"from {LEAST_EPISODES} episodes on, and {MOST_EPISODES} at the most" in " ".join(PAGE.split())
 
 
-def test_the_suites_of_the_page_are_suites(tmp_path: Path) -> None:
+def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
     files = [
         "vault.toml",
         "cover_and_hide.toml",
@@ -75,59 +75,59 @@ def test_the_suites_of_the_page_are_suites(tmp_path: Path) -> None:
         assert len(read_suite(tmp_path / "game.toml").cases) == 2
 
 
-def test_every_field_of_the_report_is_told_and_no_other() -> None:
+def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
     report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(several(2)), accounts=tuple(several(1)))
-    said = document(suite(case("a")), [report], complete=True)
-    assert set(rows("field")) - {"tltl"} == set(said)
-    (found,) = said["cases"]
-    assert set(rows("field of a case")) == set(found)
+    report_document = document(suite(case("a")), [report], complete=True)
+    assert set(rows("field")) - {"tltl"} == set(report_document)
+    (case_document,) = report_document["cases"]
+    assert set(rows("field of a case")) == set(case_document)
     assert (FORMAT, VERSION) == ("tltl-regression", 1)
     assert f"| `{FORMAT}`, {VERSION} |" in PAGE
-    of_retrained = (*Retrained.__match_args__, *Trained.__match_args__, *Best.__match_args__)
-    for name in (*Figures.__match_args__, *found["accounts"][0], *of_retrained, *get_args(Outcome)):
+    retraining_fields = (*Retrained.__match_args__, *Trained.__match_args__, *Best.__match_args__)
+    for name in (*Figures.__match_args__, *case_document["accounts"][0], *retraining_fields, *get_args(Outcome)):
         assert f"`{name}`" in PAGE
-    json.dumps(said, allow_nan=False)
+    json.dumps(report_document, allow_nan=False)
 
 
-def test_the_properties_are_those() -> None:
+def test_the_page_lists_the_properties() -> None:
     trained = Trained("met", 1, 1.0, 0, True, None)
     new = Retrained("learned", "", trained, figures_of(several(2)), (0.0, 1.0), None, "retrained/a/policy", None)
     both = figures_of(several(2))
     report = CaseReport("CASE", "a", "v0", "pass", (), figures=both, baseline=both, retrained=new)
     names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
-    told = set(re.findall(r"`(CASE\.\w+)`", PAGE))
-    assert told <= names
-    assert {name for name in names if "baseline" not in name} <= told
+    documented = set(re.findall(r"`(CASE\.\w+)`", PAGE))
+    assert documented <= names
+    assert {name for name in names if "baseline" not in name} <= documented
 
 
-def test_the_numbers_of_episodes_are_those() -> None:
+def test_the_page_has_the_numbers_of_episodes() -> None:
     def least(cases: int) -> int:
         return next(count for count in range(25, 99) if rate_interval(count, 0, 0.05 / cases)[0] >= 0.85)
 
-    said = " ".join(PAGE.split())
-    assert f"after {least(1)} episodes, with nine after {least(9)}, with thirty after {least(30)}" in said
+    text = " ".join(PAGE.split())
+    assert f"after {least(1)} episodes, with nine after {least(9)}, with thirty after {least(30)}" in text
     most = max(failed for failed in range(99) if rate_interval(300 - failed, failed, 0.05 / 9)[0] >= 0.85)
-    assert f"in a suite of nine cases, {most} may fail" in said
+    assert f"in a suite of nine cases, {most} may fail" in text
 
 
-def test_the_bets_are_those() -> None:
+def test_the_page_has_the_bets() -> None:
     *first, last = (f"{share:g}" for share in confidence._SHARES)
     assert f"for c = {', '.join(first)} and {last}," in " ".join(PAGE.split())
     assert f"1/{confidence._POINTS} · Σ" in PAGE
 
 
-def test_every_option_is_told() -> None:
+def test_the_page_lists_every_option() -> None:
     from tltl_runtime.cli.regress import command
 
     options = {option for parameter in command.params for option in parameter.opts if option.startswith("--")}
-    told = set(re.findall(r"--[a-z]+", PAGE))
-    assert options - {"--workers", "--output", "--help"} <= told
+    documented = set(re.findall(r"--[a-z]+", PAGE))
+    assert options - {"--workers", "--output", "--help"} <= documented
     (text,) = (block.text for block in blocks(DOCS / "regression.md") if block.kind == "yaml")
     (run,) = re.findall(r"- run: (tltlc regress .*)", text)
-    # Those of git stand in brackets.
+    # The options of git are inside `$(…)`.
     assert set(re.findall(r"--[a-z]+", re.sub(r"\$\(.*?\)", "", run))) <= options
 
 
 @pytest.mark.parametrize("verdict", ["pass", "review", "fail"])
-def test_verdicts_are_told(verdict: str) -> None:
+def test_the_page_lists_the_verdicts(verdict: str) -> None:
     assert rows("verdict")[verdict]

@@ -1,4 +1,4 @@
-"""Trainings that begin with the policies of cases; they take seconds, and teach little."""
+"""Retraining the policies of cases; the trainings take seconds."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
 SHORT = 0.02
-"""The limit of a training in minutes: less than its search and first iteration take."""
+"""The limit of a training in minutes; its search and first iteration take longer."""
 
 
 def judged(suite: Suite) -> list[Done]:
@@ -57,7 +57,7 @@ def trained(run: Run, resume: bool = False) -> None:
 
 @pytest.fixture(name="made", scope="module")
 def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A game whose cases are judged, with a training for the hopeless one and one for what needs none."""
+    """A game with judged cases, a retraining of the hopeless case, and a retraining of a case that passes."""
     folder = tmp_path_factory.mktemp("made") / "game"
     with pytest.MonkeyPatch.context() as patch:
         with_few_environments(patch)
@@ -79,17 +79,17 @@ def _game(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
     return read_suite(Path("game.toml"))
 
 
-def test_what_needs_it(game: Suite) -> None:
+def test_only_cases_that_do_not_pass_are_retrained(game: Suite) -> None:
     easy, other, hopeless = judged(game)
     assert [done.to_train for done in (easy, other, hopeless)] == [None, None, hopeless.ready]
     assert replace(easy, report=replace(easy.report, verdict="review")).to_train
-    # Of a level that cannot be played nothing can be learned.
+    # A level that cannot be played cannot be trained on.
     assert replace(hopeless, ready=None).to_train is None
-    told = retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
-    assert replace(hopeless, report=replace(hopeless.report, retrained=told)).to_train is None
+    retrained_report = retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
+    assert replace(hopeless, report=replace(hopeless.report, retrained=retrained_report)).to_train is None
 
 
-def test_what_nobody_can_do_is_not_trained_for(game: Suite) -> None:
+def test_a_case_with_an_unreachable_goal_is_not_retrained(game: Suite) -> None:
     *_, hopeless = judged(game)
     assert hopeless.ready and hopeless.useless_training is None
     level = load_level("navigation", "v2")
@@ -100,7 +100,7 @@ def test_what_nobody_can_do_is_not_trained_for(game: Suite) -> None:
     assert replace(shut, report=replace(shut.report, verdict="pass")).useless_training is None
 
 
-def test_the_training_is_the_cases(game: Suite) -> None:
+def test_the_training_uses_the_setup_of_its_case(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
     policy = read_policy("soon.safetensors")
@@ -110,46 +110,46 @@ def test_the_training_is_the_cases(game: Suite) -> None:
     assert (run.settings.stop.minutes, run.settings.rollout.workers) == (SHORT, 1)
 
 
-def test_a_level_without_a_way(game: Suite) -> None:
+def test_a_level_without_a_way_is_reported_as_no_way(game: Suite) -> None:
     *_, hopeless = judged(game)
     counts: list[int] = []
 
-    def told(count: int, last: Account) -> None:
+    def count_failures(count: int, last: Account) -> None:
         counts.append(count)
         assert not last.success
 
-    found = retrained(game, hopeless, training_of(game, hopeless), 1, told)
-    assert (found.outcome, counts) == ("no_way", list(range(1, 26)))
-    assert found.trained.shortest is None and found.trained.end == "minutes" and not found.trained.complete
-    assert found.best and 0.0 <= found.best.progress < 1.0 and "exit" in found.best.remained
-    assert (found.policy, found.episode) == ("run/retrained/hopeless/policy.safetensors".partition("/")[2], None)
-    # Seeds are fresh: none of them is one by which the case was judged.
-    assert retrained(game, hopeless, training_of(game, hopeless), 1, told) == found
+    result = retrained(game, hopeless, training_of(game, hopeless), 1, count_failures)
+    assert (result.outcome, counts) == ("no_way", list(range(1, 26)))
+    assert result.trained.shortest is None and result.trained.end == "minutes" and not result.trained.complete
+    assert result.best and 0.0 <= result.best.progress < 1.0 and "exit" in result.best.remained
+    assert (result.policy, result.episode) == ("run/retrained/hopeless/policy.safetensors".partition("/")[2], None)
+    # The evaluation uses fresh seeds, none of the seeds by which the case was judged.
+    assert retrained(game, hopeless, training_of(game, hopeless), 1, count_failures) == result
     assert len(counts) == 25, "it is kept"
 
 
-def test_a_level_that_is_learned(game: Suite) -> None:
+def test_a_learned_level_is_reported_as_learned(game: Suite) -> None:
     easy, *_ = judged(game)
     run = training_of(game, easy, minutes=10.0)
-    found = retrained(game, easy, run, 1, lambda *_: None)
-    assert (found.outcome, found.trained.end) == ("learned", "met")
-    assert found.trained.shortest == 1 and found.best is None
-    assert found.figures.pass_rate == 1.0 and found.rate_interval[0] >= 0.85
+    result = retrained(game, easy, run, 1, lambda *_: None)
+    assert (result.outcome, result.trained.end) == ("learned", "met")
+    assert result.trained.shortest == 1 and result.best is None
+    assert result.figures.pass_rate == 1.0 and result.rate_interval[0] >= 0.85
     episode = read_episode(run.folder / EPISODE)
     assert episode.seed not in {account.seed for account in easy.report.accounts}
     (run.folder / EPISODE).unlink()
-    assert retrained(game, easy, run, 1, lambda *_: None) == found
+    assert retrained(game, easy, run, 1, lambda *_: None) == result
     assert (run.folder / EPISODE).is_file(), "what was removed is played again"
 
 
-def test_episodes_of_the_case_itself_show_that_there_is_a_way(game: Suite) -> None:
+def test_a_success_of_the_case_itself_shows_that_the_level_is_feasible(game: Suite) -> None:
     *_, hopeless = judged(game)
     accounts = (replace(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
     lucky = replace(hopeless, report=replace(hopeless.report, accounts=accounts))
     assert retrained(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
 
 
-def test_of_a_lost_worker_it_is_told_what_plays_its_episode_with_the_new_policy(
+def test_a_lost_worker_is_reported_with_the_command_that_plays_its_episode(
     game: Suite, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     *_, hopeless = judged(game)
@@ -162,11 +162,13 @@ def test_of_a_lost_worker_it_is_told_what_plays_its_episode_with_the_new_policy(
     monkeypatch.setattr("tltl_runtime.regression.retrain.retrain.episodes", deadly)
     with pytest.raises(TltlError, match="TLT0850") as error:
         retrained(game, hopeless, run, 2, lambda *_: None)
-    (found,) = error.value.diagnostics
-    assert f"tltlc evaluate {run.folder} --level room.toml:v0 --seed {game.seed + 1} --first " in (found.help or "")
+    (diagnostic,) = error.value.diagnostics
+    assert f"tltlc evaluate {run.folder} --level room.toml:v0 --seed {game.seed + 1} --first " in (
+        diagnostic.help or ""
+    )
 
 
-def test_what_is_kept_and_what_is_not(game: Suite) -> None:
+def test_a_training_is_kept_while_its_inputs_are_unchanged(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
     assert is_kept(run)
@@ -187,21 +189,21 @@ def test_what_is_kept_and_what_is_not(game: Suite) -> None:
     assert is_kept(run), "its search was not over"
 
 
-def test_of_a_training_that_is_over_its_policy_is_needed(game: Suite) -> None:
+def test_a_finished_training_without_a_policy_is_not_kept(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
     (run.folder / POLICY).unlink()
     assert not is_kept(run)
 
 
-def test_what_is_wrong_with_the_level_is_no_fault_of_what_is_kept(game: Suite) -> None:
+def test_an_error_in_the_level_is_not_blamed_on_the_training(game: Suite) -> None:
     *_, hopeless = judged(game)
     edit("room.toml", "[start]", "[strat]")
     with pytest.raises(TltlError, match="TLT0803: the level `room` lacks `start`"):
         is_kept(training_of(game, hopeless))
 
 
-def test_no_policy_lies_where_a_training_goes(game: Suite) -> None:
+def test_a_policy_in_the_folder_of_a_training_is_rejected(game: Suite) -> None:
     check_places(game, game.cases, Path("run"))
     own = replace(game.cases[1], policy=Path("run/retrained/hopeless") / POLICY)
     suite = replace(game, cases=(game.cases[0], own, game.cases[2]))
@@ -211,18 +213,18 @@ def test_no_policy_lies_where_a_training_goes(game: Suite) -> None:
     assert not (Path("run/retrained") / "room-v1").exists()
 
 
-def test_with_more_minutes_it_goes_on(game: Suite) -> None:
+def test_a_training_resumes_with_more_minutes(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
     before = retrained(game, hopeless, run, 1, lambda *_: None)
     longer = training_of(game, hopeless, minutes=before.trained.seconds / 60 + SHORT)
     trained(longer, resume=True)
     after = retrained(game, hopeless, longer, 1, lambda *_: None)
-    # Its search, which the first limit broke off, is made anew.
+    # The search that the first limit interrupted starts again.
     assert after.trained.searched > before.trained.searched and after.trained.seconds > before.trained.seconds
 
 
-def test_what_makes_room_leaves_other_files(game: Suite) -> None:
+def test_make_room_keeps_other_files(game: Suite) -> None:
     *_, hopeless = judged(game)
     folder = training_of(game, hopeless).folder
     (folder / "notes.txt").touch()
@@ -233,11 +235,11 @@ def test_what_makes_room_leaves_other_files(game: Suite) -> None:
     assert [path.name for path in folder.iterdir() if not path.name.startswith(".")] == ["notes.txt"]
 
 
-def test_what_was_learned_stays_beside_what_is_learned_now(game: Suite) -> None:
+def test_a_finished_training_is_moved_aside(game: Suite) -> None:
     folder = Path("run") / FOLDER / "hopeless"
     policy = (folder / POLICY).read_bytes()
     (folder / "notes.txt").touch()
-    # Where the training of another case goes is not free, even if there is none yet.
+    # The folder for the training of another case is reserved, even if it does not exist yet.
     suite = replace(game, cases=(*game.cases, replace(game.cases[2], name="hopeless-3")))
     folder.with_name("hopeless-2").mkdir()
     aside = make_room(suite, folder)
@@ -245,7 +247,7 @@ def test_what_was_learned_stays_beside_what_is_learned_now(game: Suite) -> None:
     assert (aside / POLICY).read_bytes() == policy and (aside / RECORD).exists() and (aside / "notes.txt").exists()
 
 
-def test_a_training_that_cannot_be_moved_stays(game: Suite, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_training_that_cannot_be_moved_stays_in_place(game: Suite, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> None:
         raise PermissionError(13, "no")
 
@@ -256,14 +258,14 @@ def test_a_training_that_cannot_be_moved_stays(game: Suite, monkeypatch: pytest.
     assert (folder / RECORD).exists()
 
 
-def test_a_policy_that_lies_where_its_training_goes(game: Suite) -> None:
+def test_a_policy_in_the_folder_of_its_own_training_is_rejected(game: Suite) -> None:
     text = Path("game.toml").read_text(encoding="utf-8")
     Path("game.toml").write_text(text.replace('"soon.safetensors"', '"run/retrained/hopeless"'), encoding="utf-8")
     suite = with_baseline(Path("game.toml"))
     with pytest.raises(TltlError) as caught:
         training_of(suite, judged(suite)[2])
-    (found,) = caught.value.diagnostics
-    assert (found.code, found.title) == (
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == (
         "TLT0942",
         "the policy of the case `hopeless` lies in `run/retrained/hopeless`, where its training goes",
     )

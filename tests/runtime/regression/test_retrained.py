@@ -1,4 +1,4 @@
-"""What is told of a training that began with a case's policy."""
+"""The sentence about a retraining that started from the policy of a case."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TRAINED = Trained(end="minutes", steps=212_992, seconds=303.0, searched=200_000,
 BEST = Best(0.5, "reach near(exit)")
 
 
-def told(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
+def sentence_of(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
     best = BEST if failed else None
     figures = figures_of(several(passed, failed))
     interval = rate_interval(passed, failed, 0.05)
@@ -35,38 +35,42 @@ def told(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
         (0.0, 0, None, "no_way"),
     ],
 )
-def test_outcomes(low: float, met: int, shortest: int | None, outcome: str) -> None:
+def test_the_outcome_depends_on_successes_and_trajectories(
+    low: float, met: int, shortest: int | None, outcome: str
+) -> None:
     assert outcome_of(replace(TRAINED, shortest=shortest), low, Thresholds(), met) == outcome
 
 
-def test_a_level_that_is_feasible() -> None:
-    assert told("learned", 43, 0, shortest=97) == (
+def test_the_sentence_for_a_learned_level() -> None:
+    assert sentence_of("learned", 43, 0, shortest=97) == (
         "feasible: after 5 min 3 s of search and training (200,000 and 212,992 steps) the policy meets the spec in 43 "
         "of 43 fresh episodes (89% to 100% for certain)"
     )
-    assert "after 5 min 3 s of training (212,992 steps) the policy" in told("learned", 43, 0, searched=0)
-    assert "came to progress" not in told("learned", 43, 1)
+    assert "after 5 min 3 s of training (212,992 steps) the policy" in sentence_of("learned", 43, 0, searched=0)
+    assert "came to progress" not in sentence_of("learned", 43, 1)
 
 
-def test_a_level_that_was_not_learned() -> None:
-    assert told("feasible", 5, 20, shortest=1_213) == (
+def test_the_sentence_for_a_feasible_level_that_was_not_learned() -> None:
+    assert sentence_of("feasible", 5, 20, shortest=1_213) == (
         "feasible, but not learned; there are ways, the shortest that is known takes 1,213 steps; after 5 min 3 s of "
         "search and training (200,000 and 212,992 steps) the policy meets the spec in 5 of 25 fresh episodes "
         "(3% to 51% for certain), and 85% are asked for; the best of the failed ones "
         "came to progress 0.50, where this remained: reach near(exit)"
     )
-    assert "there are ways" not in told("feasible", 0, 25)
+    assert "there are ways" not in sentence_of("feasible", 0, 25)
 
 
-def test_a_level_that_is_likely_infeasible() -> None:
-    assert told("no_way", 0, 25) == (
+def test_the_sentence_for_a_likely_infeasible_level() -> None:
+    assert sentence_of("no_way", 0, 25) == (
         "no way found: neither a search of 200,000 steps nor a training of 212,992 steps, 5 min 3 s in all, met the "
         "spec once; the level is likely infeasible; the best of its episodes came to progress 0.50, where this "
         "remained: reach near(exit)"
     )
-    assert "a search of 9 steps, which the limit broke off, nor" in told("no_way", 0, 25, searched=9, complete=False)
+    assert "a search of 9 steps, which the limit broke off, nor" in sentence_of(
+        "no_way", 0, 25, searched=9, complete=False
+    )
 
 
-def test_it_is_read_as_it_was_written() -> None:
-    found = Retrained("no_way", "no", TRAINED, figures_of(several(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
-    assert from_json(Retrained, to_json(found), "retrained") == found
+def test_a_retraining_survives_json() -> None:
+    retrained = Retrained("no_way", "no", TRAINED, figures_of(several(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
+    assert from_json(Retrained, to_json(retrained), "retrained") == retrained

@@ -275,7 +275,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_paths_of_the_baseline_are_drawn_on_its_level(browser: Browser, changed: Path) -> None:
     with chromium.opened(browser, changed, f"#{CASE}", **WIDE) as tab:
-        now, before = (tab.locator(f"#{CASE} .drawn.{section}") for section in ("now", "before"))
+        now, before = (tab.locator(f"#{CASE} .drawn.{when}") for when in ("now", "before"))
         new_wall = "rect:has(title:text-is('new_wall'))"
         expect(now).to_be_visible()
         expect(before).to_be_hidden()
@@ -293,19 +293,19 @@ def test_the_paths_of_the_baseline_are_drawn_on_its_level(browser: Browser, chan
         expect(now.locator(".player-body")).to_be_attached()
         expect(now).to_be_visible()
         expect(before).to_be_hidden()
-        when = tab.locator(f"#{CASE}")
-        expect(when.get_by_label("now", exact=True)).to_be_checked()
-        expect(when.locator(".counts.now").first).to_be_visible()
+        section = tab.locator(f"#{CASE}")
+        expect(section.get_by_label("now", exact=True)).to_be_checked()
+        expect(section.locator(".counts.now").first).to_be_visible()
         tab.locator(f"#{CASE} .which").select_option("")
-        expect(when.get_by_label("now", exact=True)).to_be_checked()
+        expect(section.get_by_label("now", exact=True)).to_be_checked()
         expect(now.locator(".cell.time").first).to_be_attached()
         expect(now).to_be_visible()
         # A link to an episode switches to `now`, too.
-        when.get_by_label("baseline").check()
+        section.get_by_label("baseline").check()
         expect(before).to_be_visible()
         tab.locator(f"#{CASE} .reasons a.episode").first.click()
         expect(now).to_be_visible()
-        expect(when.get_by_label("now", exact=True)).to_be_checked()
+        expect(section.get_by_label("now", exact=True)).to_be_checked()
 
 
 def test_the_bars_of_atoms_show_which_hold(browser: Browser, file: Path) -> None:
