@@ -1,4 +1,4 @@
-"""Suites are run, stopped and gone on with; the policies were never trained."""
+"""Running suites, stopping and resuming; the policies are untrained."""
 
 from __future__ import annotations
 
@@ -39,25 +39,25 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
 
 
-def running(suite: Suite, folder: str = "run", told: Played | None = None) -> Iterator[Done]:
-    return regress(suite, suite.cases, baseline_of(suite), Path(folder), 1, told or Played())
+def running(suite: Suite, folder: str = "run", callback: Played | None = None) -> Iterator[Done]:
+    return regress(suite, suite.cases, baseline_of(suite), Path(folder), 1, callback or Played())
 
 
 def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[Done], dict[str, int]]:
-    """What a run comes to, and how many episodes it played."""
+    """Run the suite; return the results, and the number of episodes played per case."""
     played = Played()
     return list(running(suite or read_suite(Path("game.toml")), folder, played)), played.counts
 
 
-def test_cases_are_judged_in_their_order(game: Path) -> None:
-    found, played = run("new")
-    assert [(done.report.name, done.report.verdict) for done in found] == [
+def test_cases_are_judged_in_order(game: Path) -> None:
+    results, played = run("new")
+    assert [(done.report.name, done.report.verdict) for done in results] == [
         ("room:v0", "pass"),
         ("room:v1", "pass"),
         ("hopeless", "fail"),
     ]
     assert played["hopeless"] == 25 and 25 < played["room:v0"] == played["room:v1"] < 50
-    for done in found:
+    for done in results:
         report = done.report
         assert not done.kept and done.ready and done.reference
         assert report.figures and report.figures.episodes == len(report.accounts) == played[report.name]
@@ -69,7 +69,7 @@ def test_cases_are_judged_in_their_order(game: Path) -> None:
             assert read_episode(folder / name).seed == report.accounts[index].seed
 
 
-def test_two_runs_come_to_the_same(game: Path) -> None:
+def test_two_runs_give_equal_results(game: Path) -> None:
     first, _ = run("one")
     second, _ = run("two")
     assert [done.report for done in first] == [done.report for done in second]
@@ -77,7 +77,7 @@ def test_two_runs_come_to_the_same(game: Path) -> None:
         assert path.read_bytes() == (Path("two") / path.relative_to("one")).read_bytes()
 
 
-def test_a_kept_case_is_not_played_again(game: Path) -> None:
+def test_a_cached_case_is_not_played_again(game: Path) -> None:
     kept, played = run()
     assert played == {} and all(done.kept for done in kept)
     new, _ = run("new")
@@ -100,7 +100,7 @@ def _seeded(seed: int) -> None:
 
 
 def _last(line: str) -> Callable[[], None]:
-    """Add a line to the suite's last case."""
+    """Return a function that adds a line to the last case of the suite."""
     return lambda: edit("game.toml", 'name = "hopeless"', f'name = "hopeless"\n{line}')
 
 
@@ -117,76 +117,78 @@ CHANGES: dict[str, tuple[Callable[[], None], list[str]]] = {
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_what_has_changed_is_played_again_and_nothing_else(game: Path, change: str) -> None:
+def test_only_changed_cases_are_played_again(game: Path, change: str) -> None:
     edit, names = CHANGES[change]
     edit()
-    found, played = run()
+    results, played = run()
     assert list(played) == names
-    assert [done.report.name for done in found if not done.kept] == names
+    assert [done.report.name for done in results if not done.kept] == names
     assert run()[1] == {}, "and is kept again"
 
 
 @pytest.mark.parametrize("what", ["versions", "sources"])
-def test_another_version_plays_again(game: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
+def test_cases_are_played_again_with_other_versions(game: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
     if what == "versions":
         other = {**versions(), "numpy": "0.1"}
         monkeypatch.setattr("tltl_runtime.regression.verdict.play.versions", lambda: other)
     else:
         monkeypatch.setattr("tltl_runtime.regression.suite.result_cache.sources_hash", lambda: "0" * 64)
-    found, played = run()
+    results, played = run()
     assert list(played) == ["room:v0", "room:v1", "hopeless"]
-    told = "the baseline was recorded with numpy " in " ".join(found[2].report.reasons)
-    assert told == (what == "versions")
+    versions_reported = "the baseline was recorded with numpy " in " ".join(results[2].report.reasons)
+    assert versions_reported == (what == "versions")
 
 
-def test_names_that_reasons_speak_of_are_part_of_what_is_kept(game: Path) -> None:
+def test_names_in_reasons_are_part_of_the_cache_key(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    made, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
-    fspa = made.setup.fspa
-    for other in (
-        replace(fspa, atoms=tuple(replace(each, base=f"{each.name}_2", arguments=()) for each in fspa.atoms)),
-        replace(fspa, states=tuple(replace(each, label=replace(each.label, english="go")) for each in fspa.states)),
+    ready_case, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
+    fspa = ready_case.setup.fspa
+    for renamed_fspa in (
+        replace(fspa, atoms=tuple(replace(atom, base=f"{atom.name}_2", arguments=()) for atom in fspa.atoms)),
+        replace(fspa, states=tuple(replace(state, label=replace(state.label, english="go")) for state in fspa.states)),
     ):
-        assert spec_hash(other) == spec_hash(fspa)
-        renamed = replace(made, setup=replace(made.setup, fspa=other))
-        assert _inputs(renamed, reference, 0.01) != _inputs(made, reference, 0.01)
-    assert _inputs(made, reference, 0.01) == _inputs(ready(suite.cases[0], suite.seed), reference, 0.01)
+        assert spec_hash(renamed_fspa) == spec_hash(fspa)
+        renamed = replace(ready_case, setup=replace(ready_case.setup, fspa=renamed_fspa))
+        assert _inputs(renamed, reference, 0.01) != _inputs(ready_case, reference, 0.01)
+    assert _inputs(ready_case, reference, 0.01) == _inputs(ready(suite.cases[0], suite.seed), reference, 0.01)
 
 
-def test_a_level_that_is_edited_between_cases_is_played_as_it_is_then(game: Path) -> None:
+def test_a_level_edited_between_cases_is_played_as_edited(game: Path) -> None:
     suite, before = read_suite(Path("game.toml")), Path("room.toml").read_text(encoding="utf-8")
 
     run_ = running(suite, "new")
-    found = [next(run_)]
+    results = [next(run_)]
     edit("room.toml", "8.0, 8.0", "8.0, 7.5")
-    found += run_
-    assert [done.kept for done in found] == [False] * 3
-    hashes = [done.report.played.level_hash for done in found if done.report.played]
-    assert hashes[0] != hashes[1] and hashes[1:] == [level_hash(load_level("room.toml", each)) for each in ("v1", "v0")]
+    results += run_
+    assert [done.kept for done in results] == [False] * 3
+    hashes = [done.report.played.level_hash for done in results if done.report.played]
+    assert hashes[0] != hashes[1] and hashes[1:] == [
+        level_hash(load_level("room.toml", variant)) for variant in ("v1", "v0")
+    ]
     Path("room.toml").write_text(before, encoding="utf-8")
-    # What was played on the edited level says nothing of this one.
+    # Results of the edited level are not used for the original level.
     assert list(run("new")[1]) == ["room:v1", "hopeless"]
 
 
 def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have something done once a case has been made ready, right before it is played."""
+    """Call ``edit`` after a case has been prepared, right before it is played."""
 
     def then(case: Case, seed: int) -> Ready:
-        made = ready(case, seed)
+        ready_case = ready(case, seed)
         if case.name == name:
             edit()
-        return made
+        return ready_case
 
     monkeypatch.setattr("tltl_runtime.regression.verdict.run.ready", then)
 
 
-def test_a_level_that_is_edited_while_it_is_played_is_reviewed_and_not_kept(
+def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
     game: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = Path("room.toml").read_text(encoding="utf-8")
     _edited_after("room:v1", lambda: edit("room.toml", "8.0, 8.0", "8.0, 7.5"), monkeypatch)
-    found, played = run("new")
-    report = found[1].report
+    results, played = run("new")
+    report = results[1].report
     assert (report.verdict, report.certain, report.figures) == ("review", False, None)
     assert report.reasons == ("TLT0905, `room.toml` changed while `room:v1` was played (give the same command again)",)
     assert list(played) == ["room:v0", "hopeless"] and not (Path("new") / CASES / "room-v1").exists()
@@ -197,7 +199,7 @@ def test_a_level_that_is_edited_while_it_is_played_is_reviewed_and_not_kept(
 
 
 @pytest.mark.parametrize("name", ["room.toml", "assets/guard.toml"])
-def test_a_level_that_is_edited_when_the_workers_have_loaded_it_is_reviewed(game: Path, name: str) -> None:
+def test_a_level_edited_after_the_workers_loaded_it_is_reviewed(game: Path, name: str) -> None:
     class Edits(Played):
         def __call__(self, case: Case, count: int, last: Account) -> None:
             super().__call__(case, count, last)
@@ -215,29 +217,29 @@ def test_a_level_that_is_edited_when_the_workers_have_loaded_it_is_reviewed(game
     assert list(run("new")[1]) == ["room:v0"], "nothing of it is kept"
 
 
-def test_a_level_that_is_edited_before_the_last_episode_of_its_baseline_is_over(game: Path) -> None:
-    made = ready(read_suite(Path("game.toml")).cases[0], 3)
+def test_a_level_edited_before_the_last_episode_of_a_baseline_is_reported(game: Path) -> None:
+    ready_case = ready(read_suite(Path("game.toml")).cases[0], 3)
     with pytest.raises(TltlError, match=r"TLT0905: `room\.toml` changed while `room:v0` was played"):
-        for each in episodes(made, 1):
-            if each.account.index == made.case.episodes - 1:
+        for recorded in episodes(ready_case, 1):
+            if recorded.account.index == ready_case.case.episodes - 1:
                 edit("room.toml", "8.0, 8.0", "8.0, 7.5")
 
 
-def test_a_level_that_breaks_while_it_is_played_fails_and_the_others_go_on(
+def test_a_level_that_breaks_during_a_run_fails_and_other_levels_are_played(
     game: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("hall.toml").write_text(ROOM, encoding="utf-8")
     edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
     suite = with_baseline(Path("game.toml"))
     _edited_after("room:v1", lambda: edit("room.toml", "size = [10.0", "siez = [10.0"), monkeypatch)
-    found, played = run("new", suite)
-    assert [done.report.verdict for done in found] == ["pass", "fail", "fail", "pass"]
-    assert "TLT0802" in found[1].report.reasons[2]
+    results, played = run("new", suite)
+    assert [done.report.verdict for done in results] == ["pass", "fail", "fail", "pass"]
+    assert "TLT0802" in results[1].report.reasons[2]
     assert list(played) == ["room:v0", "hall:v0"]
 
 
 class Deadly:
-    """A policy's stand-in that ends the process that plays."""
+    """A stand-in for a policy that ends the playing process."""
 
     def __init__(self, policy: Policy) -> None:
         self.card = policy.card
@@ -246,83 +248,85 @@ class Deadly:
         os.kill(os.getpid(), signal.SIGTERM)
 
 
-def test_what_is_wrong_with_the_workers_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     suite = read_suite(Path("game.toml"))
 
     def deadly(case: Case, seed: int) -> Ready:
-        made = ready(case, seed)
-        return replace(made, setup=replace(made.setup, policy=Deadly(made.setup.policy)))
+        ready_case = ready(case, seed)
+        return replace(ready_case, setup=replace(ready_case.setup, policy=Deadly(ready_case.setup.policy)))
 
     monkeypatch.setattr("tltl_runtime.regression.verdict.run.ready", deadly)
     with pytest.raises(TltlError) as error:
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
-    (found,) = error.value.diagnostics
-    assert found.code == "TLT0850"
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0850"
     alone = "tltlc evaluate easy.safetensors --level room.toml:v0 --seed 3 --first"
-    assert re.fullmatch(rf"to play that one alone: {alone} [01] --episodes 1", found.help)
+    assert re.fullmatch(rf"to play that one alone: {alone} [01] --episodes 1", diagnostic.help)
     assert not (Path("new") / CASES).exists()
 
 
-def test_no_verdict_rests_on_episodes_with_a_gap(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Before an error come all episodes that are over, and the slow ones are missing among them."""
+def test_episodes_after_a_gap_are_not_judged(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All finished episodes come before an error; slow episodes are missing among them."""
     lost = TltlError([Diagnostic("TLT0850", "a worker was lost", help="play it alone")])
 
     def with_gap(*given: Any, **named: Any) -> Iterator[Any]:
-        yield from (each for each in islice(results(*given, **named), 6) if each.task.index != 2)
+        yield from (result for result in islice(results(*given, **named), 6) if result.task.index != 2)
         raise lost
 
     monkeypatch.setattr("tltl_runtime.regression.verdict.play.results", with_gap)
-    told: list[int] = []
+    judged_indices: list[int] = []
     with pytest.raises(TltlError) as error:
-        told.extend(each.account.index for each in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1))
-    assert (error.value, told) == (lost, [0, 1])
+        judged_indices.extend(
+            recorded.account.index for recorded in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1)
+        )
+    assert (error.value, judged_indices) == (lost, [0, 1])
 
 
-def test_a_level_that_is_edited_while_its_baseline_is_recorded(game: Path) -> None:
-    made = ready(read_suite(Path("game.toml")).cases[0], 3)
+def test_a_level_edited_before_its_baseline_is_recorded_is_reported(game: Path) -> None:
+    ready_case = ready(read_suite(Path("game.toml")).cases[0], 3)
     edit("room.toml", "8.0, 8.0", "8.0, 7.5")
     with pytest.raises(TltlError, match="TLT0905") as error:
-        next(episodes(made, 1))
-    (found,) = error.value.diagnostics
-    assert found.title == "`room.toml` changed while `room:v0` was played"
+        next(episodes(ready_case, 1))
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.title == "`room.toml` changed while `room:v0` was played"
 
 
-def test_a_spec_that_has_changed_since_the_training_is_told_and_nothing_passes_by_the_old_one(game: Path) -> None:
+def test_a_spec_changed_since_the_training_is_reviewed(game: Path) -> None:
     text = Path("room.toml").read_text(encoding="utf-8")
     Path("plan.tltl").write_text(EASY, encoding="utf-8")
     Path("room.toml").write_text(f'spec = "plan.tltl:easy"\n{text}', encoding="utf-8")
-    found, _ = run()
-    assert [done.report.verdict for done in found] == ["pass", "pass", "fail"], "it is the policy's"
+    results, _ = run()
+    assert [done.report.verdict for done in results] == ["pass", "pass", "fail"], "it is the policy's"
     edit("plan.tltl", "limit 20 steps", "limit 30 steps")
-    found, played = run()
+    results, played = run()
     assert list(played) == ["room:v0", "room:v1"], "the third has a spec of its own"
-    for done in found[:2]:
+    for done in results[:2]:
         assert done.report.verdict == "review"
         assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained (")
         assert done.report.headline == done.report.reasons[0]
         assert done.to_train is None, "a training would be for the old spec"
-    assert found[2].to_train is not None
+    assert results[2].to_train is not None
     edit("plan.tltl", "reach alive", "reach alve")
-    found, _ = run()
-    assert [done.report.verdict for done in found] == ["fail", "fail", "fail"]
-    assert found[0].report.reasons[1].startswith("plan.tltl:2: TLT0")
+    results, _ = run()
+    assert [done.report.verdict for done in results] == ["fail", "fail", "fail"]
+    assert results[0].report.reasons[1].startswith("plan.tltl:2: TLT0")
 
 
-def test_the_headline_of_a_failure_is_how_the_episodes_end(game: Path) -> None:
+def test_the_headline_of_a_failure_describes_the_ends(game: Path) -> None:
     passed, _, failed = (done.report for done in run()[0])
     assert passed.headline == passed.reasons[0]
-    (end,) = (each.text for each in failed.explanation if each.text.startswith(failed.headline))
+    (end,) = (finding.text for finding in failed.explanation if finding.text.startswith(failed.headline))
     assert end.partition(";")[0] == failed.headline
     assert failed.headline.endswith(" of 25 episodes")
 
 
-def test_a_baseline_of_fewer_episodes_is_refused(game: Path) -> None:
+def test_a_baseline_with_fewer_episodes_is_rejected(game: Path) -> None:
     edit("game.toml", "episodes = 50", "episodes = 60")
     with pytest.raises(TltlError, match="TLT0903: the baseline of `room:v0` has 50 episodes, and 60 are asked for"):
         run()
 
 
-def test_a_baseline_with_states_that_the_spec_does_not_have_is_refused_before_anything_is_played(game: Path) -> None:
+def test_a_baseline_with_unknown_states_is_rejected_before_anything_is_played(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     easy, hopeless = baseline_of(suite)
     *accounts, last = hopeless.accounts
@@ -337,13 +341,13 @@ def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkey
     (tmp_path / "c++" / "edit.toml").write_text("[change.guard]\nsight_range = 9.0\n", encoding="utf-8")
     edit("c++/game.toml", 'variant = "v1"', 'overlay = ["edit.toml", "guard_alert"]')
     suite = read_suite(Path("c++/game.toml"))
-    found, played = run("new", suite)
+    results, played = run("new", suite)
     assert list(played) == ["room:v0", "room:v0+edit+guard_alert", "hopeless"]
-    assert [done.report.variant for done in found] == ["v0", "v0+edit+guard_alert", "v0"]
+    assert [done.report.variant for done in results] == ["v0", "v0+edit+guard_alert", "v0"]
     assert (tmp_path / "c++" / "edit.toml").resolve() in dependencies(suite, suite.cases[1])
 
 
-def test_another_baseline_is_another_comparison(game: Path) -> None:
+def test_a_changed_baseline_plays_its_cases_again(game: Path) -> None:
     path = read_suite(Path("game.toml")).baseline
     document = json.loads(path.read_text(encoding="utf-8"))
     document["references"][0]["accounts"][0]["reward"] += 0.001
@@ -352,35 +356,35 @@ def test_another_baseline_is_another_comparison(game: Path) -> None:
     assert list(played) == ["room:v0", "room:v1"]
 
 
-def test_a_run_that_was_stopped_goes_on(game: Path) -> None:
+def test_a_stopped_run_resumes(game: Path) -> None:
     suite, played = read_suite(Path("game.toml")), Played()
     with closing(running(suite, "new", played)) as stopped:  # type: ignore[type-var]
         assert next(stopped).report.name == "room:v0"
     assert list(played.counts) == ["room:v0"]
-    found, played_again = run("new")
-    assert [done.kept for done in found] == [True, False, False]
+    results, played_again = run("new")
+    assert [done.kept for done in results] == [True, False, False]
     assert list(played_again) == ["room:v1", "hopeless"]
 
 
-def test_a_case_that_was_stopped_in_the_middle_is_played_from_its_start(game: Path) -> None:
+def test_an_interrupted_case_is_played_from_its_start(game: Path) -> None:
     class StopError(Exception):
         pass
 
-    def told(case: Case, count: int, last: Account) -> None:
+    def stop_in_the_middle(case: Case, count: int, last: Account) -> None:
         if case.name == "room:v1" and count == 10:
             raise StopError
 
     suite = read_suite(Path("game.toml"))
     with pytest.raises(StopError):
-        list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, told))
-    found, played = run("new")
-    assert [done.kept for done in found] == [True, False, False]
-    assert [done.report for done in found] == [done.report for done in run()[0]]
+        list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, stop_in_the_middle))
+    results, played = run("new")
+    assert [done.kept for done in results] == [True, False, False]
+    assert [done.report for done in results] == [done.report for done in run()[0]]
     assert played["room:v1"] > 25
 
 
 @pytest.mark.parametrize("damage", ["", "{", "[" * 9999, '{"identity": 3}', None])
-def test_what_was_damaged_is_played_again(game: Path, damage: str | None) -> None:
+def test_a_case_with_a_damaged_cache_is_played_again(game: Path, damage: str | None) -> None:
     folder = case_folder(read_suite(Path("game.toml")), "room:v0", Path("run") / CASES)
     if damage is None:
         next(folder.glob("*.episode.npz")).unlink()
@@ -389,7 +393,7 @@ def test_what_was_damaged_is_played_again(game: Path, damage: str | None) -> Non
     assert list(run()[1]) == ["room:v0"]
 
 
-def test_what_is_asked_for_afresh_is_played_again_and_nothing_else(game: Path) -> None:
+def test_fresh_plays_exactly_the_selected_cases_again(game: Path) -> None:
     suite, played = read_suite(Path("game.toml")), Played()
     with closing(regress(suite, suite.cases[1:], baseline_of(suite), Path("run"), 1, played, fresh=True)) as stopped:
         assert next(stopped).report.name == "room:v1"
@@ -398,20 +402,20 @@ def test_what_is_asked_for_afresh_is_played_again_and_nothing_else(game: Path) -
     assert len(list(regress(suite, suite.cases, references, Path("nowhere"), 1, Played(), fresh=True))) == 3
 
 
-def test_a_level_that_does_not_load_fails_its_cases_and_the_others_go_on(game: Path) -> None:
+def test_a_level_that_does_not_load_fails_its_cases_and_other_levels_are_played(game: Path) -> None:
     edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
     Path("hall.toml").write_text(ROOM, encoding="utf-8")
     suite = with_baseline(Path("game.toml"))
     Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
-    found, played = run("new", suite)
+    results, played = run("new", suite)
     assert list(played) == ["hall:v0"]
-    assert [done.report.verdict for done in found] == ["fail", "fail", "fail", "pass"]
-    assert found[0].report.reasons[::2] == (
+    assert [done.report.verdict for done in results] == ["fail", "fail", "fail", "pass"]
+    assert results[0].report.reasons[::2] == (
         "it cannot be played",
         "room.toml:5: TLT0802, `[bounds]` has no key `siez` (did you mean `size`?)",
     )
-    assert found[0].report.figures is None and not found[0].kept
-    # It is tried again each time.
+    assert results[0].report.figures is None and not results[0].kept
+    # A level that does not load is tried again in each run.
     assert not run("new", suite)[0][0].kept
 
 
@@ -421,9 +425,9 @@ def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
     )
     edit("game.toml", 'variant = "v1"', "")
     edit("game.toml", 'level = "room.toml"\n\npolicy', 'level = "hall.toml"\npolicy')
-    found, played = run("new")
+    results, played = run("new")
     assert list(played) == ["room:v0", "hopeless"]
-    (report,) = (done.report for done in found if done.report.name == "hall:v0")
+    (report,) = (done.report for done in results if done.report.name == "hall:v0")
     assert report.verdict == "fail"
     assert "TLT0843, the policy senses the entity `exit`, which the level `hall` does not have" in report.reasons[1]
     assert "(let it play `room`, where it was trained, or train one for `hall`)" in report.reasons[1]
@@ -432,47 +436,47 @@ def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
     assert "(put back what was there when it was trained, or train one for `room`)" in report.reasons[1]
 
 
-def test_a_level_that_a_player_leaves_fails_its_case_and_the_others_go_on(game: Path) -> None:
+def test_a_level_that_a_player_leaves_fails_its_case_and_other_cases_are_judged(game: Path) -> None:
     edit("room.toml", "size = [10.0, 10.0, 4.5]", "size = [10.0, 10.0, 1.2]")
-    found, _ = run("new")
-    assert [done.report.name for done in found] == ["room:v0", "room:v1", "hopeless"]
-    report = found[2].report
+    results, _ = run("new")
+    assert [done.report.name for done in results] == ["room:v0", "room:v1", "hopeless"]
+    report = results[2].report
     assert report.verdict == "fail" and "TLT0806" in report.reasons[1]
 
 
-def test_a_case_that_the_baseline_lacks_is_told_before_anything_is_played(game: Path) -> None:
+def test_a_case_missing_in_the_baseline_is_reported_before_anything_is_played(game: Path) -> None:
     suite, played = read_suite(Path("game.toml")), Played()
-    references = tuple(each for each in baseline_of(suite) if each.played.spec != "soon")
+    references = tuple(reference for reference in baseline_of(suite) if reference.played.spec != "soon")
     with pytest.raises(TltlError) as error:
         check(suite, suite.cases, references)
-    assert [found.code for found in error.value.diagnostics] == ["TLT0903"]
-    # What is not asked for may be missing.
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["TLT0903"]
+    # The baseline may lack cases that are not run.
     check(suite, suite.cases[:2], references)
     assert len(list(regress(suite, suite.cases[:2], references, Path("new"), 1, played))) == 2
 
 
-def test_a_folder_that_cannot_be_written_is_told_before_anything_is_played(game: Path) -> None:
+def test_an_unwritable_folder_is_reported_before_anything_is_played(game: Path) -> None:
     Path("file").touch()
     for place in ("file", "file/run"):
         with pytest.raises(TltlError) as error, owned(Path(place)):
             pytest.fail("nothing can be written there")
-        assert [found.code for found in error.value.diagnostics] == ["TLT0005"]
+        assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["TLT0005"]
 
 
-def test_a_folder_belongs_to_one_run_at_a_time(game: Path) -> None:
+def test_a_folder_is_used_by_one_run_at_a_time(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     with owned(Path("run")):
         with pytest.raises(TltlError) as error, owned(Path("run")):
             pytest.fail("it is taken")
-        (found,) = error.value.diagnostics
-        assert (found.code, found.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
+        (diagnostic,) = error.value.diagnostics
+        assert (diagnostic.code, diagnostic.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
         with owned(Path("new")):
             assert len(list(running(suite, "new"))) == 3, "elsewhere there is room"
     with owned(Path("run")):
         assert len(list(running(suite))) == 3
 
 
-def test_a_case_may_be_called_anything(game: Path) -> None:
+def test_a_case_may_have_any_name(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     names = ["..", "a/b", "a:b", "a-b", ".", "/", "…", "a\0b"]
     odd = replace(suite, cases=tuple(replace(suite.cases[0], name=name) for name in names))
@@ -481,21 +485,21 @@ def test_a_case_may_be_called_anything(game: Path) -> None:
     assert all(folder.parent == Path("new") and folder.name.strip(".") for folder in folders)
 
 
-def test_a_report_does_not_say_where_an_overlay_lies(game: Path) -> None:
+def test_a_report_does_not_contain_the_path_of_an_overlay(game: Path) -> None:
     Path("edits").mkdir()
     Path("edits/wide.toml").write_text("[start]\nat = [2.5, 2.0, 0.0]\n", encoding="utf-8")
     edit("game.toml", 'variant = "v1"', 'overlay = "edits/wide.toml"')
     Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
     suite = read_suite((game / "game.toml").absolute())
-    found = list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, Played()))
-    assert [done.report.variant for done in found] == ["v0", "v0+wide", "v0"]
+    results = list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, Played()))
+    assert [done.report.variant for done in results] == ["v0", "v0+wide", "v0"]
 
 
-def test_recordings_of_an_earlier_run_do_not_stay(game: Path) -> None:
+def test_recordings_of_an_earlier_run_are_removed(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     folder = case_folder(suite, "room:v0", Path("run") / CASES)
     (folder / "49.episode.npz").write_bytes(b"old")
     edit("room.toml", "8.0, 8.0", "8.0, 8.5")
-    found, _ = run()
+    results, _ = run()
     names = {path.name for path in folder.glob("*.episode.npz")}
-    assert names == set(dict(found[0].report.recordings).values())
+    assert names == set(dict(results[0].report.recordings).values())

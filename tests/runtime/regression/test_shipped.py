@@ -1,4 +1,4 @@
-"""The suite that comes with the package: its baseline is of what comes with it, and its verdicts are as designed."""
+"""The shipped suite: its baseline matches the shipped levels and policies, and its verdicts are as designed."""
 
 from __future__ import annotations
 
@@ -18,42 +18,42 @@ from tltlc.core.record import replace
 SUITE = read_suite(SHIPPED)
 
 
-def test_it_has_all_levels_in_all_variants() -> None:
+def test_the_suite_has_all_levels_in_all_variants() -> None:
     assert {case.name for case in SUITE.cases} == {
         f"{level}:{variant}" for level in level_names() for variant in variants(level)
     }
 
 
 @pytest.mark.parametrize("case", SUITE.cases, ids=lambda case: case.name)
-def test_its_baseline_is_of_the_policy_and_the_spec(case: Case) -> None:
+def test_the_baseline_matches_the_policy_and_the_spec(case: Case) -> None:
     played = ready(case, SUITE.seed, case.reference).played
     reference = reference_of(read_baseline(SUITE.baseline), played, SUITE)
     assert reference.played.level_hash == played.level_hash, "record it again"
     assert len(reference.accounts) == case.episodes
-    passed = sum(each.success for each in reference.accounts)
+    passed = sum(account.success for account in reference.accounts)
     assert passed / case.episodes >= 0.98
 
 
-def test_an_episode_of_the_baseline_is_played_again() -> None:
+def test_an_episode_of_the_baseline_can_be_reproduced() -> None:
     case = replace(SUITE.cases[0], episodes=1)
-    made = ready(case, SUITE.seed)
-    (again,) = episodes(made, 1)
-    reference = reference_of(read_baseline(SUITE.baseline), made.played, SUITE)
-    if reference.played.versions != made.played.versions:
+    ready_case = ready(case, SUITE.seed)
+    (recorded,) = episodes(ready_case, 1)
+    reference = reference_of(read_baseline(SUITE.baseline), ready_case.played, SUITE)
+    if reference.played.versions != ready_case.played.versions:
         pytest.skip("the baseline was recorded with other versions")
-    assert to_json(again.account) == to_json(reference.accounts[0])
+    assert to_json(recorded.account) == to_json(reference.accounts[0])
 
 
 @pytest.fixture(name="judged", scope="module")
 def _judged(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, CaseReport]:
-    """The reports on all cases, by name: all are played, by as many processes as there are cores."""
+    """The reports on all cases, by name; one process per core plays them."""
     references = read_baseline(SUITE.baseline)
     running = regress(SUITE, SUITE.cases, references, tmp_path_factory.mktemp("judged"), 0, lambda *_: None)
     return {done.report.name: done.report for done in running}
 
 
 @pytest.mark.slow
-def test_what_plays_as_designed_passes(judged: Mapping[str, CaseReport]) -> None:
+def test_the_unchanged_levels_pass(judged: Mapping[str, CaseReport]) -> None:
     assert set(judged) == {case.name for case in SUITE.cases}
     for level in level_names():
         report = judged[f"{level}:v0"]
@@ -61,24 +61,24 @@ def test_what_plays_as_designed_passes(judged: Mapping[str, CaseReport]) -> None
 
 
 @pytest.mark.slow
-def test_a_corridor_that_was_shut_is_named(judged: Mapping[str, CaseReport]) -> None:
+def test_a_closed_corridor_is_named(judged: Mapping[str, CaseReport]) -> None:
     report = judged["navigation:v2"]
     assert report.verdict == "fail"
-    assert any("nobody reaches `s2`" in each and "ends at `corridor_block_2`" in each for each in report.reasons)
+    assert any("nobody reaches `s2`" in reason and "ends at `corridor_block_2`" in reason for reason in report.reasons)
     stuck = "runs out of time in the corridor, mostly at `corridor_block_2`"
-    ends = [each for each in report.explanation if each.text.startswith(stuck)]
-    assert [len(each.episodes) for each in ends] == [len(report.accounts)]
+    ends = [finding for finding in report.explanation if finding.text.startswith(stuck)]
+    assert [len(finding.episodes) for finding in ends] == [len(report.accounts)]
 
 
 @pytest.mark.slow
-def test_a_corridor_that_bends_more_is_no_failure(judged: Mapping[str, CaseReport]) -> None:
+def test_a_corridor_with_more_bends_does_not_fail(judged: Mapping[str, CaseReport]) -> None:
     assert judged["navigation:v1"].verdict != "fail"
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("level", ["cover_and_hide", "branching"])
-def test_a_guard_that_looks_into_covers_is_a_finding(judged: Mapping[str, CaseReport], level: str) -> None:
+def test_a_guard_that_looks_into_covers_does_not_pass(judged: Mapping[str, CaseReport], level: str) -> None:
     report = judged[f"{level}:v2"]
     assert report.verdict != "pass"
-    (death, *_) = [each.text for each in report.explanation if each.text.startswith("dies ")]
+    (death, *_) = [finding.text for finding in report.explanation if finding.text.startswith("dies ")]
     assert " by `guard" in death and ", breaking `alive`," in death

@@ -1,4 +1,4 @@
-"""Names of cases in addresses."""
+"""The names of cases in addresses and folders."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tltl_runtime.regression.suite.slugs import episode_link, slugs
 
 
-def test_names_that_can_be_read() -> None:
+def test_slugs_are_readable() -> None:
     assert slugs(["navigation:v1", "Navigation:V1", "a b/c:v0+alert", "a b c:v0+alert", "…", "</script>"]) == (
         "navigation-v1",
         "Navigation-V1-2",
@@ -19,21 +19,21 @@ def test_names_that_can_be_read() -> None:
     )
 
 
-def test_long_names_are_cut() -> None:
+def test_long_names_are_truncated() -> None:
     assert [len(name) for name in slugs(["a" * 500, "a" * 501])] == [80, 82]
 
 
-def test_no_folder_has_the_name_of_a_device_or_ends_in_a_dot() -> None:
+def test_slugs_are_no_device_names_and_do_not_end_in_dots() -> None:
     names = ["CON", "nul", "Com1.v0", "console", "aux:v0", "..", "room.", ".room"]
     assert slugs(names) == ("case-CON", "case-nul", "case-Com1.v0", "console", "aux-v0", "case", "room", "room-2")
 
 
 @given(st.lists(st.text(max_size=4), max_size=6))
-def test_no_two_are_equal_and_all_are_plain(names: list[str]) -> None:
-    found = slugs(names)
-    assert len({name.lower() for name in found}) == len(names)
-    assert all(name and not set(name) & set("/#<>\"'& ") for name in found)
+def test_slugs_are_unique_and_have_no_special_characters(names: list[str]) -> None:
+    slugs_of_names = slugs(names)
+    assert len({name.lower() for name in slugs_of_names}) == len(names)
+    assert all(name and not set(name) & set("/#<>\"'& ") for name in slugs_of_names)
 
 
-def test_a_link_names_episode_and_step() -> None:
+def test_a_link_contains_the_episode_and_the_step() -> None:
     assert episode_link("navigation-v1", 12, 40) == "#navigation-v1/12/40"

@@ -1,4 +1,4 @@
-"""Suites as they are read; what is refused, goldens have."""
+"""Reading suites; the golden tests cover the error messages."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ def read(folder: Path, text: str) -> tuple[Case, ...]:
 
 
 def test_the_shipped_suite_has_every_level_in_every_variant() -> None:
-    found = read_suite(SHIPPED)
-    assert [(case.level, case.variant) for case in found.cases] == [
+    suite = read_suite(SHIPPED)
+    assert [(case.level, case.variant) for case in suite.cases] == [
         (level, variant) for level in ("navigation", "cover_and_hide", "branching") for variant in variants(level)
     ]
-    assert {case.level for case in found.cases} == set(level_names())
-    assert all(case.policy == shipped_policy(case.level) and case.reference == "v0" for case in found.cases)
-    assert [case.name for case in found.cases[:2]] == ["navigation:v0", "navigation:v1"]
+    assert {case.level for case in suite.cases} == set(level_names())
+    assert all(case.policy == shipped_policy(case.level) and case.reference == "v0" for case in suite.cases)
+    assert [case.name for case in suite.cases[:2]] == ["navigation:v0", "navigation:v1"]
 
 
-def test_what_a_case_does_not_say(tmp_path: Path) -> None:
+def test_the_defaults_of_a_case(tmp_path: Path) -> None:
     (case,) = read(tmp_path, '[[case]]\nlevel = "branching"\n')
     assert case == Case(
         name="branching:v0",
@@ -46,11 +46,11 @@ def test_what_a_case_does_not_say(tmp_path: Path) -> None:
         episodes=MOST_EPISODES,
         thresholds=Thresholds(),
     )
-    read_ = read_suite(tmp_path / "game.toml")
-    assert (read_.seed, read_.error) == (0, 0.05)
+    suite = read_suite(tmp_path / "game.toml")
+    assert (suite.seed, suite.error) == (0, 0.05)
 
 
-def test_a_case_has_what_its_suite_says_unless_it_says_otherwise(tmp_path: Path) -> None:
+def test_a_case_inherits_the_settings_of_its_suite(tmp_path: Path) -> None:
     text = """seed = 5
 error = 0.1
 episodes = 50
@@ -95,73 +95,71 @@ policy = "trained"
     assert (case.spec, case.policy) == ("game/levels/plans.tltl:careful", Path("game/trained"))
 
 
-def test_one_overlay_needs_no_list(tmp_path: Path) -> None:
+def test_a_single_overlay_needs_no_list(tmp_path: Path) -> None:
     (case,) = read(tmp_path, '[[case]]\nlevel = "branching"\noverlay = "guard_alert"\n')
     assert (case.variant, case.name) == ("v0+guard_alert", "branching:v0+guard_alert")
 
 
-def test_a_policy_of_another_level_is_named_by_that(tmp_path: Path) -> None:
+def test_a_shipped_policy_is_named_by_its_level(tmp_path: Path) -> None:
     (case,) = read(tmp_path, '[[case]]\nlevel = "branching"\npolicy = "cover_and_hide"\n')
     assert case.policy == shipped_policy("cover_and_hide")
 
 
 @pytest.mark.parametrize("text", ["doc = ", 'doc = "x"\nvariants = 3\n', "\0"])
-def test_a_level_that_does_not_load_is_its_cases_finding_and_not_the_suites(tmp_path: Path, text: str) -> None:
+def test_a_level_that_does_not_load_is_no_error_in_the_suite(tmp_path: Path, text: str) -> None:
     (tmp_path / "vault.toml").write_text(text, encoding="utf-8")
-    asked = '[[case]]\nlevel = "vault.toml"\n' + POLICY
-    first, second = read(tmp_path, asked + asked + 'variant = "v3"\n')
+    case = '[[case]]\nlevel = "vault.toml"\n' + POLICY
+    first, second = read(tmp_path, case + case + 'variant = "v3"\n')
     assert (first.variant, second.variant) == ("v0", "v3")
 
 
 @pytest.mark.parametrize("name", ["nowhere.toml", "."])
-def test_a_suite_that_cannot_be_read(tmp_path: Path, name: str) -> None:
+def test_an_unreadable_suite_is_reported(tmp_path: Path, name: str) -> None:
     with pytest.raises(TltlError) as error:
         read_suite(tmp_path / name)
-    assert [found.code for found in error.value.diagnostics] == ["TLT0001"]
+    assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["TLT0001"]
 
 
 @pytest.mark.parametrize(
     ("key", "name"),
     [("level", ".toml"), ("level", ""), ("policy", ""), ("spec", ".tltl:careful"), ("overlay", ".toml")],
 )
-def test_a_name_that_no_file_can_have_is_a_missing_one(tmp_path: Path, key: str, name: str) -> None:
+def test_a_name_that_is_too_long_is_reported_as_missing(tmp_path: Path, key: str, name: str) -> None:
     keys = {"level": "navigation", key: "a" * 300 + name}
     with pytest.raises(TltlError) as error:
-        read(tmp_path, "[[case]]\n" + "".join(f'{each} = "{value}"\n' for each, value in keys.items()))
-    (found,) = error.value.diagnostics
-    assert found.title.startswith(f"there is no {key} `aaa")
+        read(tmp_path, "[[case]]\n" + "".join(f'{name} = "{value}"\n' for name, value in keys.items()))
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.title.startswith(f"there is no {key} `aaa")
 
 
-def test_an_own_level_needs_a_policy_of_ones_own(tmp_path: Path) -> None:
+def test_a_user_level_needs_a_policy(tmp_path: Path) -> None:
     (tmp_path / "navigation.toml").write_text(ROOM, encoding="utf-8")
     with pytest.raises(TltlError, match=r"no policy comes with the level `.*navigation\.toml`"):
         read(tmp_path, '[[case]]\nlevel = "navigation.toml"\n')
 
 
 def refused(folder: Path, case: str) -> list[tuple[str, str, str | None]]:
-    """Of what is wrong with a suite's case: code, title and help; all of it stands at a key of the suite."""
+    """The code, title and help of each error in a case; all errors have a label in the suite file."""
     with pytest.raises(TltlError) as error:
         read(folder, f"[[case]]\n{case}")
-    for found in error.value.diagnostics:
-        assert Path(found.labels[0].source.name).name == "game.toml"
-    return [(found.code, found.title, found.help) for found in error.value.diagnostics]
+    for diagnostic in error.value.diagnostics:
+        assert Path(diagnostic.labels[0].source.name).name == "game.toml"
+    return [(diagnostic.code, diagnostic.title, diagnostic.help) for diagnostic in error.value.diagnostics]
 
 
-def test_a_spec_that_its_file_does_not_hold_is_the_suites_mistake(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_spec_is_an_error_in_the_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plans.tltl").write_text("import stealth\nspec calm = F alive\nspec bold = G alive\n", encoding="utf-8")
     case = 'level = "navigation"\nspec = "plans.tltl'
     assert refused(Path(), f'{case}:clam"') == [("TLT0720", "`plans.tltl` has no spec `clam`", "did you mean `calm`?")]
     ((code, title, _),) = refused(Path(), f'{case}"')
     assert (code, title.partition(",")[0]) == ("TLT0721", "`plans.tltl` holds 2 specs")
-    # A change may have broken it, which is a finding.
+    # A broken spec is a result of the run, not an error in the suite.
     Path("plans.tltl").write_text("spec calm = ((\n", encoding="utf-8")
     assert len(read(Path(), f'[[case]]\n{case}:calm"')) == 1
 
 
-def test_a_policy_that_cannot_be_read_is_the_suites_mistake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unreadable_policy_is_an_error_in_the_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     data = (shipped_policy("navigation") or Path()).read_bytes()
     for name, content in {"empty": b"", "cut": data[:-100], "text": b"no policy"}.items():
@@ -181,7 +179,7 @@ def test_a_policy_that_cannot_be_read_is_the_suites_mistake(tmp_path: Path, monk
     assert len(read(Path(), f'[[case]]\n{folder}/vault"')) == 1
 
 
-def test_a_policy_that_there_is_not_may_be_one_beside_the_suite(tmp_path: Path) -> None:
+def test_the_help_for_a_missing_policy_lists_files_beside_the_suite(tmp_path: Path) -> None:
     (tmp_path / "mine.safetensors").touch()
     ((code, title, help_),) = refused(tmp_path, 'level = "navigation"\npolicy = "mine"')
     assert (code, title) == ("TLT0805", "there is no policy `mine`")
@@ -198,22 +196,22 @@ def test_a_policy_that_there_is_not_may_be_one_beside_the_suite(tmp_path: Path) 
         ("hal.toml", "hall.toml"),
     ],
 )
-def test_a_level_that_there_is_not_may_be_another_one(tmp_path: Path, level: str, meant: str) -> None:
+def test_a_similar_level_is_suggested(tmp_path: Path, level: str, meant: str) -> None:
     for name in ("levels/vault.toml", "hall.toml"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(ROOM, encoding="utf-8")
-    found = refused(tmp_path, f'level = "{level}"\npolicy = "navigation"')
-    assert found == [("TLT0800", f"there is no level `{level}`", f"did you mean `{meant}`?")]
+    errors = refused(tmp_path, f'level = "{level}"\npolicy = "navigation"')
+    assert errors == [("TLT0800", f"there is no level `{level}`", f"did you mean `{meant}`?")]
 
 
-def test_no_pipe_is_read_to_suggest_a_level(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pipes_are_not_read_to_suggest_a_level(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pipes.put_beside(tmp_path / "hall.toml")
     pipes.forbid(monkeypatch)
-    found = refused(tmp_path, 'level = "hal.toml"\npolicy = "navigation"')
-    assert found == [("TLT0800", "there is no level `hal.toml`", "paths are relative to the suite")]
+    errors = refused(tmp_path, 'level = "hal.toml"\npolicy = "navigation"')
+    assert errors == [("TLT0800", "there is no level `hal.toml`", "paths are relative to the suite")]
 
 
-def test_a_copy_of_a_shipped_level_is_told_of_its_policy(tmp_path: Path) -> None:
+def test_the_shipped_policy_is_suggested_for_a_copy_of_its_level(tmp_path: Path) -> None:
     shutil.copy(LEVELS / "cover_and_hide.toml", tmp_path / "my_cover.toml")
     ((code, _, help_),) = refused(tmp_path, 'level = "my_cover.toml"')
     assert (code, (help_ or "").partition(", or ")[2]) == (
@@ -223,45 +221,45 @@ def test_a_copy_of_a_shipped_level_is_told_of_its_policy(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("key", ["name", "variant", "reference", "spec", "policy", "overlay", "level"])
-def test_an_empty_text_is_none(tmp_path: Path, key: str) -> None:
+def test_an_empty_text_is_rejected(tmp_path: Path, key: str) -> None:
     keys = {"level": "navigation", key: ""}
-    found = refused(tmp_path, "".join(f"{each} = {json.dumps(value)}\n" for each, value in keys.items()))
-    assert found == [("TLT0803", f'wrong value for `{key}`: ""', "expected a text that is not empty")]
+    errors = refused(tmp_path, "".join(f"{name} = {json.dumps(value)}\n" for name, value in keys.items()))
+    assert errors == [("TLT0803", f'wrong value for `{key}`: ""', "expected a text that is not empty")]
 
 
-def test_a_low_pass_rate_needs_a_fail_rate_below(tmp_path: Path) -> None:
-    found = refused(tmp_path, 'level = "navigation"\nthresholds = { pass_rate = 0.4 }')
+def test_a_low_pass_rate_needs_a_lower_fail_rate(tmp_path: Path) -> None:
+    errors = refused(tmp_path, 'level = "navigation"\nthresholds = { pass_rate = 0.4 }')
     title = "`pass_rate` is 0.4, below the `fail_rate`, which is 0.5 by default"
-    assert found == [("TLT0803", title, "give a `fail_rate`, too, of 0.4 at the most")]
+    assert errors == [("TLT0803", title, "give a `fail_rate`, too, of 0.4 at the most")]
 
 
 @pytest.mark.parametrize(
     ("name", "what"),
     [("assets/guard", "an asset"), ("assets/corridor", "an asset"), ("overlays/guard_alert", "an overlay")],
 )
-def test_other_files_of_a_game_are_no_suites(name: str, what: str) -> None:
+def test_assets_and_overlays_are_no_suites(name: str, what: str) -> None:
     with pytest.raises(TltlError, match=f"TLT0803: this is {what}, and no suite"):
         read_suite(LEVELS / f"{name}.toml")
 
 
-def test_a_suite_of_too_many_cases_is_refused(tmp_path: Path) -> None:
+def test_a_suite_with_too_many_cases_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(TltlError, match="TLT0006: the suite has more than 2,000 cases"):
         read(tmp_path, 2001 * '[[case]]\nlevel = "navigation"\n')
 
 
 def test_each_level_of_a_suite_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
+    read_levels = []
     monkeypatch.setattr(
-        "tltl_runtime.regression.suite.suite.variants", lambda level: asked.append(level) or variants(level)
+        "tltl_runtime.regression.suite.suite.variants", lambda level: read_levels.append(level) or variants(level)
     )
     cases = "".join(f'[[case]]\nlevel = "navigation"\nname = "n{number}"\n' for number in range(50))
     assert len(read(tmp_path, cases)) == 50
-    assert asked == ["navigation"]
+    assert read_levels == ["navigation"]
 
 
-def test_after_many_faults_no_more_cases_are_read(tmp_path: Path) -> None:
+def test_reading_stops_after_many_errors(tmp_path: Path) -> None:
     with pytest.raises(TltlError) as caught:
         read(tmp_path, "".join(f'[[case]]\nlevel = "x{number}"\n' for number in range(2000)))
-    found = caught.value.diagnostics
-    assert len(found) == 101
-    assert found[-1].title == "so much is wrong that the last 1,900 cases were not read"
+    diagnostics = caught.value.diagnostics
+    assert len(diagnostics) == 101
+    assert diagnostics[-1].title == "so much is wrong that the last 1,900 cases were not read"

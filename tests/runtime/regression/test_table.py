@@ -1,4 +1,4 @@
-"""Our Table I: what is played is kept, and stands beside the paper's."""
+"""Our Table I: played cells are cached, and the rows stand beside the rows of the paper."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ def _few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(table_cells, "EPISODES", 3)
 
 
-def test_the_paper_has_a_row_of_each_model_on_each_level() -> None:
+def test_the_paper_has_a_row_for_each_model_and_level() -> None:
     assert set(PAPER) == {(level, model) for level in LEVELS for model in MODELS}
     assert all(tuple(row.figures) == VARIANTS for row in PAPER.values())
     assert {model for (_, model), row in PAPER.items() if row.hours is None} == {"expert"}
 
 
-def test_a_row_of_ours_stands_above_the_papers() -> None:
-    made = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
-    text = markdown({("navigation", "ours"): Row({"v0": made}, 0.1)})
+def test_our_row_stands_above_the_row_of_the_paper() -> None:
+    cell = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
+    text = markdown({("navigation", "ours"): Row({"v0": cell}, 0.1)})
     assert text.splitlines()[2:] == [
         "| navigation | ours | 0.95 (0.89–0.98) | 0.97 ± 0.10 | 0.60 ± 0.20 | 6 min |",
         "|  | *the paper: ours* | 1.00 / 0.90 / 0.00 | 1.00 ± 0.00 / 0.93 ± 0.21 / 0.49 ± 0.05 "
@@ -50,20 +50,25 @@ def test_a_row_of_ours_stands_above_the_papers() -> None:
         (20.0, 0.0, "20.0 h, 0.0 % cloned"),
     ],
 )
-def test_how_long_a_training_took(hours: float | None, cloned: float | None, shown: str) -> None:
-    made = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
-    ours = markdown({("navigation", "imitation"): Row({"v0": made}, hours, cloned)}).splitlines()[2]
+def test_the_duration_of_a_training_is_shown(hours: float | None, cloned: float | None, shown: str) -> None:
+    cell = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
+    ours = markdown({("navigation", "imitation"): Row({"v0": cell}, hours, cloned)}).splitlines()[2]
     assert ours.endswith(f"| {shown} |")
 
 
-def test_figures_are_of_the_first_runs() -> None:
+def test_figures_cover_the_first_runs() -> None:
     cell = (Went(True, 1.0, 0.5), Went(False, 0.5, -0.5), Went(True, 1.0, 0.7))
-    found = figures(cell, 2)
-    assert (found.runs, found.pass_rate, found.progress.mean, found.reward.mean) == (2, 0.5, 0.75, 0.0)
-    assert found.progress.std == pytest.approx(0.35355, abs=1e-4)
+    cell_figures = figures(cell, 2)
+    assert (cell_figures.runs, cell_figures.pass_rate, cell_figures.progress.mean, cell_figures.reward.mean) == (
+        2,
+        0.5,
+        0.75,
+        0.0,
+    )
+    assert cell_figures.progress.std == pytest.approx(0.35355, abs=1e-4)
 
 
-def test_what_a_policy_played_is_kept_until_it_is_another_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cell_is_cached_until_the_policy_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "policy.safetensors"
     write_policy(path, policy_of(card_of()))
     cell = measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
@@ -81,30 +86,30 @@ def test_what_a_policy_played_is_kept_until_it_is_another_one(tmp_path: Path, mo
 @pytest.mark.slow
 def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) -> None:
     alone = measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
-    assert [each.success for each in alone] == [True] * 3
+    assert [episode.success for episode in alone] == [True] * 3
     (tmp_path / "several").mkdir()
     assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
 
 
 class Mortal(table_cells._ExpertPlayer):
-    """Ends its process in its first episode."""
+    """A player that kills its process in its first episode."""
 
     def play(self, task: Task) -> Result:
         killed()
         return super().play(task)
 
 
-def test_a_process_of_the_expert_that_is_lost_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lost_process_of_the_expert_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(table_cells, "_ExpertPlayer", Mortal)
     with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode") as error:
         list(table_cells._by_expert("cover_and_hide", "v0", 2))
-    said = re.search(r"\(seed (\d+) of the level\)", str(error.value))
-    assert said is not None
-    (found,) = error.value.diagnostics
-    assert found.help == f"to play that one alone: tltlc demonstrate cover_and_hide:v0 --seed {said[1]}"
+    seed_match = re.search(r"\(seed (\d+) of the level\)", str(error.value))
+    assert seed_match is not None
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.help == f"to play that one alone: tltlc demonstrate cover_and_hide:v0 --seed {seed_match[1]}"
 
 
-def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(
+def test_the_expert_plays_again_when_the_spec_or_the_code_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     played: list[str] = []
@@ -116,7 +121,7 @@ def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(
     monkeypatch.setattr(table_cells, "_by_expert", play)
 
     def count() -> int:
-        """How often it has played when the cell was asked for once more."""
+        """Measure the cell again; return how often the expert has played so far."""
         assert measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (Went(True, 1.0, 0.5),)
         return len(played)
 
@@ -131,7 +136,7 @@ def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(
         assert count() == 3
 
 
-def test_a_policy_of_another_spec_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_policy_for_another_spec_is_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "policy.safetensors"
     write_policy(path, policy_of(card_of()))
     spec = tmp_path / "bold.tltl"

@@ -1,4 +1,4 @@
-"""The trainings of Table I: which folder is whose, what goes on, and what counts as ended."""
+"""The trainings of Table I: their folders, resuming them, and when they are finished."""
 
 from __future__ import annotations
 
@@ -28,30 +28,30 @@ from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
 
 STEPS = 10**6
-TO = ("--steps", "1000000")
-BOTH: tuple[Model, ...] = ("ours", "imitation")
+STEPS_OPTION = ("--steps", "1000000")
+MODELS: tuple[Model, ...] = ("ours", "imitation")
 
 
 def training(folder: Path, model: Model = "ours", minutes: float = 60.0) -> TableTraining:
     return table_training(folder, "cover_and_hide", model, Limits(STEPS, minutes))
 
 
-def begun(made: TableTraining, minutes: float, *, seconds: float | None = None, end: str = "minutes") -> None:
-    """Have a training in its folder, which has ended after ``seconds`` unless they are None."""
-    method = "imitation" if made.imitates else "automaton"
-    write_run(run_in(made.folder, method=method, stop__minutes=minutes, stop__steps=STEPS))
-    write_policy(made.folder / POLICY, policy_of(card_of()))
+def begun(cell_training: TableTraining, minutes: float, *, seconds: float | None = None, end: str = "minutes") -> None:
+    """Write the files of a training into its folder; it ended after ``seconds``, or is unfinished if None."""
+    method = "imitation" if cell_training.imitates else "automaton"
+    write_run(run_in(cell_training.folder, method=method, stop__minutes=minutes, stop__steps=STEPS))
+    write_policy(cell_training.folder / POLICY, policy_of(card_of()))
     if seconds is not None:
-        imitated = {"cloned": 50} if made.imitates else None
+        imitated = {"cloned": 50} if cell_training.imitates else None
         record = {"end": end, "steps": 1000, "seconds": seconds, "imitated": imitated}
-        (made.folder / RECORD).write_text(json.dumps(record), encoding="utf-8")
+        (cell_training.folder / RECORD).write_text(json.dumps(record), encoding="utf-8")
 
 
-def test_each_level_and_model_has_a_folder_of_its_own(tmp_path: Path) -> None:
+def test_each_level_and_model_has_its_own_folder(tmp_path: Path) -> None:
     names = [
         table_training(tmp_path, level, model, Limits(STEPS, 60.0)).folder.name
         for level in ("navigation", "cover_and_hide")
-        for model in BOTH
+        for model in MODELS
     ]
     assert len(set(names)) == 4
     assert [name.rpartition("-")[0] for name in names] == [
@@ -63,34 +63,34 @@ def test_each_level_and_model_has_a_folder_of_its_own(tmp_path: Path) -> None:
     assert training(tmp_path).folder == training(tmp_path).folder
 
 
-def test_what_an_agent_learns_from_is_another_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = {training(tmp_path).folder}
+def test_another_level_spec_or_setting_is_another_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folders = {training(tmp_path).folder}
     with monkeypatch.context() as patched:
         patched.setattr(table_trainings, "load_level", lambda level, variant: load_level(level, "v1"))
-        found.add(training(tmp_path).folder)
+        folders.add(training(tmp_path).folder)
     with monkeypatch.context() as patched:
         spec = tmp_path / "bold.tltl"
         spec.write_text(
             "import stealth\nentity exit\nspec bold { limit 9 steps\n reach near(exit) }\n", encoding="utf-8"
         )
         patched.setattr(table_trainings, "spec_of", lambda level: str(spec))
-        found.add(training(tmp_path).folder)
+        folders.add(training(tmp_path).folder)
     with monkeypatch.context() as patched:
         settings = read_settings()
         slower = replace(settings, ppo=replace(settings.ppo, learning_rate=1e-5))
         patched.setattr(table_trainings, "read_settings", lambda: slower)
-        found.add(training(tmp_path).folder)
-    assert len(found) == 4
+        folders.add(training(tmp_path).folder)
+    assert len(folders) == 4
 
 
-def test_the_limit_counts_for_who_is_cloned_for_a_share_of_it(tmp_path: Path) -> None:
+def test_the_limit_determines_the_folder_only_for_imitation(tmp_path: Path) -> None:
     assert training(tmp_path, "ours", 1.0).folder == training(tmp_path, "ours", 60.0).folder
     assert training(tmp_path, "imitation", 1.0).folder != training(tmp_path, "imitation", 60.0).folder
-    more = table_training(tmp_path, "cover_and_hide", "imitation", Limits(STEPS + 1, 60.0))
-    assert more.folder != training(tmp_path, "imitation", 60.0).folder
+    longer = table_training(tmp_path, "cover_and_hide", "imitation", Limits(STEPS + 1, 60.0))
+    assert longer.folder != training(tmp_path, "imitation", 60.0).folder
 
 
-def test_limits_are_those_that_the_others_had() -> None:
+def test_limits_are_the_defaults_or_the_limits_of_a_policy() -> None:
     assert limits(None) == Limits(read_settings().stop.steps, 60.0)
     assert limits(5.0) == Limits(read_settings().stop.steps, 5.0)
     for path in shipped_policies().values():
@@ -100,11 +100,21 @@ def test_limits_are_those_that_the_others_had() -> None:
         assert limits_as_of(card, 5.0) == Limits(stop["steps"], 5.0)
 
 
-def test_a_new_training_is_begun(tmp_path: Path) -> None:
-    made = training(tmp_path, "imitation", 2.5)
-    assert trained(made) is None
-    assert train_arguments(made) == [
-        *("--level", "cover_and_hide", "--out", str(made.folder), "--method", "imitation", *TO, "--minutes", "2.5")
+def test_a_new_training_is_started(tmp_path: Path) -> None:
+    cell_training = training(tmp_path, "imitation", 2.5)
+    assert trained(cell_training) is None
+    assert train_arguments(cell_training) == [
+        *(
+            "--level",
+            "cover_and_hide",
+            "--out",
+            str(cell_training.folder),
+            "--method",
+            "imitation",
+            *STEPS_OPTION,
+            "--minutes",
+            "2.5",
+        )
     ]
     assert "--method" not in train_arguments(training(tmp_path))
 
@@ -120,31 +130,47 @@ def test_a_new_training_is_begun(tmp_path: Path) -> None:
         (60.0, None, "", 60.0, False),
     ],
 )
-def test_a_training_is_over_that_has_met_its_spec_or_passed_the_limit(
+def test_a_training_is_finished_if_it_met_its_spec_or_passed_the_limit(
     tmp_path: Path, limit: float, seconds: float | None, end: str, wanted: float, over: bool
 ) -> None:
-    made = training(tmp_path, minutes=wanted)
-    begun(made, limit, seconds=seconds, end=end)
-    found = trained(made)
-    assert (found is not None) == over
-    if found:
+    cell_training = training(tmp_path, minutes=wanted)
+    begun(cell_training, limit, seconds=seconds, end=end)
+    finished = trained(cell_training)
+    assert (finished is not None) == over
+    if finished:
         assert seconds is not None
-        assert (found.policy, found.hours, found.cloned) == (made.folder / POLICY, seconds / 3600, None)
+        assert (finished.policy, finished.hours, finished.cloned) == (
+            cell_training.folder / POLICY,
+            seconds / 3600,
+            None,
+        )
     else:
-        assert train_arguments(made) == ["--resume", str(made.folder), *TO, "--minutes", f"{wanted:g}"]
+        assert train_arguments(cell_training) == [
+            "--resume",
+            str(cell_training.folder),
+            *STEPS_OPTION,
+            "--minutes",
+            f"{wanted:g}",
+        ]
 
 
 @pytest.mark.parametrize(("limit", "wanted", "goes_on_to"), [(60.0, 10.0, "60"), (0.0, 10.0, "0"), (5.0, 0.0, "0")])
-def test_one_that_was_broken_off_goes_on_to_the_greater_limit(
+def test_an_interrupted_training_resumes_to_the_greater_limit(
     tmp_path: Path, limit: float, wanted: float, goes_on_to: str
 ) -> None:
-    made = training(tmp_path, minutes=wanted)
-    begun(made, limit)
-    assert train_arguments(made) == ["--resume", str(made.folder), *TO, "--minutes", goes_on_to]
+    cell_training = training(tmp_path, minutes=wanted)
+    begun(cell_training, limit)
+    assert train_arguments(cell_training) == [
+        "--resume",
+        str(cell_training.folder),
+        *STEPS_OPTION,
+        "--minutes",
+        goes_on_to,
+    ]
 
 
-def test_of_who_imitates_it_is_told_in_what_share_of_its_steps_it_was_cloned(tmp_path: Path) -> None:
-    made = training(tmp_path, "imitation")
-    begun(made, 60.0, seconds=3601.0)
-    found = trained(made)
-    assert found is not None and found.cloned == 0.05
+def test_the_share_of_cloned_steps_is_reported_for_imitation(tmp_path: Path) -> None:
+    cell_training = training(tmp_path, "imitation")
+    begun(cell_training, 60.0, seconds=3601.0)
+    finished = trained(cell_training)
+    assert finished is not None and finished.cloned == 0.05

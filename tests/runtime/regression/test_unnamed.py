@@ -1,4 +1,4 @@
-"""What has changed since a baseline without being named."""
+"""Files that have changed since the baseline but are not named as changed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 
 def recorded() -> tuple[Reference, ...]:
-    """What a baseline has of the levels as they are now."""
+    """References that match the levels as they are now."""
     room, shipped = load_level("room.toml"), load_level("branching")
     return (
         reference(level="room", files=room.files, place="room.toml"),
@@ -39,7 +39,7 @@ def recorded() -> tuple[Reference, ...]:
     )
 
 
-def test_what_differs_is_told_with_its_cases(suite: Suite) -> None:
+def test_changed_files_are_reported_with_their_cases(suite: Suite) -> None:
     references = recorded()
     assert unnamed(suite, suite.cases, references) == {}
     Path("room.toml").write_text(ROOM + "# later\n", encoding="utf-8")
@@ -49,7 +49,7 @@ def test_what_differs_is_told_with_its_cases(suite: Suite) -> None:
 
 
 @pytest.mark.parametrize("text", ["# later\n", "[[", "\0"])
-def test_an_asset_takes_the_place_of_the_packages(suite: Suite, text: str) -> None:
+def test_an_asset_that_replaces_a_shipped_one_is_reported(suite: Suite, text: str) -> None:
     references = recorded()
     Path("assets").mkdir()
     guard = Path("assets/guard.toml")
@@ -59,7 +59,7 @@ def test_an_asset_takes_the_place_of_the_packages(suite: Suite, text: str) -> No
     assert unnamed(suite, suite.cases, references) == {"assets/guard.toml": ("room:v0",)}
 
 
-def test_a_level_that_is_gone_has_changed(suite: Suite) -> None:
+def test_a_deleted_level_counts_as_changed(suite: Suite) -> None:
     references = recorded()
     Path("room.toml").unlink()
     assert unnamed(suite, suite.cases, references) == {"room.toml": ("room:v0",)}

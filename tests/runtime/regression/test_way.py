@@ -1,4 +1,4 @@
-"""The way of an episode in few points."""
+"""The path of an episode, simplified to few points."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ def _episode(request: pytest.FixtureRequest) -> Episode:
     return episodes[0]
 
 
-def test_at_any_time_the_player_was_where_the_way_has_it(episode: Episode) -> None:
+def test_the_path_is_close_to_the_player_at_all_times(episode: Episode) -> None:
     way = way_of(episode)
     times = [time for *_, time in way]
     assert times == sorted(set(times))
     for shot in episode.snapshots:
-        there = [np.interp(shot.time, times, [point[axis] for point in way]) for axis in (0, 1)]
-        assert dist(there, shot.player.position[:2]) < 0.22
+        place = [np.interp(shot.time, times, [point[axis] for point in way]) for axis in (0, 1)]
+        assert dist(place, shot.player.position[:2]) < 0.22
 
 
-def test_it_has_few_points(episode: Episode) -> None:
+def test_the_path_has_few_points(episode: Episode) -> None:
     assert len(way_of(episode)) < 0.7 * len(episode.snapshots)
 
 
-def test_the_state_is_that_of_the_time(episode: Episode) -> None:
+def test_each_point_has_the_state_of_its_time(episode: Episode) -> None:
     way = way_of(episode)
     known = {round(shot.time, 2): int(state) for shot, state in zip(episode.snapshots, episode.states, strict=True)}
     assert all(state == known[time] for *_, state, time in way)
@@ -41,11 +41,11 @@ def test_the_state_is_that_of_the_time(episode: Episode) -> None:
         assert round(episode.snapshots[step].time, 2) in {time for *_, time in way}
 
 
-def test_places_are_there_for_all_of_the_time(episode: Episode) -> None:
+def test_the_places_cover_the_whole_episode(episode: Episode) -> None:
     places = list(places_along(way_of(episode)))
     assert len(places) == pytest.approx(episode.snapshots[-1].time / EVERY, abs=1)
     assert places[0] == pytest.approx(episode.snapshots[0].player.position[:2], abs=0.01)
 
 
-def test_who_stands_still_is_there_all_the_time() -> None:
+def test_a_player_that_stands_still_stays_in_one_place() -> None:
     assert list(places_along(((2.0, 3.0, 0, 0.0), (2.0, 3.0, 0, 0.5)))) == [(2.0, 3.0)] * 5
