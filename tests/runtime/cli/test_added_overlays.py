@@ -1,4 +1,4 @@
-"""``LEVEL:VARIANT+OVERLAY`` wherever a command takes a level."""
+"""Commands accept ``LEVEL:VARIANT+OVERLAY`` as a level."""
 
 from __future__ import annotations
 
@@ -31,44 +31,46 @@ def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def test_check(tltlc: Run) -> None:  # noqa: F811
-    found = tltlc("check", "--level", LEVEL)
-    assert found.status == 0, found.err
-    assert f"{LEVEL} supplies" in found.err
+def test_check_accepts_overlays(tltlc: Run) -> None:  # noqa: F811
+    result = tltlc("check", "--level", LEVEL)
+    assert result.status == 0, result.err
+    assert f"{LEVEL} supplies" in result.err
     missing = tltlc("check", "--level", "cover_and_hide:v0+edits/wider.toml")
     assert missing.status == 3 and "did you mean `edits/wide.toml`?" in missing.err
 
 
 @pytest.mark.parametrize("command", ["demonstrate", "record"])
-def test_demonstrate_and_record(tltlc: Run, command: str) -> None:  # noqa: F811
-    found = tltlc(command, LEVEL, "--spec", "brief.tltl", "--episodes", "1", "--out", "runs")
-    assert found.status == 0, found.err
+def test_demonstrate_and_record_accept_overlays(tltlc: Run, command: str) -> None:  # noqa: F811
+    result = tltlc(command, LEVEL, "--spec", "brief.tltl", "--episodes", "1", "--out", "runs")
+    assert result.status == 0, result.err
     (path,) = Path("runs").glob("*.episode.npz")
     assert path.name.startswith("cover_and_hide-v0+guard_alert+wide-0")
     assert read_episode(path).level.enemies[0].kind.sight_range == 12.5
     if command == "record":
-        assert f" --level {LEVEL} " in found.out
+        assert f" --level {LEVEL} " in result.out
 
 
-def test_evaluate(tltlc: Run) -> None:  # noqa: F811
+def test_evaluate_accepts_overlays(tltlc: Run) -> None:  # noqa: F811
     write_policy(Path("policy.safetensors"), untrained())
-    found = tltlc("evaluate", "policy.safetensors", "--level", LEVEL, "--episodes", "1", "--out", "runs", "--json", "-")
-    assert found.status == 0, found.err
-    said = json.loads(found.out)
-    assert (said["level"], said["variant"]) == ("cover_and_hide", "v0+guard_alert+wide")
+    result = tltlc(
+        "evaluate", "policy.safetensors", "--level", LEVEL, "--episodes", "1", "--out", "runs", "--json", "-"
+    )
+    assert result.status == 0, result.err
+    report = json.loads(result.out)
+    assert (report["level"], report["variant"]) == ("cover_and_hide", "v0+guard_alert+wide")
     assert len(list(Path("runs").glob("cover_and_hide-v0+guard_alert+wide-0-0-*.episode.npz"))) == 2
 
 
-def test_a_level_with_overlays_names_its_policy(tltlc: Run) -> None:  # noqa: F811
-    found = tltlc("evaluate", "cover_and_hide:v0+guard_alert", "--episodes", "1", "--json", "-")
-    said = json.loads(found.out)
-    assert (said["variant"], said["policy"]["level"]) == ("v0+guard_alert", "cover_and_hide")
+def test_a_level_with_overlays_uses_the_shipped_policy_of_the_level(tltlc: Run) -> None:  # noqa: F811
+    result = tltlc("evaluate", "cover_and_hide:v0+guard_alert", "--episodes", "1", "--json", "-")
+    report = json.loads(result.out)
+    assert (report["variant"], report["policy"]["level"]) == ("v0+guard_alert", "cover_and_hide")
 
 
-def test_train(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = Asked("brief.tltl", LEVEL, None, None, None, None, None, None, {})
+def test_train_accepts_overlays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    options = Asked("brief.tltl", LEVEL, None, None, None, None, None, None, {})
     with click.Context(click.Command("train")):
-        run = new_run(asked, None)
+        run = new_run(options, None)
     assert run.folder == Path("training/cover_and_hide-v0+guard_alert+wide-brief-0")
     write_run(run)
     (tmp_path / "elsewhere").mkdir()

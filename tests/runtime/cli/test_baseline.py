@@ -1,4 +1,4 @@
-"""``tltlc baseline``: what it says, writes and refuses; the policies were never trained."""
+"""``tltlc baseline``: its output, its files and its errors; the policies are untrained."""
 
 from __future__ import annotations
 
@@ -25,38 +25,38 @@ ONE = ("--workers", "1")
 
 def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     before = Path("game.baseline.json").read_bytes()
-    found = tltlc("baseline", "game.toml", "--output", "again.json", *ONE)
-    assert found.status == 0
-    assert found.out == "room:v0: easy met in 50 of 50 episodes\nroom:v0: soon met in 0 of 50 episodes\n"
-    told = found.err.splitlines()
-    assert "hopeless: 50 of 50 episodes, 0 met the spec" in told
-    assert told[-3:] == [
+    result = tltlc("baseline", "game.toml", "--output", "again.json", *ONE)
+    assert result.status == 0
+    assert result.out == "room:v0: easy met in 50 of 50 episodes\nroom:v0: soon met in 0 of 50 episodes\n"
+    lines = result.err.splitlines()
+    assert "hopeless: 50 of 50 episodes, 0 met the spec" in lines
+    assert lines[-3:] == [
         "    `hopeless` is `fail` even if nothing changes: train its policy further, or lower its `pass_rate`",
         "wrote again.json",
         "to judge by it: tltlc regress game.toml --baseline again.json",
     ]
     assert Path("again.json").read_bytes() == before
     assert len(read_baseline(Path("again.json"))) == 2
-    # It is known before anything is played that it cannot be written.
-    found = tltlc("baseline", "game.toml", "--output", "nowhere/again.json", *ONE)
-    assert (found.status, found.out) == (3, "")
-    assert found.err == (
+    # An unwritable file is reported before anything is played.
+    result = tltlc("baseline", "game.toml", "--output", "nowhere/again.json", *ONE)
+    assert (result.status, result.out) == (3, "")
+    assert result.err == (
         "error[TLT0005]: cannot write `nowhere/again.json`: there is no such folder\n"
         "  help: name another place with --output\n"
     )
 
 
-def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_unchanged_references_are_kept_and_changes_are_reported(tltlc: Run, game: Path) -> None:  # noqa: F811
     before = Path("game.baseline.json").read_bytes()
-    found = tltlc("baseline", "game.toml", *ONE)
-    assert found.out == "".join(
+    result = tltlc("baseline", "game.toml", *ONE)
+    assert result.out == "".join(
         f"room:v0: {spec} met in {met} of 50 episodes  (as before)\n" for spec, met in (("easy", 50), ("soon", 0))
     )
-    assert "of 50 episodes" not in found.err
+    assert "of 50 episodes" not in result.err
     assert Path("game.baseline.json").read_bytes() == before
     edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nepisodes = 25')
-    found = tltlc("baseline", "game.toml", *ONE)
-    assert found.out.splitlines() == [
+    result = tltlc("baseline", "game.toml", *ONE)
+    assert result.out.splitlines() == [
         "room:v0: easy met in 50 of 50 episodes  (as before)",
         "room:v0: soon met in 0 of 25 episodes; before: 0 of 50",
     ]
@@ -68,15 +68,15 @@ def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, gam
         "room:v0: easy met in 50 of 50 episodes; before: 50 of 50",
         "room:v0: soon met in 0 of 25 episodes; before: 0 of 25",
     ]
-    found = tltlc("baseline", "game.toml", "--fresh", *ONE)
-    assert "room:v0: 50 of 50 episodes, 50 met the spec" in found.err.splitlines()
-    assert "as before" not in found.out
+    result = tltlc("baseline", "game.toml", "--fresh", *ONE)
+    assert "room:v0: 50 of 50 episodes, 50 met the spec" in result.err.splitlines()
+    assert "as before" not in result.out
     Path("game.baseline.json").write_text("{}", encoding="utf-8")
-    found = tltlc("baseline", "game.toml", *ONE)
-    assert found.status == 0 and "before" not in found.out, "what is no baseline says nothing"
+    result = tltlc("baseline", "game.toml", *ONE)
+    assert result.status == 0 and "before" not in result.out, "what is no baseline says nothing"
 
 
-def test_a_first_baseline_that_is_stopped_says_what_there_is(
+def test_a_stopped_first_baseline_reports_its_partial_file(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -86,16 +86,16 @@ def test_a_first_baseline_that_is_stopped_says_what_there_is(
 
     monkeypatch.setattr("tltl_runtime.regression.verdict.baseline_run._played", stopped)
     Path("game.baseline.json").unlink()
-    found = tltlc("baseline", "game.toml", *ONE)
-    assert (found.status, found.out) == (130, "")
-    assert found.err == (
+    result = tltlc("baseline", "game.toml", *ONE)
+    assert (result.status, result.out) == (130, "")
+    assert result.err == (
         "stopped: no `game.baseline.json` was written; what is over is kept in `game.baseline.json.partial`: the same "
         "command goes on with it\n"
     )
     assert Path("game.baseline.json.partial").exists()
 
 
-def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
+def test_a_stopped_baseline_leaves_the_old_one(game: Path) -> None:
     before = Path("game.baseline.json").read_bytes()
     Path("game.toml").write_text(SUITE.replace("episodes = 50", "episodes = 10000"), encoding="utf-8")
     command = [sys.executable, "-m", "tltlc", "baseline", "game.toml", *ONE]
@@ -111,23 +111,23 @@ def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["game.toml", "easy.safetensors"])
-def test_nothing_that_the_suite_reads_is_overwritten(tltlc: Run, game: Path, name: str) -> None:  # noqa: F811
+def test_inputs_of_the_suite_are_not_overwritten(tltlc: Run, game: Path, name: str) -> None:  # noqa: F811
     before = (game / name).read_bytes()
-    found = tltlc("baseline", "game.toml", "-o", name)
-    assert (found.status, found.out) == (3, "")
-    assert found.err.startswith(
+    result = tltlc("baseline", "game.toml", "-o", name)
+    assert (result.status, result.out) == (3, "")
+    assert result.err.startswith(
         f"error[TLT0005]: cannot write `{name}`: the suite reads it\n  help: name another place"
     )
     assert (game / name).read_bytes() == before
 
 
-def test_standard_output_is_no_place_for_a_baseline(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("baseline", "game.toml", "-o", "-")
-    assert (found.status, found.out) == (2, "") and "a file is needed, and `-` is none" in found.err
+def test_a_baseline_is_not_written_to_standard_output(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("baseline", "game.toml", "-o", "-")
+    assert (result.status, result.out) == (2, "") and "a file is needed, and `-` is none" in result.err
     assert not Path("-").exists()
 
 
-def test_a_case_that_is_always_met_needs_more_episodes_alone() -> None:
+def test_the_advice_depends_on_the_pass_rate() -> None:
     case = Case("room:v0", "room", "v0", "v0", None, Path("bot"), 25, Thresholds(), "")
     assert _advice(1.0, case, 0.05) == "25 `episodes` are too few to be certain, give it 29 at least"
     assert _advice(0.9, case, 0.05) == "train its policy further, lower its `pass_rate`, or give it more `episodes`"

@@ -17,11 +17,11 @@ from tltl_runtime.stealth.recordings.check import check
 from tltl_runtime.stealth.recordings.file import read_episode
 
 
-def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_each_played_episode_is_recorded(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     folder = tmp_path / "new" / "runs"
-    found: Outcome = tltlc("demonstrate", "cover_and_hide:v0", "--seed", "5", "--episodes", "2", "-o", str(folder))
-    assert (found.status, found.err) == (0, "")
-    assert found.out.splitlines()[-1] == "2 of 2 succeeded"
+    result: Outcome = tltlc("demonstrate", "cover_and_hide:v0", "--seed", "5", "--episodes", "2", "-o", str(folder))
+    assert (result.status, result.err) == (0, "")
+    assert result.out.splitlines()[-1] == "2 of 2 succeeded"
     names = [f"cover_and_hide-v0-{seed}" for seed in (5, 6)]
     assert sorted(path.name for path in folder.iterdir()) == sorted(
         name + ending for name in names for ending in (".episode.npz", ".png")
@@ -32,7 +32,7 @@ def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignor
     assert (folder / f"{names[0]}.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_it_writes_the_same_again_and_over_nothing_else(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_equal_episodes_are_rewritten_and_other_files_are_kept(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     for options in ([], [], ["--careless"]):
         tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path), *options)
     names = ["cover_and_hide-v0-0", "cover_and_hide-v0-0-2"]
@@ -40,7 +40,7 @@ def test_it_writes_the_same_again_and_over_nothing_else(tltlc, tmp_path: Path) -
     assert sorted(path.name for path in tmp_path.glob("*.png")) == sorted(f"{name}.png" for name in names)
 
 
-def test_it_writes_over_no_picture_of_another(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_other_pictures_are_not_overwritten(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     mine = tmp_path / "cover_and_hide-v0-0.png"
     mine.write_text("mine")
     tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path))
@@ -49,27 +49,27 @@ def test_it_writes_over_no_picture_of_another(tltlc, tmp_path: Path) -> None:  #
     assert {path.name for path in tmp_path.iterdir()} == {mine.name, f"{stem}.png", f"{stem}.episode.npz"}
 
 
-def test_failing_is_a_finding(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_failed_episode_gives_status_1(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     (tmp_path / "never.tltl").write_text("import stealth\nspec never { limit 5 steps\n reach seen }")
     spec = f"{tmp_path / 'never.tltl'}"
-    found: Outcome = tltlc("demonstrate", "cover_and_hide", "--careless", "--spec", spec, "-o", str(tmp_path))
-    assert found.status == 1
-    assert found.out.startswith("seed 0: limit after 5 steps, 0.75 s, progress ")
-    said = "  nowhere to go for the expert; limit after 5 steps, remaining: Reach seen"
-    assert found.out.splitlines()[1] == said
+    result: Outcome = tltlc("demonstrate", "cover_and_hide", "--careless", "--spec", spec, "-o", str(tmp_path))
+    assert result.status == 1
+    assert result.out.startswith("seed 0: limit after 5 steps, 0.75 s, progress ")
+    reason = "  nowhere to go for the expert; limit after 5 steps, remaining: Reach seen"
+    assert result.out.splitlines()[1] == reason
 
 
-def test_a_film_at_once(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_film_is_written_with_the_episode(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     (tmp_path / "soon.tltl").write_text("import stealth\nspec soon { limit 3 steps\n keep alive }")
     spec = f"{tmp_path / 'soon.tltl'}"
-    found: Outcome = tltlc("demonstrate", "cover_and_hide", "--spec", spec, "-o", str(tmp_path), "--film", "gif")
-    assert found.status == 0, found.err
+    result: Outcome = tltlc("demonstrate", "cover_and_hide", "--spec", spec, "-o", str(tmp_path), "--film", "gif")
+    assert result.status == 0, result.err
     with Image.open(tmp_path / "cover_and_hide-v0-0.gif") as film:
         assert (film.size, film.n_frames) == ((640, 480), 4)
 
 
 @pytest.mark.parametrize(("name", "status"), [("SIGTERM", 143), ("SIGINT", 130)])
-def test_asked_to_end_it_says_what_there_is(tmp_path: Path, name: str, status: int) -> None:
+def test_a_signal_ends_it_with_the_number_of_recordings(tmp_path: Path, name: str, status: int) -> None:
     command = [sys.executable, "-m", "tltlc", "demonstrate", "cover_and_hide", "--careless", "--episodes", "900"]
     with subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -85,19 +85,19 @@ def test_asked_to_end_it_says_what_there_is(tmp_path: Path, name: str, status: i
 
 
 @pytest.mark.parametrize(("level", "status"), [("nowhere", 2), ("cover_and_hide:v9", 2)])
-def test_a_level_that_is_not_there(tltlc, tmp_path: Path, level: str, status: int) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("demonstrate", level, "-o", str(tmp_path))
-    assert (found.status, found.out) == (status, "")
-    assert "error[TLT08" in found.err
+def test_an_unknown_level_is_rejected(tltlc, tmp_path: Path, level: str, status: int) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("demonstrate", level, "-o", str(tmp_path))
+    assert (result.status, result.out) == (status, "")
+    assert "error[TLT08" in result.err
 
 
-def test_what_nobody_can_do_is_said_before_it_is_tried(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_an_unreachable_goal_is_reported_first(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     (tmp_path / "far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
-    found: Outcome = tltlc(
+    result: Outcome = tltlc(
         "demonstrate", "navigation:v2", "--spec", str(tmp_path / "far.tltl"), "-o", str(tmp_path), "--careless"
     )
-    assert found.status == 1
-    assert found.err == (
+    assert result.status == 1
+    assert result.err == (
         "warning[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `far` asks\n"
         "  help: the way ends at `corridor_block_2`, which is 2.2 m high\n"
     )

@@ -1,4 +1,4 @@
-"""``tltlc evaluate``: the report, the files, and what is refused."""
+"""``tltlc evaluate``: its reports, its files and its errors."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def policy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
-    found = tltlc("evaluate", policy, "--episodes", "3", "--seed", "5")
-    assert found.status == 0
-    lines = found.out.splitlines()
+def test_the_text_report(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    result = tltlc("evaluate", policy, "--episodes", "3", "--seed", "5")
+    assert result.status == 0
+    lines = result.out.splitlines()
     assert lines[0] == f"cover_and_hide v0, spec soon, seed 5: {policy}"
     assert lines[1] == "note: the level has changed since the policy was trained on it"
     assert lines[5] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
@@ -61,43 +61,45 @@ def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
         "To record one of them, for `tltlc replay`:",
         f"  tltlc evaluate {policy} --seed 5 --first 0 --episodes 1 --out evaluation",
     ]
-    told = found.err.splitlines()
-    assert told[2] == "50% played; passed: 0 of 3 sampled"
-    assert told[-1] == "100% played; passed: 0 of 3 sampled, 0 of 3 arg-max"
+    progress = result.err.splitlines()
+    assert progress[2] == "50% played; passed: 0 of 3 sampled"
+    assert progress[-1] == "100% played; passed: 0 of 3 sampled, 0 of 3 arg-max"
 
 
-def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F811
-    found = tltlc("evaluate", policy.parent, "--episodes", "4", "--seed", "5", "--json", "-")
-    assert found.status == 0
-    said = json.loads(found.out)
+def test_the_json_report(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    result = tltlc("evaluate", policy.parent, "--episodes", "4", "--seed", "5", "--json", "-")
+    assert result.status == 0
+    report = json.loads(result.out)
     head = ["level", "variant", "level_hash", "spec", "seed", "first", "complete", "policy", "versions"]
-    assert list(said) == [*head, *FIGURES, "argmax"]
-    assert list(said["argmax"]) == FIGURES
-    assert (said["level"], said["variant"], said["spec"], said["seed"]) == ("cover_and_hide", "v0", "soon", 5)
-    assert said["level_hash"] == level_hash(load_level("cover_and_hide")) != said["policy"]["level_hash"]
-    assert [each["index"] for each in said["episodes"]] == [0, 1, 2, 3]
-    assert {each["seed"] for each in said["episodes"]} == {each["seed"] for each in said["argmax"]["episodes"]}
-    assert said["progress"].keys() == said["reward"].keys() == {"mean", "std"}
-    for each in (*said["episodes"], *said["argmax"]["episodes"]):
-        assert each["reward"] == pytest.approx(each["progress"] - 1.0)
-    assert re.fullmatch("[0-9a-f]{64}", said["policy"]["sha256"])
-    assert {"tltlc", "pybullet", "numpy", "torch"} < said["versions"].keys()
+    assert list(report) == [*head, *FIGURES, "argmax"]
+    assert list(report["argmax"]) == FIGURES
+    assert (report["level"], report["variant"], report["spec"], report["seed"]) == ("cover_and_hide", "v0", "soon", 5)
+    assert report["level_hash"] == level_hash(load_level("cover_and_hide")) != report["policy"]["level_hash"]
+    assert [episode["index"] for episode in report["episodes"]] == [0, 1, 2, 3]
+    assert {episode["seed"] for episode in report["episodes"]} == {
+        episode["seed"] for episode in report["argmax"]["episodes"]
+    }
+    assert report["progress"].keys() == report["reward"].keys() == {"mean", "std"}
+    for episode in (*report["episodes"], *report["argmax"]["episodes"]):
+        assert episode["reward"] == pytest.approx(episode["progress"] - 1.0)
+    assert re.fullmatch("[0-9a-f]{64}", report["policy"]["sha256"])
+    assert {"tltlc", "pybullet", "numpy", "torch"} < report["versions"].keys()
 
     again = json.loads(tltlc("evaluate", policy, "--episodes", "2", "--first", "2", "--seed", "5", "--json", "-").out)
-    assert again["episodes"] == said["episodes"][2:]
+    assert again["episodes"] == report["episodes"][2:]
 
 
-def test_the_report_takes_the_place_of_no_input(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
+def test_the_report_does_not_overwrite_an_input(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
     mine = tmp_path / "mine.safetensors"
     shutil.copy(policy, mine)
-    found = tltlc("evaluate", mine, "--episodes", "1", "--json", mine)
-    assert found.status == 2
-    assert f"`{mine}` would be written over: it is an input" in found.err
-    assert "played" not in found.err
+    result = tltlc("evaluate", mine, "--episodes", "1", "--json", mine)
+    assert result.status == 2
+    assert f"`{mine}` would be written over: it is an input" in result.err
+    assert "played" not in result.err
     assert mine.read_bytes() == policy.read_bytes()
 
 
-def test_a_policy_that_is_replaced_meanwhile(
+def test_a_policy_deleted_during_the_evaluation_is_still_identified(
     tltlc: Run,  # noqa: F811
     policy: Path,
     tmp_path: Path,
@@ -106,12 +108,12 @@ def test_a_policy_that_is_replaced_meanwhile(
     mine, play = tmp_path / "mine.safetensors", Player.play
     shutil.copy(policy, mine)
     monkeypatch.setattr(Player, "play", lambda self, task: mine.unlink(missing_ok=True) or play(self, task))
-    found = tltlc("evaluate", mine, "--episodes", "1", "--json", "-")
-    assert found.status == 0, found.err
-    assert json.loads(found.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()
+    result = tltlc("evaluate", mine, "--episodes", "1", "--json", "-")
+    assert result.status == 0, result.err
+    assert json.loads(result.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()
 
 
-def test_recordings_and_pictures(
+def test_recordings_and_pictures_are_written(
     tltlc: Run,  # noqa: F811
     policy: Path,
     tmp_path: Path,
@@ -119,30 +121,31 @@ def test_recordings_and_pictures(
 ) -> None:
     folder, report = tmp_path / "new" / "runs", tmp_path / "new" / "report.json"
     command = ("evaluate", policy, "--episodes", "2", "--seed", "5", "--out", folder, "--json", report)
-    found = tltlc(*command)
-    assert found.status == 0
+    result = tltlc(*command)
+    assert result.status == 0
     stems = [f"cover_and_hide-v0-5-{index}-{chosen}" for index in (0, 1) for chosen in ("arg-max", "sampled")]
     names = [f"{stem}{ending}" for stem in stems for ending in (".episode.npz", ".png")]
     names += ["evaluation.json", "ways-arg-max.png", "ways-sampled.png"]
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
     assert report.read_text() == (folder / "evaluation.json").read_text()
-    assert found.err.splitlines()[-1] == (
+    assert result.err.splitlines()[-1] == (
         f"wrote {folder}: 4 recordings with plans, ways-sampled.png, ways-arg-max.png, evaluation.json; "
         "look at ways-sampled.png first"
     )
-    said = json.loads(report.read_text())
-    for each in said["episodes"]:
-        episode = read_episode(folder / f"cover_and_hide-v0-5-{each['index']}-sampled.episode.npz")
-        assert (episode.seed, episode.end) == (each["seed"], each["end"])
-        assert float(episode.rewards.sum()) == pytest.approx(each["reward"])
-        sha256 = said["policy"]["sha256"]
-        assert episode.player == f"policy cover_and_hide soon {sha256[:8]}, sampled, episode {each['index']}"
+    evaluation = json.loads(report.read_text())
+    for entry in evaluation["episodes"]:
+        episode = read_episode(folder / f"cover_and_hide-v0-5-{entry['index']}-sampled.episode.npz")
+        assert (episode.seed, episode.end) == (entry["seed"], entry["end"])
+        assert float(episode.rewards.sum()) == pytest.approx(entry["reward"])
+        sha256 = evaluation["policy"]["sha256"]
+        assert episode.player == f"policy cover_and_hide soon {sha256[:8]}, sampled, episode {entry['index']}"
     with Image.open(folder / "ways-sampled.png") as picture:
         red = sum(count for count, colour in picture.convert("RGB").getcolors(1 << 20) if colour == (100, 116, 139))
     assert red > 50, "there are marks where time was up"
-    assert "To record one of them" not in found.out
+    assert "To record one of them" not in result.out
 
-    # Of the same policy, the recordings of other episodes stay; of another one, all would be taken for this one's.
+    # Recordings of other episodes of the same policy stay; recordings of another policy are removed, since they could
+    # be mistaken for recordings of this one.
     kept = ["cover_and_hide-v0-5.png", "cover_and_hide-v1-5-0-sampled.png", "notes.txt", "ways-of-mine.png"]
     for name in kept:
         (folder / name).touch()
@@ -153,8 +156,8 @@ def test_recordings_and_pictures(
     pipes.put_beside(folder / pipe)
     pipes.forbid(monkeypatch)
     kept += [pipe, f"a_{pipe}"]
-    mine, other = untrained(), tmp_path / "other.safetensors"
-    write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.weights()))
+    policy_of_mine, other = untrained(), tmp_path / "other.safetensors"
+    write_policy(other, Policy(replace(policy_of_mine.card, training={"seed": 9}), policy_of_mine.weights()))
     again = tltlc("evaluate", other, *command[2:], "--record", "none")
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
     assert again.err.splitlines()[-2:] == [
@@ -177,7 +180,7 @@ def test_recordings_and_pictures(
         ("ways-arg-max.png", "mine"),
     ],
 )
-def test_a_file_that_no_evaluation_wrote_is_in_the_way(
+def test_files_that_no_evaluation_wrote_are_not_overwritten(
     tltlc: Run,  # noqa: F811
     policy: Path,
     tmp_path: Path,
@@ -187,42 +190,42 @@ def test_a_file_that_no_evaluation_wrote_is_in_the_way(
     path = tmp_path / "runs" / name
     path.parent.mkdir()
     path.write_text(text)
-    found = tltlc("evaluate", policy, "--episodes", "1", "--out", path.parent)
-    assert (found.status, found.out) == (2, "")
-    assert f"error[TLT0722]: `{path}` is there already, and no evaluation wrote it" in found.err
+    result = tltlc("evaluate", policy, "--episodes", "1", "--out", path.parent)
+    assert (result.status, result.out) == (2, "")
+    assert f"error[TLT0722]: `{path}` is there already, and no evaluation wrote it" in result.err
     assert (path.read_text(), len([*path.parent.iterdir()])) == (text, 1)
 
 
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
-def test_the_report_for_programs_goes_into_a_pipe(tltlc: Run, policy: Path) -> None:  # noqa: F811
-    there, here = os.pipe()
-    with os.fdopen(there, encoding="utf-8") as pipe:
-        found = tltlc("evaluate", policy, "--episodes", "1", "--json", f"/dev/fd/{here}")
-        os.close(here)
-        assert found.status == 0, found.err
+def test_the_json_report_is_written_into_a_pipe(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    read_end, write_end = os.pipe()
+    with os.fdopen(read_end, encoding="utf-8") as pipe:
+        result = tltlc("evaluate", policy, "--episodes", "1", "--json", f"/dev/fd/{write_end}")
+        os.close(write_end)
+        assert result.status == 0, result.err
         assert len(json.load(pipe)["episodes"]) == 1
 
 
 def test_a_recording_names_its_player_once(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
     folder = tmp_path / "runs"
-    found = tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "all")
-    assert found.status == 0, found.err
+    result = tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "all")
+    assert result.status == 0, result.err
     path = folder / "cover_and_hide-v0-0-0-sampled.episode.npz"
     episode, sha256 = read_episode(path), json.loads((folder / "evaluation.json").read_text())["policy"]["sha256"]
     assert episode.player == f"policy cover_and_hide {sha256[:8]}, sampled, episode 0"
-    # What this policy played stays, whatever its level is called.
+    # Recordings of this policy stay, whatever the name of their level.
     write_episode(path, replace(episode, player=f"policy cover, and_hide {sha256[:8]}, sampled, episode 0"))
     tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "none")
     assert path.exists()
 
 
 def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811
-    found = tltlc("evaluate", policy, "--record", "all")
-    assert (found.status, found.out) == (2, "")
-    assert "--record needs the folder for the recordings: --out DIR" in found.err
+    result = tltlc("evaluate", policy, "--record", "all")
+    assert (result.status, result.out) == (2, "")
+    assert "--record needs the folder for the recordings: --out DIR" in result.err
 
 
-def test_the_folder_of_a_training_knows_the_file_of_its_level(
+def test_the_folder_of_a_training_names_the_file_of_its_level(
     tltlc: Run,  # noqa: F811
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -232,14 +235,14 @@ def test_the_folder_of_a_training_knows_the_file_of_its_level(
     folder, trained = tmp_path / "trained", untrained(None, level)
     card = trained.card
     write_run(Training(folder, card.fspa, card.params, level, "v0", card.sensors, read_settings(None), 0))
-    # It is evaluated long after settings have come and gone.
+    # The training was written by an older version, which lacked a setting.
     run = json.loads((folder / "run.json").read_text())
     del run["settings"]["ppo"]["entropy_schedule"]
     (folder / "run.json").write_text(json.dumps(run))
     write_policy(folder / "policy.safetensors", trained)
     monkeypatch.chdir(folder)
-    found = tltlc("evaluate", folder, "--episodes", "1", "--json", "-")
-    assert (json.loads(found.out)["level"], found.status) == ("vault", 0)
+    result = tltlc("evaluate", folder, "--episodes", "1", "--json", "-")
+    assert (json.loads(result.out)["level"], result.status) == ("vault", 0)
     alone = tltlc("evaluate", "policy.safetensors", "--episodes", "1")
     assert (alone.status, alone.out) == (2, "")
     assert alone.err == (
@@ -250,7 +253,9 @@ def test_the_folder_of_a_training_knows_the_file_of_its_level(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "status", "workers"), [("SIGINT", 130, "2"), ("SIGTERM", 143, "1")])
-def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status: int, workers: str) -> None:
+def test_a_signal_ends_it_with_a_report_of_the_played_episodes(
+    policy: Path, name: str, status: int, workers: str
+) -> None:
     command = [sys.executable, "-m", "tltlc", "evaluate", str(policy), "--episodes", "300", "--workers", workers]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as evaluating:
         assert evaluating.stderr is not None
@@ -287,7 +292,7 @@ def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status
         (("POLICY", "--out", "file/runs"), 3, "error[TLT0005]"),
     ],
 )
-def test_refused(
+def test_invalid_options_are_rejected(
     tltlc: Run,  # noqa: F811
     policy: Path,
     tmp_path: Path,
@@ -300,26 +305,26 @@ def test_refused(
     (tmp_path / "file").touch()
     (tmp_path / "bot.onnx").touch()
     (tmp_path / "cover_and_hide.tltl").write_text(SOON.replace("20 steps", "25 steps"))
-    found = tltlc("evaluate", *(str(policy) if each == "POLICY" else each for each in arguments))
-    assert (found.status, found.out) == (status, "")
-    assert found.err.lower().startswith(said.lower())
+    result = tltlc("evaluate", *(str(policy) if argument == "POLICY" else argument for argument in arguments))
+    assert (result.status, result.out) == (status, "")
+    assert result.err.lower().startswith(said.lower())
 
 
-def test_the_policy_that_comes_with_a_level(tltlc: Run) -> None:  # noqa: F811
-    found = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "10", "--json", "-")
-    said = json.loads(found.out)
-    assert said["level_hash"] == said["policy"]["level_hash"]
+def test_a_level_uses_its_shipped_policy(tltlc: Run) -> None:  # noqa: F811
+    result = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "10", "--json", "-")
+    report = json.loads(result.out)
+    assert report["level_hash"] == report["policy"]["level_hash"]
     named = json.loads(tltlc("evaluate", "cover_and_hide:v1", "--episodes", "1", "--json", "-").out)
-    assert (named["level"], named["variant"], named["policy"]) == ("cover_and_hide", "v1", said["policy"])
-    assert (said["level"], said["spec"]) == ("cover_and_hide", "cover_and_hide")
-    assert said["argmax"]["pass_rate"] >= 0.9
+    assert (named["level"], named["variant"], named["policy"]) == ("cover_and_hide", "v1", report["policy"])
+    assert (report["level"], report["spec"]) == ("cover_and_hide", "cover_and_hide")
+    assert report["argmax"]["pass_rate"] >= 0.9
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("level", LEVELS)
-def test_the_policies_that_come_with_levels(level: str) -> None:
+def test_the_shipped_policies_meet_their_specs(level: str) -> None:
     path = shipped_policy(level)
     assert path is not None
     for sampled in (True, False):
         played = list(evaluate(path, episodes=100, seed=11, sampled=sampled))
-        assert sum(each.success for each in played) >= 95
+        assert sum(episode.success for episode in played) >= 95

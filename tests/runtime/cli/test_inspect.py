@@ -1,4 +1,4 @@
-"""``tltlc inspect``: what policies are, and policies for other engines."""
+"""``tltlc inspect``: summaries of policies, and their export to ONNX."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def _file(policy: Policy, tmp_path: Path) -> Path:
     return tmp_path / "policy.safetensors"
 
 
-def test_a_summary(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("inspect", str(file))
-    assert (found.status, found.err) == (0, "")
-    lines = found.out.splitlines()
+def test_the_text_summary(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("inspect", str(file))
+    assert (result.status, result.err) == (0, "")
+    lines = result.out.splitlines()
     assert lines[0] == str(file)
     assert lines[1] == f"  level    cover_and_hide v0 (hash {policy.card.level_hash[:12]})"
     assert lines[2].startswith(f"  spec     cover_and_hide (hash {spec_hash(policy.card.fspa)[:12]}): ")
@@ -64,17 +64,24 @@ def test_a_summary(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[n
     assert tltlc("inspect", str(file.parent)).out.splitlines()[1:] == lines[1:]
 
 
-def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_json_summary_next_to_an_invalid_file(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     other = file.with_name("torn.safetensors")
     other.write_bytes(file.read_bytes()[:1000])
-    found: Outcome = tltlc("inspect", str(other), str(file), "--format", "json")
-    assert found.status == 1
-    assert [each["code"] for each in json.loads(found.err)["diagnostics"]] == ["TLT0840"]
-    (said,) = json.loads(found.out)
-    assert (said["file"], said["level"], said["training"]) == (str(file), "cover_and_hide", TRAINING)
-    assert said["branches"] == [3, 3, 2, 2, 2]
-    assert (said["formula"], said["english"]) == (policy.card.fspa.formula.ascii, policy.card.fspa.formula.english)
-    assert said["observation"]["automaton"] == [len(said["states"])]
+    result: Outcome = tltlc("inspect", str(other), str(file), "--format", "json")
+    assert result.status == 1
+    assert [diagnostic["code"] for diagnostic in json.loads(result.err)["diagnostics"]] == ["TLT0840"]
+    (record,) = json.loads(result.out)
+    assert (record["file"], record["level"], record["training"]) == (
+        str(file),
+        "cover_and_hide",
+        TRAINING,
+    )
+    assert record["branches"] == [3, 3, 2, 2, 2]
+    assert (record["formula"], record["english"]) == (
+        policy.card.fspa.formula.ascii,
+        policy.card.fspa.formula.english,
+    )
+    assert record["observation"]["automaton"] == [len(record["states"])]
 
 
 @pytest.mark.parametrize(
@@ -88,12 +95,12 @@ def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, poli
         {"search": None},
     ],
 )
-def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_path: Path, training: object) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_unknown_training_records_are_not_shown(tltlc, policy: Policy, tmp_path: Path, training: object) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     path = tmp_path / "bot.safetensors"
     write_policy(path, Policy(replace(policy.card, training=training), policy.weights()))
-    found: Outcome = tltlc("inspect", str(path))
-    assert (found.status, found.err) == (0, "")
-    assert not any(f"  {row} " in found.out for row in ("training", "kept", "ended", "search"))
+    result: Outcome = tltlc("inspect", str(path))
+    assert (result.status, result.err) == (0, "")
+    assert not any(f"  {row} " in result.out for row in ("training", "kept", "ended", "search"))
 
 
 @pytest.mark.parametrize(
@@ -107,35 +114,35 @@ def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_p
         ),
     ],
 )
-def test_how_a_training_ended(policy: Policy, training: dict[str, object], said: list[str]) -> None:
+def test_the_end_of_a_training_is_shown(policy: Policy, training: dict[str, object], said: list[str]) -> None:
     text = summary_text(summary(Policy(replace(policy.card, training=training), policy.weights())))
-    assert all(each in text for each in said)
+    assert all(part in text for part in said)
 
 
-def test_a_training_that_goes_on(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_an_unfinished_training_is_shown(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     write_run(run_in(tmp_path))
     write_policy(tmp_path / POLICY, Policy(replace(policy.card, training={}), policy.weights()))
     line = measurements(a_report(count=0, successes=0, finished=(an_episode(True),)), policy.card.fspa)
     (tmp_path / METRICS).write_text(json.dumps(line) + "\n")
-    found: Outcome = tltlc("inspect", str(tmp_path))
-    assert "  ended    not yet: after 4,096 steps, 1 episode ended" in found.out.splitlines()
-    assert "  training seed 3, 4,096 steps, 2 s" in found.out.splitlines()
+    result: Outcome = tltlc("inspect", str(tmp_path))
+    assert "  ended    not yet: after 4,096 steps, 1 episode ended" in result.out.splitlines()
+    assert "  training seed 3, 4,096 steps, 2 s" in result.out.splitlines()
 
 
-def test_how_far_a_training_is(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_progress_of_an_unfinished_training_is_shown(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     run = run_in(tmp_path / "run", rollout__steps=512, stop__steps=10**6, stop__episodes=1)
     reports = train(run)
     last = next(report for report in reports if report.best_pass_rate is not None)
     reports.close()
-    found: Outcome = tltlc("inspect", str(run.folder), "--format", "json")
-    said = json.loads(found.out)[0]["training"]
-    assert (said["seed"], said["end"], said["steps"], said["search"]) == (3, None, last.steps, None)
-    assert said["window"]["pass_rate"] == round(last.window.pass_rate, 6)
-    assert said["best"]["pass_rate"] == round(last.best_pass_rate, 6)
+    result: Outcome = tltlc("inspect", str(run.folder), "--format", "json")
+    training = json.loads(result.out)[0]["training"]
+    assert (training["seed"], training["end"], training["steps"], training["search"]) == (3, None, last.steps, None)
+    assert training["window"]["pass_rate"] == round(last.window.pass_rate, 6)
+    assert training["best"]["pass_rate"] == round(last.best_pass_rate, 6)
 
 
 @pytest.mark.parametrize(("broken", "code"), [("checkpoint.pt", "TLT0864"), ("run.json", "TLT0863")])
-def test_a_training_that_is_broken_keeps_no_other_from_being_shown(
+def test_a_broken_training_does_not_hide_other_policies(
     tltlc,  # type: ignore[no-untyped-def] # noqa: F811
     policy: Policy,
     file: Path,
@@ -147,39 +154,39 @@ def test_a_training_that_is_broken_keeps_no_other_from_being_shown(
     write_run(run_in(folder))
     write_policy(folder / POLICY, Policy(replace(policy.card, training={}), policy.weights()))
     (folder / broken).write_text("{}")
-    found: Outcome = tltlc("inspect", str(folder), str(file))
-    assert found.status == 1
-    assert f"error[{code}]: `{folder / broken}` cannot be resumed from" in found.err
-    assert [line for line in found.out.splitlines() if line.endswith(("run", ".safetensors"))] == [str(file)]
-    found = tltlc("inspect", str(folder), str(file), "--format", "json")
-    assert [each["code"] for each in json.loads(found.err)["diagnostics"]] == [code]
-    assert [each["file"] for each in json.loads(found.out)] == [str(file)]
+    result: Outcome = tltlc("inspect", str(folder), str(file))
+    assert result.status == 1
+    assert f"error[{code}]: `{folder / broken}` cannot be resumed from" in result.err
+    assert [line for line in result.out.splitlines() if line.endswith(("run", ".safetensors"))] == [str(file)]
+    result = tltlc("inspect", str(folder), str(file), "--format", "json")
+    assert [diagnostic["code"] for diagnostic in json.loads(result.err)["diagnostics"]] == [code]
+    assert [record["file"] for record in json.loads(result.out)] == [str(file)]
 
 
-def test_a_policy_that_comes_with_a_level(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_shipped_policy_is_named_by_its_level(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     one, other = (tltlc("inspect", name) for name in ("cover_and_hide", "cover_and_hide:v1"))
     assert (one.status, one.err) == (other.status, other.err) == (0, "")
     assert one.out.splitlines()[1:] == other.out.splitlines()[1:]
 
 
-def test_a_stranger_s_file_does_not_command_the_terminal(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_control_characters_in_a_policy_are_replaced(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     path = tmp_path / "bot.safetensors"
     write_policy(path, Policy(replace(policy.card, level="\x1b[2Jgone\n", versions={"\x07": "\x1b"}), policy.weights()))
-    found: Outcome = tltlc("inspect", str(path))
-    assert "  level    \ufffd[2Jgone\ufffd v0" in found.out
-    assert "\x1b" not in found.out and "\x07" not in found.out
+    result: Outcome = tltlc("inspect", str(path))
+    assert "  level    \ufffd[2Jgone\ufffd v0" in result.out
+    assert "\x1b" not in result.out and "\x07" not in result.out
 
 
-def test_an_export_says_what_it_wrote_and_nothing_else(file: Path, policy: Policy) -> None:
+def test_an_export_reports_the_written_file_and_chooses_the_same_actions(file: Path, policy: Policy) -> None:
     onnxruntime = pytest.importorskip("onnxruntime")
     out = file.with_name("bot.onnx")
     command = [sys.executable, "-m", "tltlc", "inspect", str(file), "-o", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("", f"wrote {out}\n")
-    seen = observation_of(policy.card, np.random.default_rng(0), (1,))
-    feed = {key: each.astype(np.float32) for key, each in seen.items()}
+    observation = observation_of(policy.card, np.random.default_rng(0), (1,))
+    feed = {key: values.astype(np.float32) for key, values in observation.items()}
     _, action = onnxruntime.InferenceSession(out).run(None, feed)
-    assert action[0].tolist() == policy.choose({key: each[0] for key, each in seen.items()}).tolist()
+    assert action[0].tolist() == policy.choose({key: values[0] for key, values in observation.items()}).tolist()
 
 
 @pytest.mark.parametrize(
@@ -190,13 +197,13 @@ def test_an_export_says_what_it_wrote_and_nothing_else(file: Path, policy: Polic
         ((), "POLICY"),
     ],
 )
-def test_usage(tltlc, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("inspect", *arguments)
-    assert found.status == 2
-    assert said in found.err
+def test_invalid_options_are_rejected(tltlc, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("inspect", *arguments)
+    assert result.status == 2
+    assert said in result.err
 
 
-def test_a_policy_that_is_not_there(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("inspect", str(tmp_path / "none.safetensors"))
-    assert found.status == 3
-    assert "TLT0001" in found.err
+def test_a_missing_policy_is_reported(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("inspect", str(tmp_path / "none.safetensors"))
+    assert result.status == 3
+    assert "TLT0001" in result.err

@@ -1,4 +1,4 @@
-"""Commands that learn, or play what was learned, where what learns is not installed, or is not needed yet."""
+"""Commands that train or use policies: torch is reported if missing, and is imported as late as possible."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.waiting import HANG_S
 
 
 @pytest.mark.parametrize("command", ["train soon.tltl", "evaluate --level branching", "inspect branching"])
-def test_the_extra_that_is_missing_is_named(command: str, tmp_path: Path) -> None:
+def test_a_missing_extra_is_named(command: str, tmp_path: Path) -> None:
     hide = "import sys; sys.modules['torch'] = None"
     program = f"{hide}; from tltlc.interfaces.cli.main import main; main({command.split()})"
     done = subprocess.run(
@@ -26,7 +26,7 @@ def test_the_extra_that_is_missing_is_named(command: str, tmp_path: Path) -> Non
     )
 
 
-def test_what_is_not_there_is_told_before_what_learns_is_loaded(tmp_path: Path) -> None:
+def test_missing_files_are_reported_before_torch_is_imported(tmp_path: Path) -> None:
     program = """
 import sys
 from tltlc.interfaces.cli.main import main
@@ -44,4 +44,4 @@ for command in sys.argv[1:]:
     )
     assert done.stdout.splitlines() == ["2 False", "3 False", "3 False", "2 False", "3 False", "3 False"], done.stderr
     codes = [line.partition("]")[0] for line in done.stderr.splitlines() if line.startswith("error[")]
-    assert codes == [f"error[TLT0{each}" for each in ("800", "001", "001", "800", "001", "001")]
+    assert codes == [f"error[TLT0{code}" for code in ("800", "001", "001", "800", "001", "001")]

@@ -1,4 +1,4 @@
-"""``tltlc new --level``: a level that a designer changes."""
+"""``tltlc new --level``: a copy of a shipped level for a designer to change."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tltl_runtime.stealth.recordings.file import read_episode
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_copy_is_whole(tltlc, inside: Path, name: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_copy_is_complete(tltlc, inside: Path, name: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     made: Outcome = tltlc("new", "mine", "--level", name)
     assert made.status == 0
     assert made.err.endswith(f"Next: tltlc check --level mine/{name}.toml\n")
@@ -29,13 +29,13 @@ def test_a_copy_is_whole(tltlc, inside: Path, name: str) -> None:  # type: ignor
     assert "(nothing to report)" in checked.err
 
 
-def test_what_there_is_to_copy(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("new", "mine", "--level", "valt")
-    assert (found.status, Path("mine").exists()) == (2, False)
-    assert found.err == "error[TLT0800]: there is no level `valt` to copy\n  help: did you mean `vault`?\n"
+def test_a_similar_level_is_suggested(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("new", "mine", "--level", "valt")
+    assert (result.status, Path("mine").exists()) == (2, False)
+    assert result.err == "error[TLT0800]: there is no level `valt` to copy\n  help: did you mean `vault`?\n"
 
 
-def test_one_has_to_hide_and_to_open_the_door(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_vault_requires_hiding_and_opening_the_door(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     tltlc("new", "mine", "--level", "vault")
     level = Path("mine/vault.toml")
     for variant in ("v0", "v1"):
@@ -47,14 +47,14 @@ def test_one_has_to_hide_and_to_open_the_door(tltlc, inside: Path) -> None:  # t
         assert lever.min() <= 1.0
     level.write_text(level.read_text().replace("at = [10.5, 1.5, 0.0]", "at = [10.5, 9.2, 0.0]"))
     assert not reachable(load_level(str(level))).reaches("exit")
-    said = "`door` stays shut: it is opened by `lever`, which lies behind it"
-    assert said in tltlc("check", "--level", level).err
+    message = "`door` stays shut: it is opened by `lever`, which lies behind it"
+    assert message in tltlc("check", "--level", level).err
 
 
-def test_a_shipped_spec_for_a_level_of_ones_own(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_user_level_may_use_a_shipped_spec(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     tltlc("new", "mine", "--level", "navigation")
     Path("mine/navigation.toml").rename("mine/second.toml")
     Path("mine/navigation.tltl").unlink()
-    found: Outcome = tltlc("check", "--level", "mine/second.toml:v0")
-    assert found.status == 0
-    assert "help: this spec comes with tltlc: `tltlc new FOLDER --level navigation` copies it with its" in found.err
+    result: Outcome = tltlc("check", "--level", "mine/second.toml:v0")
+    assert result.status == 0
+    assert "help: this spec comes with tltlc: `tltlc new FOLDER --level navigation` copies it with its" in result.err

@@ -1,4 +1,4 @@
-"""``tltlc check --level``; each of its messages is a golden, too."""
+"""``tltlc check --level``; the golden tests cover its messages, too."""
 
 from __future__ import annotations
 
@@ -22,22 +22,23 @@ def test_every_signal_has_a_type_and_a_range(name: str, variant: str) -> None:
     assert offers(level).keys() == readers(level).keys()
 
 
-def test_shipped_levels_supply_their_specs(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("check", "--level", "all")
-    # Nobody can finish one of them, as it is meant.
-    assert found.status == 1
+def test_the_shipped_levels_supply_the_signals_of_their_specs(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("check", "--level", "all")
+    # One variant is unsolvable on purpose.
+    assert result.status == 1
     for name, variant in SHIPPED:
-        assert (f"{name}:{variant} supplies " in found.err) == ((name, variant) != ("navigation", "v2"))
-    assert found.err.count("error[") == 2
+        assert (f"{name}:{variant} supplies " in result.err) == ((name, variant) != ("navigation", "v2"))
+    assert result.err.count("error[") == 2
     assert (
-        "error[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `navigation` asks" in found.err
+        "error[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `navigation` asks"
+        in result.err
     )
-    assert "help: the way ends at `corridor_block_2`, which is 2.2 m high" in found.err
-    assert "navigation:v0 supplies s1, s2, exit, level_size = 27.39 m (nothing to report)" in found.err
-    assert found.err.count("navigation: the agent senses entities 9 (s1, s2, exit); map 4 x 15 x 15 (") == 1
+    assert "help: the way ends at `corridor_block_2`, which is 2.2 m high" in result.err
+    assert "navigation:v0 supplies s1, s2, exit, level_size = 27.39 m (nothing to report)" in result.err
+    assert result.err.count("navigation: the agent senses entities 9 (s1, s2, exit); map 4 x 15 x 15 (") == 1
 
 
-def test_a_spec_and_a_level(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_spec_is_checked_against_levels(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     spec = EXAMPLES / "navigation.tltl"
     assert tltlc("check", spec, "--level", "navigation:v0").status == 0
     other: Outcome = tltlc("check", spec, "--level", "cover_and_hide:v0", "--level", "branching:v0")
@@ -46,50 +47,50 @@ def test_a_spec_and_a_level(tltlc) -> None:  # type: ignore[no-untyped-def] # no
     assert "error[TLT0810]: the level `branching` has no entity `exit`" in other.err
 
 
-def test_an_artefact_and_a_level(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_an_artefact_is_checked_against_levels(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("compile", EXAMPLES / "branching.tltl:branching", "-t", "json").status == 0
-    found: Outcome = tltlc("check", "branching.fspa.json", "--level", "branching:v0", "--level", "navigation:v0")
-    assert "branching:v0 supplies s1, s2, s3, e_right, e_left, open_right, open_left, health," in found.err
-    assert "error[TLT0810]: the level `navigation` has no entity `s3`\n  help" in found.err
+    result: Outcome = tltlc("check", "branching.fspa.json", "--level", "branching:v0", "--level", "navigation:v0")
+    assert "branching:v0 supplies s1, s2, s3, e_right, e_left, open_right, open_left, health," in result.err
+    assert "error[TLT0810]: the level `navigation` has no entity `s3`\n  help" in result.err
 
 
-def test_what_holds_of_several_variants_is_said_once(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("check", EXAMPLES / "cover_and_hide.tltl", "--level", "branching")
-    assert found.err.count("TLT0810") == 1
+def test_a_message_on_several_variants_is_printed_once(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("check", EXAMPLES / "cover_and_hide.tltl", "--level", "branching")
+    assert result.err.count("TLT0810") == 1
 
 
-def test_the_formats_of_machines(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_machine_readable_formats(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     arguments = ("check", EXAMPLES / "cover_and_hide.tltl", "--level", "branching:v0", "--format")
-    found: Outcome = tltlc(*arguments, "json")
-    codes = [each["code"] for each in json.loads(found.out)["diagnostics"]]
-    assert (codes, found.err) == (["TLT0810", "TLT0813"], "")
+    result: Outcome = tltlc(*arguments, "json")
+    codes = [diagnostic["code"] for diagnostic in json.loads(result.out)["diagnostics"]]
+    assert (codes, result.err) == (["TLT0810", "TLT0813"], "")
     assert "ruleId" in tltlc(*arguments, "sarif").out
     assert "::error file=" in tltlc(*arguments, "github").out
 
 
-def test_a_plan_of_what_is_reached(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_plan_of_one_level_is_written(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("check", "--level", "navigation:v2", "--plan", "plan.png").status == 1
     assert Path("plan.png").read_bytes().startswith(b"\x89PNG")
-    several: Outcome = tltlc("check", "--level", "cover_and_hide", "--plan", "several.png")
-    assert several.status == 2 and not Path("several.png").exists()
-    assert "--plan is for one level and variant, e.g. `--level navigation:v2`; there are 3" in several.err
+    several_variants: Outcome = tltlc("check", "--level", "cover_and_hide", "--plan", "several.png")
+    assert several_variants.status == 2 and not Path("several.png").exists()
+    assert "--plan is for one level and variant, e.g. `--level navigation:v2`; there are 3" in several_variants.err
 
 
-def test_one_variant_of_all_levels(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("check", "--level", "all:v0", "--no-map", "--no-variables", "--no-entities")
-    assert found.status == 0
-    assert found.err.count("(nothing to report)") == 3
-    assert "navigation: the agent senses nothing of the level" in found.err
+def test_one_variant_of_all_levels_is_checked(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("check", "--level", "all:v0", "--no-map", "--no-variables", "--no-entities")
+    assert result.status == 0
+    assert result.err.count("(nothing to report)") == 3
+    assert "navigation: the agent senses nothing of the level" in result.err
 
 
-def test_wrong_usage(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_invalid_options_are_rejected(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("check", "--level", "navigation:v7").status == 2
     assert tltlc("check", "--level", "nowhere.toml").status == 3
     assert tltlc("check", "--level", "navigation:v0", "--entities", "s9").status == 2
     assert tltlc("check", "missing.tltl", "--level", "navigation").status == 3
 
 
-def test_who_leaps_out_of_a_level_is_told_of_the_level(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_jump_out_of_the_level_is_reported(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     level, spec = tmp_path / "tower.toml", tmp_path / "tower.tltl"
     level.write_text(TOWER)
     spec.write_text("import spatial entity exit spec leave { limit 200 steps reach near(exit) }")
@@ -97,10 +98,10 @@ def test_who_leaps_out_of_a_level_is_told_of_the_level(tltlc, tmp_path: Path) ->
     assert checked.status == 0
     title = "a jump may lead out of `tower`: one gets 1.75 m high, and its bounds end at 2.5 m"
     assert f"warning[TLT0806]: {title}\n  help: let them end above 2.73 m\n" in checked.err
-    found: Outcome = tltlc("demonstrate", level, "--spec", spec, "-o", tmp_path)
-    assert found.status == 1
-    assert found.err.startswith("error[TLT0806]: level tower v0, step ")
-    assert "is outside the level's bounds\n  help: make its bounds higher" in found.err
+    result: Outcome = tltlc("demonstrate", level, "--spec", spec, "-o", tmp_path)
+    assert result.status == 1
+    assert result.err.startswith("error[TLT0806]: level tower v0, step ")
+    assert "is outside the level's bounds\n  help: make its bounds higher" in result.err
 
 
 TOWER = """doc = "A leap leads out of the level."
@@ -132,16 +133,16 @@ at = [9.1, 3.0, 1.75]
 """
 
 
-def test_where_something_is_to_be_told_nothing_to_report_is_not_said(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_nothing_to_report_is_not_printed_next_to_a_warning(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     spec = tmp_path / "never.tltl"
     spec.write_text("import spatial entity exit spec never { limit 9 steps keep near(exit) keep not near(exit) }")
-    found: Outcome = tltlc("check", spec, "--level", "navigation:v0")
-    assert "warning[TLT0410]" in found.err
-    assert "navigation:v0 supplies exit, level_size = 27.39 m\n" in found.err
-    assert "nothing to report" not in found.err
+    result: Outcome = tltlc("check", spec, "--level", "navigation:v0")
+    assert "warning[TLT0410]" in result.err
+    assert "navigation:v0 supplies exit, level_size = 27.39 m\n" in result.err
+    assert "nothing to report" not in result.err
 
 
-def test_a_plan_that_cannot_be_written(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("check", "--level", "navigation:v0", "--plan", "no/such.png")
-    assert found.status == 3
-    assert "help: name another place with --plan\n" in found.err
+def test_an_unwritable_plan_is_reported(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("check", "--level", "navigation:v0", "--plan", "no/such.png")
+    assert result.status == 3
+    assert "help: name another place with --plan\n" in result.err

@@ -1,4 +1,4 @@
-"""What files hold is printed, and gives no commands."""
+"""Text from files is printed without workflow commands and control characters."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ EVIL = "x\n::error::forged\r\n\x1b[31mred\x07"
         ("a ##[error]b", "a ## [error]b"),
     ],
 )
-def test_no_command_is_left(text: str, shown: str) -> None:
+def test_commands_are_defused(text: str, shown: str) -> None:
     assert plain(text) == shown
 
 
 def commands(text: str) -> list[str]:
-    """The lines of a log that the service takes for commands, or that move a terminal."""
+    """The lines that GitHub Actions takes for commands, or that contain escape sequences."""
     return [line for line in text.splitlines() if line.lstrip().startswith("::") or "##[" in line or "\x1b" in line]
 
 
-def test_names_and_reasons_are_one_line_each() -> None:
+def test_each_name_and_each_reason_is_one_line() -> None:
     report = CaseReport(f"::error::{EVIL}", "room", "v0", "fail", (EVIL, f"::warning::{EVIL}", "##[error]forged"))
     lines = list(case_lines(report, 10, kept=False))
     assert len(lines) == 1 + len(report.reasons)
@@ -47,8 +47,8 @@ def test_names_and_reasons_are_one_line_each() -> None:
     assert commands("\n".join([verdict.replace("\x1b[31m\x1b[1mfail\x1b[0m", "fail"), *reasons])) == []
 
 
-def test_progress_is_told_in_lines_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_has_one_line_without_commands(capsys: pytest.CaptureFixture[str]) -> None:
     with RegressionDisplay() as display:
         display(replace(case(f"::error::{EVIL}"), episodes=1), 1, made())
-    told = capsys.readouterr().err
-    assert "forged" in told and len(told.splitlines()) == 1 and commands(told) == []
+    output = capsys.readouterr().err
+    assert "forged" in output and len(output.splitlines()) == 1 and commands(output) == []

@@ -39,20 +39,20 @@ PLAYERS: list[subprocess.Popen[str]] = []
 
 
 def started(display: dict[str, str], folder: Path, *arguments: str) -> Watched:
-    """A running command whose window is open and hears keys."""
+    """Start a command; return it once its window is open and receives keys."""
     player = Watched(display, folder, *arguments)
     PLAYERS.append(player.process)
     return player
 
 
 def ended(player: Watched, status: int = 0) -> str:
-    said, complaint = player.process.communicate(timeout=HANG_S)
-    assert player.process.returncode == status, complaint
-    return said
+    out, err = player.process.communicate(timeout=HANG_S)
+    assert player.process.returncode == status, err
+    return out
 
 
 def judged(path: Path) -> Episode:
-    """A recorded episode, which its own spec judges the same and its own game plays the same."""
+    """Read a recorded episode and check that its judgement and its simulation can be reproduced."""
     episode = read_episode(path)
     assert episode.player == "keyboard"
     assert check(episode) == ()
@@ -60,7 +60,7 @@ def judged(path: Path) -> Episode:
     return episode
 
 
-def way(episode: Episode) -> np.ndarray:
+def displacement(episode: Episode) -> np.ndarray:
     return np.subtract(episode.snapshots[-1].player.position, episode.snapshots[0].player.position)
 
 
@@ -78,20 +78,20 @@ def test_keys_move_the_player_and_escape_records(display: dict[str, str], tmp_pa
     keys(display, "key", "v")
     player.until(lambda: any(line.get("view") for line in player.told()), "changes its view")
     keys(display, "key", "Escape")
-    said = ended(player)
-    assert "mine.episode.npz: stopped after" in said
+    out = ended(player)
+    assert "mine.episode.npz: stopped after" in out
     episode = judged(tmp_path / "mine.episode.npz")
     assert episode.end == "stopped" and not episode.success
-    x, y, _ = way(episode)
+    x, y, _ = displacement(episode)
     assert x > 0.3 and y > 0.3
     assert all(episode.actions[:, branch].any() for branch in range(5))
     assert any(snapshot.player.crouching for snapshot in episode.snapshots)
-    # Nothing but towards greater x and y was asked for.
+    # The pressed keys only moved the player towards greater x and y.
     assert episode.actions[:, :2].max() == 1
 
 
 @needs_screen
-def test_crouching_by_one_stroke(display: dict[str, str], tmp_path: Path) -> None:
+def test_one_key_press_toggles_crouching(display: dict[str, str], tmp_path: Path) -> None:
     player = started(display, tmp_path, "play", "branching", "--crouch", "toggle", "-o", "runs")
     keys(display, "key", "c")
     player.until(lambda: sum(step["stepped"][3] for step in player.steps()) > 2, "crouches")
@@ -104,7 +104,7 @@ def test_crouching_by_one_stroke(display: dict[str, str], tmp_path: Path) -> Non
 
 
 @needs_screen
-def test_playing_again_and_ctrl_c_lose_nothing(display: dict[str, str], tmp_path: Path) -> None:
+def test_restarting_and_ctrl_c_lose_no_episode(display: dict[str, str], tmp_path: Path) -> None:
     player = started(display, tmp_path, "play", "cover_and_hide", "--view", "top_down")
     keys(display, "keydown", "a")
     player.until(lambda: any(step["x"] < -0.3 for step in player.steps()), "goes west")
@@ -115,13 +115,13 @@ def test_playing_again_and_ctrl_c_lose_nothing(display: dict[str, str], tmp_path
     player.process.send_signal(signal.SIGINT)
     ended(player, 130)
     first, second = (judged(tmp_path / f"cover_and_hide-v0{number}.episode.npz") for number in ("", "-2"))
-    assert way(first)[0] < -0.2 and way(second)[0] > 0.2
+    assert displacement(first)[0] < -0.2 and displacement(second)[0] > 0.2
     assert first.seed != second.seed
     keys(display, "keyup", "Right")
 
 
 @needs_screen
-def test_an_end_is_recorded_once_and_a_request_to_end_is_heard(display: dict[str, str], tmp_path: Path) -> None:
+def test_a_finished_episode_is_recorded_once_and_sigterm_ends_the_game(display: dict[str, str], tmp_path: Path) -> None:
     spec = tmp_path / "soon.tltl"
     spec.write_text(
         "signal health: number in [0, 1]\npredicate alive in [-1, 1] = health\n"
@@ -132,18 +132,18 @@ def test_an_end_is_recorded_once_and_a_request_to_end_is_heard(display: dict[str
     keys(display, "keydown", "w")
     path = tmp_path / "navigation-v0.episode.npz"
     player.until(path.exists, "records its episode")
-    # The key is still held at the end screen, which plays nothing more.
+    # The key is still held at the end screen, which does not step the game.
     player.until_it_looked(5)
     keys(display, "keyup", "w")
     assert list(tmp_path.glob("*.npz")) == [path]
     assert judged(path).end == "success"
     player.process.send_signal(signal.SIGTERM)
-    said = ended(player, 143)
-    assert said.count("success after") == 1
+    out = ended(player, 143)
+    assert out.count("success after") == 1
 
 
 @pytest.mark.parametrize("driver", ["x11", None])
-def test_without_a_screen_there_is_a_way_out(tmp_path: Path, driver: str | None) -> None:
+def test_without_a_screen_an_error_is_reported(tmp_path: Path, driver: str | None) -> None:
     without = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "SDL_VIDEODRIVER")
     environment = {name: value for name, value in os.environ.items() if name not in without}
     if driver:
@@ -155,7 +155,7 @@ def test_without_a_screen_there_is_a_way_out(tmp_path: Path, driver: str | None)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_spec_that_the_level_cannot_supply_opens_no_window(tmp_path: Path) -> None:
+def test_a_spec_that_the_level_cannot_supply_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "alien.tltl").write_text(
         "signal fuel: number in [0, 1]\npredicate full in [-1, 1] = fuel\nspec alien { keep full }\n", encoding="utf-8"
     )

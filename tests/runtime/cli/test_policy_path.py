@@ -1,4 +1,4 @@
-"""The policy of a training, by the training's folder."""
+"""Naming the policy of a training by the folder of the training."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 @pytest.fixture(name="here")
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with two trainings in `training`, made the current one."""
+    """The folder `training` with two trainings; its parent is the current folder."""
     monkeypatch.chdir(tmp_path)
     for name in ("one", "two words"):
         write_run(run_in(Path("training") / name))
     return Path("training")
 
 
-def test_a_file_and_that_of_a_folder(here: Path) -> None:
+def test_a_file_or_its_folder_names_a_policy(here: Path) -> None:
     file = here / "one" / POLICY
     file.touch()
     assert policy_path(here / "one") == policy_path(file) == file
@@ -33,23 +33,23 @@ def test_a_file_and_that_of_a_folder(here: Path) -> None:
 
 
 @pytest.mark.parametrize("command", ["evaluate", "inspect"])
-def test_a_training_without_a_policy(tltlc, here: Path, command: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc(command, "training/two words")
-    assert (found.status, found.out) == (1, "")
-    assert found.err == (
+def test_a_training_without_a_policy_is_reported(tltlc, here: Path, command: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc(command, "training/two words")
+    assert (result.status, result.out) == (1, "")
+    assert result.err == (
         "error[TLT0872]: the training in `training/two words` has no policy yet: its first iteration is not over\n"
         "  help: `tltlc train --resume 'training/two words'` goes on until it has one; "
         "one that is going on has it soon\n"
     )
     fspa = run_in(here).fspa
     lines = [measurements(a_report(number, finished=(an_episode(True),) * number), fspa) for number in (1, 2)]
-    # Whole JSON, and yet no measurements.
+    # The last line is valid JSON, but has no measurements.
     text = "".join(json.dumps(line) + "\n" for line in [*lines, {"iteration": 3}])
     (here / "two words" / METRICS).write_text(text)
     assert "has no policy yet: after 8,192 steps, 3 episodes ended\n" in tltlc(command, "training/two words").err
 
 
-def test_a_folder_of_trainings(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_folder_of_trainings_lists_the_trainings(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("evaluate", "training").err == (
         "error[TLT0872]: `training` holds trainings, and is none itself\n"
         "  help: name one of them: `training/one`, `training/two words`\n"
@@ -58,35 +58,35 @@ def test_a_folder_of_trainings(tltlc, here: Path) -> None:  # type: ignore[no-un
         write_run(run_in(here / f"more-{number}"))
     with pytest.raises(TltlError) as caught:
         policy_path(here)
-    (said,) = caught.value.diagnostics
-    assert said.help is not None and said.help.endswith("`training/more-7` and 3 more")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.help is not None and diagnostic.help.endswith("`training/more-7` and 3 more")
 
 
-def test_a_folder_of_something_else(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_folder_without_policies_and_trainings_is_reported(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("empty").mkdir()
     assert "there is neither a training nor a policy in `empty`" in tltlc("inspect", "empty").err
 
 
 @pytest.mark.parametrize("words", [("evaluate",), ("inspect",), ("train", "--from"), ("train",)], ids=" ".join)
-def test_a_level_whose_name_is_misspelt(tltlc, here: Path, words: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found = tltlc(*words, "cover_and_hid:v1")
-    assert found.err.startswith("error[TLT0001]: there is neither a file nor a level `cover_and_hid")
-    assert "did you mean the level `cover_and_hide`?" in found.err
-    assert found.status == 3
+def test_a_similar_level_is_suggested(tltlc, here: Path, words: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result = tltlc(*words, "cover_and_hid:v1")
+    assert result.err.startswith("error[TLT0001]: there is neither a file nor a level `cover_and_hid")
+    assert "did you mean the level `cover_and_hide`?" in result.err
+    assert result.status == 3
 
 
 @pytest.mark.parametrize("path", ["training/navigation", "navigation.safetensors"])
-def test_a_path_that_is_not_there_is_no_misspelt_level(tltlc, here: Path, path: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_missing_path_is_not_taken_for_a_misspelt_level(tltlc, here: Path, path: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("evaluate", path).err.startswith(f"error[TLT0001]: cannot read `{path}`: ")
 
 
-def test_two_levels_are_no_spec(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found = tltlc("train", "cover_and_hide", "--level", "navigation")
-    assert "`cover_and_hide` is a level, and so is `navigation`" in found.err
-    assert found.status == 2
+def test_two_levels_are_rejected(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result = tltlc("train", "cover_and_hide", "--level", "navigation")
+    assert "`cover_and_hide` is a level, and so is `navigation`" in result.err
+    assert result.status == 2
 
 
-def test_a_level_is_no_policy(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_level_file_is_not_a_policy(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("vault.toml").write_text("", encoding="utf-8")
-    found = tltlc("evaluate", "vault.toml")
-    assert found.err.startswith("error[TLT0840]: `vault.toml` is a TOML file, e.g. a level, and no policy")
+    result = tltlc("evaluate", "vault.toml")
+    assert result.err.startswith("error[TLT0840]: `vault.toml` is a TOML file, e.g. a level, and no policy")

@@ -1,4 +1,4 @@
-"""Where ``tltlc play`` records: nothing is lost, and nothing is overwritten."""
+"""The files that ``tltlc play`` records to: no recording is lost, and no file is overwritten."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltl_runtime.stealth.recordings.file import read_episode
 from tltlc.diagnostics.diagnostic import TltlError
 
 
-def test_a_recording_finds_a_place_where_its_own_is_refused(
+def test_a_recording_is_saved_elsewhere_if_its_folder_is_unwritable(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     env = RecordEpisode(make_env("navigation"), "keyboard")
@@ -33,7 +33,7 @@ def test_a_recording_finds_a_place_where_its_own_is_refused(
     env.close()
 
 
-def test_where_to_record(tmp_path: Path) -> None:
+def test_the_target_is_a_folder_or_a_recording_name(tmp_path: Path) -> None:
     with pytest.raises(click.UsageError, match=r"a folder or a name with \.episode\.npz"):
         RecordingFiles(tmp_path / "mine.txt", "x")
     with pytest.raises(TltlError, match=r"TLT0005: cannot record to `.*nowhere`: there is no such folder"):
@@ -42,7 +42,7 @@ def test_where_to_record(tmp_path: Path) -> None:
     assert (tmp_path / "new" / "runs").is_dir()
 
 
-def test_no_recording_is_ever_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_recording_is_lost_or_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     env = RecordEpisode(make_env("navigation"), "keyboard")
     env.reset(seed=1)
     env.step([1, 0, 0, 0, 0])
@@ -51,7 +51,7 @@ def test_no_recording_is_ever_lost(tmp_path: Path, capsys: pytest.CaptureFixture
     files = RecordingFiles(older, "x")
     files.keep(env.episode)
     assert len(read_episode(tmp_path / "mine.unfinished.episode.npz").actions) == 1
-    # What a process that was killed left behind stays, too.
+    # The unfinished recording of a killed process stays, too.
     other = RecordingFiles(older, "x")
     other.keep(env.episode)
     assert files.save(env.episode) == str(tmp_path / "mine-2.episode.npz")

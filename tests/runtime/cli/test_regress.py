@@ -1,4 +1,4 @@
-"""``tltlc regress``: what it says, writes and refuses; the policies were never trained."""
+"""``tltlc regress``: its output, its files and its errors; the policies are untrained."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ONE = ("--workers", "1")
 
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A game with its baseline and what a first run of its suite has left."""
+    """A game with its baseline and the results of a first run of its suite."""
     folder = tmp_path_factory.mktemp("recorded") / "game"
     write_game(folder)
     with pytest.MonkeyPatch.context() as patch:
@@ -47,11 +47,11 @@ def verdicts(out: str) -> list[str]:
     return [" ".join(line.split()[:2]) for line in out.splitlines() if line[0] != " "][:-1]
 
 
-def test_the_report_for_people(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", "--out", "new", *ONE)
-    assert found.status == 1
-    lines = found.out.splitlines()
-    assert verdicts(found.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", "--out", "new", *ONE)
+    assert result.status == 1
+    lines = result.out.splitlines()
+    assert verdicts(result.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
     assert re.fullmatch(
         r"room:v0   pass     (\d\d) of \1   progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
     )
@@ -59,93 +59,97 @@ def test_the_report_for_people(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert lines[3] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
     assert all(line.startswith("    ") for line in lines[3:-1])
     assert lines[-1] == "3 cases: 2 pass, 1 fail"
-    told = found.err.splitlines()
-    assert "room:v0: 25 of at most 50 episodes, 25 met the spec" in told
-    assert "hopeless: 25 of at most 50 episodes, 0 met the spec" in told
-    assert told[-1] == "wrote new/report.html: open it in a browser"
+    progress = result.err.splitlines()
+    assert "room:v0: 25 of at most 50 episodes, 25 met the spec" in progress
+    assert "hopeless: 25 of at most 50 episodes, 0 met the spec" in progress
+    assert progress[-1] == "wrote new/report.html: open it in a browser"
     page = Path("new/report.html").read_text(encoding="utf-8")
     assert page.startswith("<!DOCTYPE html>") and all(name in page for name in NAMES)
 
 
-def test_what_was_played_before_is_said_to_be(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", *ONE)
-    assert [line.endswith("  (as before)") for line in found.out.splitlines() if line[0] != " "] == [True] * 3 + [False]
-    assert found.err == "wrote regression/game/report.html: open it in a browser\n"
+def test_cached_cases_are_marked(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", *ONE)
+    assert [line.endswith("  (as before)") for line in result.out.splitlines() if line[0] != " "] == [True] * 3 + [
+        False
+    ]
+    assert result.err == "wrote regression/game/report.html: open it in a browser\n"
     fresh = tltlc("regress", "game.toml", "--fresh", *ONE)
-    assert fresh.out == found.out.replace("  (as before)", "")
+    assert fresh.out == result.out.replace("  (as before)", "")
     assert "25 of at most 50" in fresh.err
 
 
-def test_several_workers_come_to_the_same(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", "--out", "new", "--workers", "2")
-    assert found.out == tltlc("regress", "game.toml", *ONE).out.replace("  (as before)", "")
+def test_several_workers_give_the_same_results(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", "--out", "new", "--workers", "2")
+    assert result.out == tltlc("regress", "game.toml", *ONE).out.replace("  (as before)", "")
     suite = read_suite(Path("game.toml"))
     for name in NAMES:
         ours, theirs = (case_folder(suite, name, Path(run) / CASES) / "case.json" for run in ("new", "regression/game"))
         assert ours.read_bytes() == theirs.read_bytes()
 
 
-def test_the_report_for_programs(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", "--json", "-", *ONE)
-    assert found.status == 1
-    said = json.loads(found.out)
+def test_the_json_report(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", "--json", "-", *ONE)
+    assert result.status == 1
+    report = json.loads(result.out)
     head = ["format", "version", "suite", "seed", "error", "complete", "left_out", "verdicts", "cases"]
-    assert list(said) == head
-    assert (said["format"], said["suite"], said["complete"]) == ("tltl-regression", "game.toml", True)
-    assert said["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
-    assert [case["name"] for case in said["cases"]] == NAMES
-    for case in said["cases"]:
+    assert list(report) == head
+    assert (report["format"], report["suite"], report["complete"]) == ("tltl-regression", "game.toml", True)
+    assert report["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
+    assert [case["name"] for case in report["cases"]] == NAMES
+    for case in report["cases"]:
         assert {"level", "variant", "verdict", "pass_rate", "progress", "reward", "baseline", "reasons"} < case.keys()
         assert case["episodes"] == len(case["accounts"])
-        assert sum(each["success"] for each in case["accounts"]) == pytest.approx(case["pass_rate"] * case["episodes"])
-    # What people read is on standard error then.
-    assert "3 cases: 2 pass, 1 fail" in found.err
+        assert sum(account["success"] for account in case["accounts"]) == pytest.approx(
+            case["pass_rate"] * case["episodes"]
+        )
+    # The text report is on standard error then.
+    assert "3 cases: 2 pass, 1 fail" in result.err
     again = tltlc("regress", "game.toml", "--json", "report.json", *ONE)
-    assert json.loads(Path("report.json").read_text(encoding="utf-8")) == said
+    assert json.loads(Path("report.json").read_text(encoding="utf-8")) == report
     assert "3 cases: 2 pass, 1 fail" in again.out
 
 
-def test_the_report_for_continuous_integration(
+def test_the_reports_for_continuous_integration(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("GITHUB_WORKSPACE", str(game.parent))
-    found = tltlc("regress", "game.toml", "--junit", "report.xml", "--html", "page.html", "--github", *ONE)
+    result = tltlc("regress", "game.toml", "--junit", "report.xml", "--html", "page.html", "--github", *ONE)
     (tests,) = ET.parse("report.xml").getroot()
     assert [len(test.findall("failure")) for test in tests.iter("testcase")] == [0, 0, 1]
-    (command,) = (line for line in found.out.splitlines() if line.startswith("::"))
+    (command,) = (line for line in result.out.splitlines() if line.startswith("::"))
     assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::met in 0 of 25 episodes")
     assert Path("page.html").read_bytes() == Path("regression/game/report.html").read_bytes()
-    assert found.err.splitlines()[-1] == "wrote page.html: open it in a browser"
+    assert result.err.splitlines()[-1] == "wrote page.html: open it in a browser"
 
 
-def test_another_baseline(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_another_baseline_can_be_named(tltlc: Run, game: Path) -> None:  # noqa: F811
     Path("game.baseline.json").rename("tonight.json")
-    found = tltlc("regress", "game.toml", "--baseline", "tonight.json", "--changed", "tonight", *ONE)
-    assert verdicts(found.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
-    found = tltlc("regress", "game.toml", "--baseline", "nowhere.json", *ONE)
-    assert found.err == (
+    result = tltlc("regress", "game.toml", "--baseline", "tonight.json", "--changed", "tonight", *ONE)
+    assert verdicts(result.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    result = tltlc("regress", "game.toml", "--baseline", "nowhere.json", *ONE)
+    assert result.err == (
         "error[TLT0903]: the suite `game.toml` has no baseline: there is no `nowhere.json`\n"
         "  help: record it: tltlc baseline game.toml --output nowhere.json\n"
     )
 
 
-def test_the_default_folder_follows_the_place_of_the_suite(
+def test_the_default_folder_depends_on_the_path_of_the_suite(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(game.parent)
-    found = tltlc("regress", "game/game.toml", "--changed", "soon", *ONE)
-    assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
+    result = tltlc("regress", "game/game.toml", "--changed", "soon", *ONE)
+    assert result.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
     (game.parent / "elsewhere").mkdir()
     monkeypatch.chdir(game.parent / "elsewhere")
-    found = tltlc("regress", str(game / "game.toml"), "--changed", "soon", *ONE)
-    assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
+    result = tltlc("regress", str(game / "game.toml"), "--changed", "soon", *ONE)
+    assert result.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
 
 
-def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
+def test_a_run_stopped_in_its_first_case_reports_no_case(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -154,11 +158,11 @@ def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
         raise KeyboardInterrupt
 
     monkeypatch.setattr("tltl_runtime.regression.verdict.run._done", stopped)
-    found = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
-    assert found.status == 130
-    assert found.out == "no case was judged\n"
-    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
-    assert (said["complete"], said["cases"]) == (False, [])
+    result = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
+    assert result.status == 130
+    assert result.out == "no case was judged\n"
+    report = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (report["complete"], report["cases"]) == (False, [])
     (tests,) = ET.parse("report.xml").getroot()
     assert (tests.get("tests"), tests.get("errors")) == ("3", "3")
 
@@ -167,7 +171,7 @@ def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
     ("error", "status"),
     [(TltlError([Diagnostic("TLT0850", "a worker was lost")]), 1), (KeyboardInterrupt(), 130), (RuntimeError(), 70)],
 )
-def test_what_ended_a_run_is_told_where_the_page_cannot_be_written_either(
+def test_the_error_that_ended_a_run_is_reported_although_the_page_is_unwritable(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -182,123 +186,125 @@ def test_what_ended_a_run_is_told_where_the_page_cannot_be_written_either(
     (folder / "report.html").unlink()
     (folder / "report.html").mkdir()
     monkeypatch.setattr("tltl_runtime.regression.verdict.run.judged", ended)
-    found = tltlc("regress", "game.toml", *ONE)
-    assert found.status == status
-    assert "error[TLT0005]: cannot write `regression/game/report.html`" in found.err
+    result = tltlc("regress", "game.toml", *ONE)
+    assert result.status == status
+    assert "error[TLT0005]: cannot write `regression/game/report.html`" in result.err
     first = {1: "error[TLT0850]: a worker was lost", 130: "stopped: 2 of 3 cases are judged", 70: "error: a bug"}
-    assert first[status] in found.err
+    assert first[status] in result.err
 
 
-def test_a_suite_behind_changed_is_no_word_of_it(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_a_suite_after_changed_is_rejected(tltlc: Run, game: Path) -> None:  # noqa: F811
     refused = tltlc("regress", "--changed", "guard", "game.toml")
     assert refused.status == 2
     assert "`game.toml` is taken as a word of --changed: put the suite before it" in refused.err
 
 
-def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
-    assert verdicts(found.out) == ["hopeless fail"]
-    told = found.err.splitlines()
-    assert told[:2] == [
+def test_changed_runs_only_the_cases_that_depend_on_the_files(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
+    assert verdicts(result.out) == ["hopeless fail"]
+    lines = result.err.splitlines()
+    assert lines[:2] == [
         "no case depends on README.md",
         "left out, since none of the named files concerns them: room:v0, room:v1",
     ]
-    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
-    assert (said["left_out"], said["complete"], len(said["cases"])) == (NAMES[:2], True, 1)
+    report = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (report["left_out"], report["complete"], len(report["cases"])) == (NAMES[:2], True, 1)
     both = tltlc("regress", "game.toml", *ONE, "--changed", "soon", "--changed", "guard_alert.toml", "easy")
     assert verdicts(both.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
     assert "left out" not in both.err
 
 
 @pytest.mark.parametrize("words", [[], ["README.md", "src/game.py"]])
-def test_where_nothing_is_concerned(tltlc: Run, game: Path, words: list[str]) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
-    assert (found.status, found.out) == (0, "no case was to be played\n")
-    # One of an earlier run would be taken for this one's.
+def test_changed_may_select_no_case(tltlc: Run, game: Path, words: list[str]) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
+    assert (result.status, result.out) == (0, "no case was to be played\n")
+    # The page is replaced; the page of an earlier run could be mistaken for the page of this run.
     why = "it depends on none of the files that --changed names" if words else "--changed names no file"
     assert Path("regression/game/report.html").read_text(encoding="utf-8").count(why) == 2 * len(NAMES)
-    assert f"left out, since none of the named files concerns them: {', '.join(NAMES)}" in found.err
-    assert ("no case depends on README.md, src/game.py" in found.err) == bool(words)
+    assert f"left out, since none of the named files concerns them: {', '.join(NAMES)}" in result.err
+    assert ("no case depends on README.md, src/game.py" in result.err) == bool(words)
     (tests,) = ET.parse("report.xml").getroot()
     assert tests.get("tests") == "0"
 
 
-def test_a_name_that_is_no_file_may_be_a_slip(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", *ONE, "--changed", "gaurd", "assets/hopeles.toml")
-    assert (found.status, found.out) == (0, "no case was to be played\n")
-    told = found.err.splitlines()
-    assert told[:2] == [
+def test_a_similar_file_is_suggested_for_a_name_after_changed(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", *ONE, "--changed", "gaurd", "assets/hopeles.toml")
+    assert (result.status, result.out) == (0, "no case was to be played\n")
+    lines = result.err.splitlines()
+    assert lines[:2] == [
         "no case depends on gaurd, assets/hopeles.toml",
         "warning: there is no file `gaurd`: did you mean `guard`?",
     ]
-    assert "warning" not in told[2]
-    # A file that is there is no slip, and neither is one that was renamed to what is named, too.
+    assert "warning" not in lines[2]
+    # No warning for an existing file, or for a file that was renamed to a file that is named, too.
     Path("gaurd.toml").touch()
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "gaurd.toml").err
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "rooms.toml", "room.toml").err
-    said = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "rooms.toml")
-    assert said.out.startswith("::warning title=--changed::there is no file `rooms.toml`: did you mean `room.toml`?\n")
+    github = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "rooms.toml")
+    assert github.out.startswith(
+        "::warning title=--changed::there is no file `rooms.toml`: did you mean `room.toml`?\n"
+    )
 
 
-def test_what_has_changed_and_is_not_named_is_told(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_changed_files_that_are_not_named_give_a_warning(tltlc: Run, game: Path) -> None:  # noqa: F811
     edit("room.toml", "8.0, 8.0", "8.0, 8.5")
-    found = tltlc("regress", "game.toml", *ONE, "--changed", "soon")
+    result = tltlc("regress", "game.toml", *ONE, "--changed", "soon")
     warning = (
         "warning: `room.toml` has changed since the baseline, and is not among the files that are named; left out: "
     )
-    assert f"{warning}room:v0, room:v1" in found.err.splitlines()
-    found = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
-    assert f"{warning}room:v0, room:v1, hopeless" in found.err.splitlines() and found.status == 0
+    assert f"{warning}room:v0, room:v1" in result.err.splitlines()
+    result = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
+    assert f"{warning}room:v0, room:v1, hopeless" in result.err.splitlines() and result.status == 0
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "room").err
-    # Without a baseline nothing can be said of it.
+    # Without a baseline, changes are unknown.
     Path("game.baseline.json").unlink()
     assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "README.md").err
 
 
 @pytest.mark.parametrize("option", ["--json", "--junit", "--html"])
 @pytest.mark.parametrize("place", ["-", "/dev/stdout"])
-def test_each_report_can_be_printed_in_place_of_the_text(
+def test_each_report_can_be_written_to_standard_output(
     tltlc: Run,  # noqa: F811
     game: Path,
     option: str,
     place: str,
 ) -> None:
-    found = tltlc("regress", "game.toml", option, place, *ONE)
-    assert "3 cases: 2 pass, 1 fail" in found.err and "3 cases" not in found.out.splitlines()
+    result = tltlc("regress", "game.toml", option, place, *ONE)
+    assert "3 cases: 2 pass, 1 fail" in result.err and "3 cases" not in result.out.splitlines()
     again = tltlc("regress", "game.toml", option, "report", *ONE)
-    assert found.out == Path("report").read_text(encoding="utf-8")
+    assert result.out == Path("report").read_text(encoding="utf-8")
     assert "3 cases: 2 pass, 1 fail" in again.out and not Path("-").exists()
 
 
-def test_standard_output_is_for_one_report(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_only_one_report_goes_to_standard_output(tltlc: Run, game: Path) -> None:  # noqa: F811
     both = "both need standard output: write"
-    for words, said in {
+    for words, message in {
         ("--json", "-", "--html", "-"): f"`--json -` and `--html -` {both} the page to a file",
         ("--junit", "/dev/stdout", "--html", "-"): f"`--junit /dev/stdout` and `--html -` {both} the page to a file",
         ("--github", "--junit", "-"): f"--github and `--junit -` {both} the XML to a file",
         ("--github", "--json", "-"): f"--github and `--json -` {both} the JSON to a file",
     }.items():
-        found = tltlc("regress", "game.toml", *words)
-        assert (found.status, found.out) == (2, "") and said in found.err
+        result = tltlc("regress", "game.toml", *words)
+        assert (result.status, result.out) == (2, "") and message in result.err
 
 
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
-def test_reports_go_into_pipes(tltlc: Run, game: Path) -> None:  # noqa: F811
-    there, here = os.pipe()
-    with os.fdopen(there, encoding="utf-8") as pipe:
-        found = tltlc("regress", "game.toml", "--json", f"/dev/fd/{here}", *ONE, "--changed", "README.md")
-        os.close(here)
-        assert found.status == 0, found.err
+def test_a_report_is_written_into_a_pipe(tltlc: Run, game: Path) -> None:  # noqa: F811
+    read_end, write_end = os.pipe()
+    with os.fdopen(read_end, encoding="utf-8") as pipe:
+        result = tltlc("regress", "game.toml", "--json", f"/dev/fd/{write_end}", *ONE, "--changed", "README.md")
+        os.close(write_end)
+        assert result.status == 0, result.err
         assert json.load(pipe)["left_out"] == NAMES
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes close otherwise")
-def test_whoever_stops_reading_stops_no_run(game: Path) -> None:
+def test_a_closed_pipe_does_not_stop_the_run(game: Path) -> None:
     words = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--fresh", "--junit", "report.xml", *ONE]
     Path("regression/game/report.html").unlink()
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as running:
         assert running.stdout is not None
-        # As `head -1` does.
+        # Close the pipe after one line, as `head -1` does.
         assert running.stdout.readline().startswith(b"room:v0")
         running.stdout.close()
     assert running.returncode == 1
@@ -307,26 +313,26 @@ def test_whoever_stops_reading_stops_no_run(game: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are Unicode here")
-def test_the_name_of_a_suite_may_be_no_utf_8(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_the_name_of_a_suite_may_be_invalid_utf_8(tltlc: Run, game: Path) -> None:  # noqa: F811
     name = os.fsdecode(b"g\xff.toml")
     Path("game.toml").rename(name)
     words = ("--baseline", "game.baseline.json", "--out", "new", "--changed", "soon", *ONE)
-    found = tltlc("regress", name, "--json", "report.json", "--junit", "report.xml", *words)
-    assert (found.status, found.err.splitlines()[-1]) == (1, "wrote new/report.html: open it in a browser")
+    result = tltlc("regress", name, "--json", "report.json", "--junit", "report.xml", *words)
+    assert (result.status, result.err.splitlines()[-1]) == (1, "wrote new/report.html: open it in a browser")
     assert json.loads(Path("report.json").read_text(encoding="utf-8"))["suite"] == "g\ufffd.toml"
     assert "<title>g\ufffd: regression report</title>" in Path("new/report.html").read_text(encoding="utf-8")
     assert ET.parse("report.xml").getroot()[0].get("name") == "g\ufffd"
 
 
-def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_a_level_that_does_not_load_fails_its_cases(tltlc: Run, game: Path) -> None:  # noqa: F811
     text = Path("room.toml").read_text(encoding="utf-8")
     Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
-    found = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
-    assert found.out.startswith("room:v0   fail\n    it cannot be played\n    room.toml:")
-    commands = [line for line in found.out.splitlines() if line.startswith("::error file=room.toml,")]
+    result = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
+    assert result.out.startswith("room:v0   fail\n    it cannot be played\n    room.toml:")
+    commands = [line for line in result.out.splitlines() if line.startswith("::error file=room.toml,")]
     assert len(commands) == 3
-    assert "3 cases: 3 fail" in found.out.splitlines()
-    assert found.err.splitlines()[-1].startswith("wrote regression/game/report.html")
+    assert "3 cases: 3 fail" in result.out.splitlines()
+    assert result.err.splitlines()[-1].startswith("wrote regression/game/report.html")
 
 
 @pytest.mark.parametrize(
@@ -338,49 +344,49 @@ def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path
         (("--json", "j", "--html", "./j"), "`j`: --json writes it, too"),
     ],
 )
-def test_nothing_that_is_read_is_overwritten(
+def test_inputs_are_not_overwritten(
     tltlc: Run,  # noqa: F811
     game: Path,
     words: tuple[str, ...],
     said: str,
 ) -> None:
     before = {path: path.read_bytes() for path in game.iterdir() if path.is_file()}
-    found = tltlc("regress", "game.toml", *words)
-    assert (found.status, found.out) == (3, "")
-    assert found.err.startswith(f"error[TLT0005]: cannot write {said}\n  help: name another place with --")
+    result = tltlc("regress", "game.toml", *words)
+    assert (result.status, result.out) == (3, "")
+    assert result.err.startswith(f"error[TLT0005]: cannot write {said}\n  help: name another place with --")
     assert {path: path.read_bytes() for path in game.iterdir() if path.is_file()} == before
 
 
-def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", "--github", "--json", "-")
-    assert (found.status, found.out) == (2, "")
-    assert "--github and `--json -` both need standard output" in found.err
+def test_invalid_options_are_rejected(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", "--github", "--json", "-")
+    assert (result.status, result.out) == (2, "")
+    assert "--github and `--json -` both need standard output" in result.err
     for minutes in ("nan", "inf", "0"):
-        found = tltlc("regress", "game.toml", "--retrain", "--minutes", minutes)
-        assert found.status == 2 and "invalid value for '--minutes'" in found.err
+        result = tltlc("regress", "game.toml", "--retrain", "--minutes", minutes)
+        assert result.status == 2 and "invalid value for '--minutes'" in result.err
     Path("taken").touch()
-    found = tltlc("regress", "game.toml", "--out", "taken/run", *ONE)
-    assert (found.status, found.out) == (3, "")
-    assert found.err == (
+    result = tltlc("regress", "game.toml", "--out", "taken/run", *ONE)
+    assert (result.status, result.out) == (3, "")
+    assert result.err == (
         "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, and no folder\n"
         "  help: see that there is room, and that you may write there, or name another folder with --out\n"
     )
     for name in ("nowhere.toml", ".", "", "/"):
-        found = tltlc("regress", name)
-        assert found.status == 3 and "TLT000" in found.err, found.err
+        result = tltlc("regress", name)
+        assert result.status == 3 and "TLT000" in result.err, result.err
     for option in ("--json", "--junit", "--html"):
-        found = tltlc("regress", "game.toml", "--fresh", option, "nowhere/report", *ONE)
-        assert (found.status, found.out) == (3, ""), "nothing was played"
-        assert found.err == (
+        result = tltlc("regress", "game.toml", "--fresh", option, "nowhere/report", *ONE)
+        assert (result.status, result.out) == (3, ""), "nothing was played"
+        assert result.err == (
             "error[TLT0005]: cannot write `nowhere/report`: there is no such folder\n"
             f"  help: name another place with {option}\n"
         )
-        found = tltlc("regress", "game.toml", "--fresh", option, "a" * 300, *ONE)
-        assert (found.status, found.out) == (3, "") and "`: file name too long\n" in found.err
+        result = tltlc("regress", "game.toml", "--fresh", option, "a" * 300, *ONE)
+        assert (result.status, result.out) == (3, "") and "`: file name too long\n" in result.err
     Path("game.baseline.json").unlink()
-    found = tltlc("regress", "game.toml", *ONE)
-    assert (found.status, found.out) == (1, "")
-    assert found.err == (
+    result = tltlc("regress", "game.toml", *ONE)
+    assert (result.status, result.out) == (1, "")
+    assert result.err == (
         "error[TLT0903]: the suite `game.toml` has no baseline: there is no `game.baseline.json`\n"
         "  help: record it: tltlc baseline game.toml\n"
     )
@@ -388,8 +394,8 @@ def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
-def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str, status: int) -> None:  # noqa: F811
-    # One that never meets its spec, and may: thousands of episodes would tell.
+def test_a_signal_ends_it_and_keeps_the_judged_cases(tltlc: Run, game: Path, name: str, status: int) -> None:  # noqa: F811
+    # The case never meets its spec, and its thresholds are so low that a verdict takes thousands of episodes.
     endless = 'name = "hopeless"\nepisodes = 10000\nthresholds = { pass_rate = 0.001, fail_rate = 0.0005 }'
     text = SUITE.replace('name = "hopeless"', endless)
     Path("game.toml").write_text(text, encoding="utf-8")
@@ -409,52 +415,52 @@ def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str
     assert f"stopped: 2 of 3 cases are judged, and kept; to go on: {again}" in err.splitlines()
     (tests,) = ET.parse("report.xml").getroot()
     assert [test.get("name") for test in tests.iter("testcase") if test.find("error") is not None] == ["hopeless"]
-    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
-    assert (said["complete"], len(said["cases"])) == (False, 2)
+    report = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (report["complete"], len(report["cases"])) == (False, 2)
     assert Path("regression/game/report.html").exists()
-    # Nobody has to wait for a lock of a process that has gone.
+    # The lock of the ended process is free.
     Path("game.toml").write_text(text.replace("10000", "25"), encoding="utf-8")
-    found = tltlc("regress", "game.toml", *ONE)
-    assert [line.endswith("(as before)") for line in found.out.splitlines() if line[0] != " "][:2] == [True, True]
+    result = tltlc("regress", "game.toml", *ONE)
+    assert [line.endswith("(as before)") for line in result.out.splitlines() if line[0] != " "][:2] == [True, True]
 
 
 def _lengthen(baseline: Path, episodes: int) -> None:
-    """Have a baseline's episodes follow each other, again and again, up to so many."""
+    """Repeat the episodes of a baseline up to this number of episodes."""
     document = json.loads(baseline.read_text(encoding="utf-8"))
-    for each in document["references"]:
-        known = each["accounts"]
-        each["accounts"] = [{**known[index % len(known)], "index": index} for index in range(episodes)]
+    for reference in document["references"]:
+        accounts = reference["accounts"]
+        reference["accounts"] = [{**accounts[index % len(accounts)], "index": index} for index in range(episodes)]
     baseline.write_text(json.dumps(document), encoding="utf-8")
 
 
-def test_the_folder_of_a_training_is_none_for_a_run(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_the_folder_of_a_training_is_rejected_as_output(tltlc: Run, game: Path) -> None:  # noqa: F811
     Path("training/vault").mkdir(parents=True)
     Path("training/vault/run.json").touch()
-    found = tltlc("regress", "game.toml", "--out", "training/vault", *ONE)
-    assert (found.status, found.out) == (3, "")
-    assert found.err == (
+    result = tltlc("regress", "game.toml", "--out", "training/vault", *ONE)
+    assert (result.status, result.out) == (3, "")
+    assert result.err == (
         "error[TLT0005]: cannot write into `training/vault`: it is the folder of a training\n"
         "  help: name another folder with --out\n"
     )
     assert [path.name for path in Path("training/vault").iterdir()] == ["run.json"]
 
 
-def test_findings_of_the_shipped_suite_are_said_to_be_meant(
+def test_the_expected_findings_of_the_shipped_suite_are_explained(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    meant = "v1 and v2 of the shipped levels are changed on purpose: see the page"
-    assert meant not in tltlc("regress", "game.toml", *ONE).out
+    note = "v1 and v2 of the shipped levels are changed on purpose: see the page"
+    assert note not in tltlc("regress", "game.toml", *ONE).out
     monkeypatch.setattr("tltl_runtime.cli.support.regression_run.SHIPPED", Path("game.toml"))
-    assert meant not in tltlc("regress", "game.toml", *ONE).out, "the finding is of a level as it was designed"
+    assert note not in tltlc("regress", "game.toml", *ONE).out, "the finding is of a level as it was designed"
     edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nvariant = "v1"')
-    assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", meant]
-    assert meant in tltlc("regress", "game.toml", "--json", "-", *ONE).err
-    assert meant not in tltlc("regress", "game.toml", *ONE, "--changed", "easy").out, "all pass"
+    assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", note]
+    assert note in tltlc("regress", "game.toml", "--json", "-", *ONE).err
+    assert note not in tltlc("regress", "game.toml", *ONE, "--changed", "easy").out, "all pass"
 
 
-def test_a_pipe_behind_changed_is_not_read(
+def test_a_pipe_after_changed_is_not_read(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,

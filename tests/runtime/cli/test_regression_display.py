@@ -1,4 +1,4 @@
-"""How far a suite is, on a terminal and elsewhere."""
+"""The progress of a suite, on a terminal and elsewhere."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_elsewhere_a_line_now_and_then(capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_terminal_progress_is_printed_in_lines(capsys: pytest.CaptureFixture[str]) -> None:
     with RegressionDisplay("at most") as display:
         for name, episodes in (("one", 60), ("other", 30)):
             for count in range(1, episodes + 1):
@@ -33,7 +33,7 @@ def test_elsewhere_a_line_now_and_then(capsys: pytest.CaptureFixture[str]) -> No
     ]
 
 
-def test_on_a_terminal_a_bar_that_goes_away(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_terminal_a_progress_bar_is_shown_and_removed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", Terminal())
     with RegressionDisplay("at most") as display:

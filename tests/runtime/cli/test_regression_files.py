@@ -1,4 +1,4 @@
-"""The page that a run leaves: what it calls the suite, and what it knows of the baseline and of earlier runs."""
+"""The page that a run writes: the name of the suite, the level of the baseline, and the results of earlier runs."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ def _suite(game: Path) -> Suite:
 
 
 def page(outcome: Outcome) -> str:
-    found = write_reports(outcome, {})
-    assert found is not None
-    return found.read_text(encoding="utf-8")
+    path = write_reports(outcome, {})
+    assert path is not None
+    return path.read_text(encoding="utf-8")
 
 
 def judged(suite: Suite, count: int) -> tuple[Done, ...]:
     return tuple(regress(suite, suite.cases[:count], baseline_of(suite), Path("run"), 1, Played()))
 
 
-def test_cases_that_were_left_out_have_their_earlier_verdicts(suite: Suite) -> None:
+def test_cases_that_were_left_out_show_their_earlier_verdicts(suite: Suite) -> None:
     text = page(Outcome(suite, Path("run"), (), True, NAMES))
     assert text.count("earlier: pass") == 2 and text.count("earlier: fail") == 1
     assert "earlier" not in page(Outcome(suite, Path("elsewhere"), (), True, NAMES))
 
 
-def test_cases_that_were_not_run_say_why(suite: Suite) -> None:
+def test_cases_that_were_not_run_show_the_reason(suite: Suite) -> None:
     changed = tuple(f"{number}.toml" for number in range(10))
     text = page(Outcome(suite, Path("run"), judged(suite, 1), False, ("room:v1",), ("hopeless",), changed))
     names = ", ".join(f"<code>{name}</code>" for name in changed[:8])
@@ -50,26 +50,26 @@ def test_cases_that_were_not_run_say_why(suite: Suite) -> None:
 @pytest.mark.parametrize(
     "kept", ["", "[]", "{}", '{"content": 3}', '{"content": {"verdict": ["pass"]}}', "[" * 100_000]
 )
-def test_what_cannot_be_read_of_an_earlier_run_is_left_out(suite: Suite, kept: str) -> None:
+def test_unreadable_results_of_an_earlier_run_are_left_out(suite: Suite, kept: str) -> None:
     Path("run/cases/hopeless/case.json").write_text(kept, encoding="utf-8")
     text = page(Outcome(suite, Path("run"), (), True, NAMES))
     assert text.count("earlier: pass") == 2 and "earlier: fail" not in text
 
 
-def test_the_level_of_the_baseline_is_drawn_where_it_looks_otherwise(suite: Suite) -> None:
+def test_the_level_of_the_baseline_is_drawn_if_it_looks_different(suite: Suite) -> None:
     words = "The level as it was when the baseline was recorded: room v0."
     assert words not in page(Outcome(suite, Path("run"), judged(suite, 1), True))
     edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [8.0, 7.0, 0.0]")
     text = page(Outcome(suite, Path("run"), judged(suite, 1), True))
     assert words in text and "not known any more" not in text
     edit("room.toml", "at = [8.0, 7.0, 0.0]", "at = [8.0, 6.0, 0.0]")
-    references = tuple(replace(each, texts=()) for each in baseline_of(suite))
+    references = tuple(replace(reference, texts=()) for reference in baseline_of(suite))
     cases = tuple(regress(suite, suite.cases[:1], references, Path("run"), 1, Played()))
     text = page(Outcome(suite, Path("run"), cases, True))
     assert words not in text and "what it was then is not known any more" in text
 
 
-def test_the_shipped_suite_is_called_so_and_explains_its_findings(tmp_path: Path, suite: Suite) -> None:
+def test_the_page_of_the_shipped_suite_explains_its_findings(tmp_path: Path, suite: Suite) -> None:
     shipped = Outcome(read_suite(SHIPPED), tmp_path, (), True)
     text = page(shipped)
     assert "<h1>Regression report: shipped</h1>" in text

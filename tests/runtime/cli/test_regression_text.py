@@ -1,4 +1,4 @@
-"""The line that sums up a suite."""
+"""The summary line of a suite."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_verdicts_are_counted() -> None:
     assert sum_line([]) == "no case was to be played"
 
 
-def test_so_is_what_trainings_came_to() -> None:
+def test_outcomes_of_retraining_are_counted() -> None:
     reports = [report("pass"), report("review", "learned"), report("fail", "no_way"), report("fail", "feasible")]
     counted = "trained anew: 1 learned, 1 feasible, 1 no way found"
     assert sum_line(reports) == f"4 cases: 1 pass, 1 review, 2 fail; {counted}"

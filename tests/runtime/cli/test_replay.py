@@ -40,7 +40,7 @@ FILE = "run.episode.npz"
 
 @pytest.fixture(name="episode", scope="module")
 def _episode() -> Episode:
-    """To the first switch of branching, past the change of state."""
+    """An episode on branching up to the first switch, so that the state of the automaton changes."""
     env = RecordEpisode(make_env("branching"), player="hand")
     env.reset(seed=2)
     for step in range(STEPS):
@@ -53,16 +53,16 @@ def _episode() -> Episode:
 
 @pytest.fixture(name="recorded")
 def _recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, episode: Episode) -> Path:
-    """The current folder, with the file in it."""
+    """The current folder, which contains the recorded episode."""
     monkeypatch.chdir(tmp_path)
     write_episode(FILE, episode)
     return tmp_path
 
 
-def test_a_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("replay", FILE)
-    lines = found.out.splitlines()
-    assert (found.status, found.err, lines[0]) == (0, "", FILE)
+def test_the_text_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("replay", FILE)
+    lines = result.out.splitlines()
+    assert (result.status, result.err, lines[0]) == (0, "", FILE)
     assert lines[1] == "  level    branching v0, spec branching"
     assert lines[2].startswith("  player   hand, seed ")
     assert lines[3] == "  end      stopped, pending, after 20 of 600 steps, 3.00 s"
@@ -71,17 +71,17 @@ def test_a_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-de
     assert lines[4].startswith("  why      stopped after 3.00 s, remaining: Reach near(s2), then ")
     assert "◇(near(s1) ∧ " in tltlc("replay", FILE, "--notation", "unicode").out
     assert max(map(len, lines)) <= 80
-    changes = [each for each in changes if each and not each.startswith(" " * 9)]
-    assert [each.split()[1:3] for each in changes] == [["0", "0.000"], ["1", "0.250"]]
+    changes = [line for line in changes if line and not line.startswith(" " * 9)]
+    assert [line.split()[1:3] for line in changes] == [["0", "0.000"], ["1", "0.250"]]
 
 
-def test_how_it_ended_is_said_once(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_end_is_stated_once(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     write_episode("bad.episode.npz", replace(episode, end="violation", verdict="violated"))
     assert "  end      violation, after 20 of 600 steps, 3.00 s\n" in tltlc("replay", "bad.episode.npz").out
 
 
-def test_the_end_lies_over_all_other_marks(episode: Episode) -> None:
-    def seen(drawn: Episode) -> int:
+def test_the_mark_of_the_end_is_drawn_on_top(episode: Episode) -> None:
+    def end_pixels(drawn: Episode) -> int:
         picture = np.asarray(Image.open(BytesIO(draw_episode(drawn))).convert("RGB"))
         return int((picture == (0x64, 0x74, 0x8B)).all(axis=2).sum())
 
@@ -90,54 +90,54 @@ def test_the_end_lies_over_all_other_marks(episode: Episode) -> None:
     states = plain.states.copy()
     states[-1] = 2
     crowded = replace(plain, states=states, snapshots=(*before, replace(last, health=0.0)))
-    assert seen(crowded) > 0.95 * seen(plain) > 100
+    assert end_pixels(crowded) > 0.95 * end_pixels(plain) > 100
 
 
-def test_a_summary_for_programs(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("replay", FILE, FILE, "--format", "json", "--check")
-    first, second = json.loads(found.out)
-    assert first == second and found.status == 0
+def test_the_json_summary(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("replay", FILE, FILE, "--format", "json", "--check")
+    first, second = json.loads(result.out)
+    assert first == second and result.status == 0
     assert (first["steps"], first["seed"], first["end"]) == (STEPS, episode.seed, "stopped")
     assert first["follows_from_spec"] and first["plays_again"]
     assert first["reward"] == pytest.approx(episode.rewards.sum())
-    assert [each["state"] for each in first["changes"]] == [0, 1]
+    assert [change["state"] for change in first["changes"]] == [0, 1]
     assert first["cause"]["kind"] == "stopped" and first["cause"]["by"] == []
 
 
-def test_a_check_that_fails(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_failed_check_is_reported(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     write_episode("bent.episode.npz", replace(episode, seed=episode.seed + 1, rewards=episode.rewards + 1e-9))
-    found: Outcome = tltlc("replay", "bent.episode.npz", "--check")
-    assert found.status == 1
-    assert "error[TLT0823]: step 1 of the recording" in found.err and "error[TLT0824]" in found.err
-    assert "the judgement does NOT follow from the signals; played again it is ANOTHER episode" in found.out
+    result: Outcome = tltlc("replay", "bent.episode.npz", "--check")
+    assert result.status == 1
+    assert "error[TLT0823]: step 1 of the recording" in result.err and "error[TLT0824]" in result.err
+    assert "the judgement does NOT follow from the signals; played again it is ANOTHER episode" in result.out
     assert tltlc("replay", "bent.episode.npz").status == 0
 
 
-def test_a_file_that_is_broken_hides_no_other(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_broken_file_does_not_hide_other_files(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("cut.episode.npz").write_bytes(b"")
-    found: Outcome = tltlc("replay", "cut.episode.npz", "gone.episode.npz", FILE)
-    assert found.status == 3 and found.out.startswith(FILE)
-    assert "TLT0820" in found.err and "TLT0001" in found.err
+    result: Outcome = tltlc("replay", "cut.episode.npz", "gone.episode.npz", FILE)
+    assert result.status == 3 and result.out.startswith(FILE)
+    assert "TLT0820" in result.err and "TLT0001" in result.err
 
 
-def test_the_views_are_those_that_there_are() -> None:
+def test_the_option_offers_all_views() -> None:
     assert get_args(film.View) == (*VIEWS, "plan") == _VIEWS
 
 
-def test_the_notations_are_those_that_there_are() -> None:
+def test_the_option_offers_all_notations() -> None:
     assert get_args(Notation) == NOTATIONS
 
 
-def test_messages_for_programs_are_json(recorded: Path) -> None:
+def test_messages_are_json_with_format_json(recorded: Path) -> None:
     Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
     program = "import sys; from tltlc.interfaces.cli.main import main; main(sys.argv[1:])"
     arguments = [sys.executable, "-c", program, "replay", "cut.episode.npz", "--format", "json"]
     done = subprocess.run(arguments, capture_output=True, check=False, timeout=HANG_S)
     assert done.returncode == 1
-    assert [each["code"] for each in json.loads(done.stderr)["diagnostics"]] == ["TLT0820"]
+    assert [diagnostic["code"] for diagnostic in json.loads(done.stderr)["diagnostics"]] == ["TLT0820"]
 
 
-def test_a_plan(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_plan_is_written(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("replay", FILE, "-o", "run.png").status == 0
     picture = np.asarray(Image.open("run.png").convert("RGB"))
     for state in (0, 1):
@@ -148,18 +148,18 @@ def test_a_plan(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignor
     assert Image.open("small.png").size == (500, 400)
     assert tltlc("replay", FILE, "-o", "small.png", "--size", "400x300").status == 0
     small = np.asarray(Image.open("small.png").convert("RGB"))
-    assert (small[:30, [0, 1, 2, -3, -2, -1]] == 255).all()  # the title is not cut
+    assert (small[:30, [0, 1, 2, -3, -2, -1]] == 255).all()  # the title is not cut off
 
 
-def test_a_plan_tells_how_it_ended(episode: Episode) -> None:
+def test_a_plan_shows_the_end(episode: Episode) -> None:
     dead = replace(episode.snapshots[-1], health=0.0)
     died = replace(episode, snapshots=(*episode.snapshots[:-1], dead), end="violation")
-    pictures = {draw_episode(each) for each in (episode, died, replace(episode, end="success"))}
+    pictures = {draw_episode(drawn_episode) for drawn_episode in (episode, died, replace(episode, end="success"))}
     assert len(pictures) == 3
     assert Image.open(BytesIO(draw_episode(replace(episode, player="$x$")))).size[0] > 500
 
 
-def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_gif_is_written(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("replay", FILE, "-o", "run.gif", "--view", "plan", "--size", "320x240", "--speed", "0.5").status == 0
     with Image.open("run.gif") as gif:
         assert (gif.size, gif.n_frames, gif.info["duration"]) == ((320, 240), STEPS + 1, 300)
@@ -170,17 +170,17 @@ def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] #
 
 @pytest.mark.parametrize("view", _VIEWS)
 def test_a_gif_has_the_colours_of_its_frames(tmp_path: Path, episode: Episode, view: film.View) -> None:
-    """Those that come late and are few, too: the switch turns green, and the strip shows the second state."""
+    """Rare colours of late frames count, too: the switch turns green, and the strip shows the second state."""
     pictures = list(frames(episode, [0.0, 1.5, 3.0], view, (320, 240)))
     write_gif(tmp_path / "run.gif", pictures, 0.15)
     with Image.open(tmp_path / "run.gif") as gif:
         for number, picture in enumerate(pictures):
             gif.seek(number)
-            away = np.abs(np.asarray(gif.convert("RGB"), int) - picture).max(axis=2)
-            assert np.percentile(away, 99.9) <= 20
+            difference = np.abs(np.asarray(gif.convert("RGB"), int) - picture).max(axis=2)
+            assert np.percentile(difference, 99.9) <= 20
 
 
-def test_an_mp4(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_an_mp4_is_written(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     from imageio_ffmpeg import count_frames_and_secs, read_frames
 
     assert tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan", "--size", "320x240").status == 0
@@ -209,13 +209,13 @@ def test_a_small_film_shows_how_it_ended(tltlc, recorded: Path, episode: Episode
     before, after = frames(replace(episode, end="violation"), [last - 0.01, last], "plan", (320, 240))
     assert (before[-STRIP:] != after[-STRIP:]).any()
     paper = after[-1, -1]
-    assert (after[-STRIP:, -4:] == paper).all()  # nothing runs over the edge
+    assert (after[-STRIP:, -4:] == paper).all()  # no text runs over the edge
     assert tltlc("replay", FILE, "-o", "run.gif", "--size", "320x240", "--from", "2.9").status == 0
     with Image.open("run.gif") as gif:
         assert gif.n_frames == 2  # at 2.9 s, and the end at 3 s
 
 
-def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:
+def test_positions_are_interpolated_between_decisions(episode: Episode) -> None:
     moments = [film._moment(episode, time) for time in (0.0, 0.149, 0.15, 0.225, 3.0, 9.0)]
     assert [row for row, _ in moments] == [0, 0, 1, 1, STEPS, STEPS]
     assert moments[2][1] is episode.snapshots[1] and moments[-1][1] is episode.snapshots[-1]
@@ -223,7 +223,7 @@ def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:
     assert moments[3][1].player.position[1] == pytest.approx(sum(y) / 2)
 
 
-def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_exported_trace_gives_the_same_judgement(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     written: Outcome = tltlc("replay", FILE, "-o", "run.csv")
     assert (written.status, written.err.splitlines()[1]) == (0, f"judge it with: {judged_with(episode, 'run.csv')}")
     lines = BytesIO(Path("run.csv").read_bytes())
@@ -236,8 +236,8 @@ def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Epis
     program, *words = shlex.split(judged_with(episode, "run.csv"))
     assert program == "tltlc" and words[1] == "SPEC.tltl:branching"
     judged: Outcome = tltlc(words[0], ROOT / "examples/branching.tltl:branching", *words[2:])
-    rows = [each for each in csv.DictReader(StringIO(judged.out)) if each["step"].isdecimal()]
-    assert [int(each["state"]) for each in rows] == episode.states[1:].tolist()
+    rows = [record for record in csv.DictReader(StringIO(judged.out)) if record["step"].isdecimal()]
+    assert [int(record["state"]) for record in rows] == episode.states[1:].tolist()
     assert float(rows[-1]["progress"]) == pytest.approx(episode.progress[-1], abs=1e-6)
     assert tltlc("replay", FILE, "-o", "part.csv", "--from", "2.9").status == 0
     assert len(Path("part.csv").read_text().splitlines()) == 2
@@ -263,13 +263,13 @@ def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Epis
         ((), ""),
     ],
 )
-def test_usage(tltlc, recorded: Path, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("replay", FILE, *arguments) if arguments else tltlc("replay")
-    assert found.status == 2 and said in found.err
+def test_invalid_options_are_rejected(tltlc, recorded: Path, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("replay", FILE, *arguments) if arguments else tltlc("replay")
+    assert result.status == 2 and said in result.err
     assert [path.name for path in recorded.iterdir()] == [FILE]
 
 
-def test_ctrl_c_leaves_nothing(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_ctrl_c_leaves_no_partial_file(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     calls, framed = count(), film._framed
 
     def interrupted(*arguments: object) -> object:
@@ -280,18 +280,18 @@ def test_ctrl_c_leaves_nothing(tltlc, recorded: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(film, "_framed", interrupted)
     for name in ("run.gif", "run.mp4"):
         Path(name).write_bytes(b"older")
-        found: Outcome = tltlc("replay", FILE, "-o", name, "--view", "plan")
-        assert found.status == 130 and Path(name).read_bytes() == b"older"
+        result: Outcome = tltlc("replay", FILE, "-o", name, "--view", "plan")
+        assert result.status == 130 and Path(name).read_bytes() == b"older"
     assert sorted(path.name for path in recorded.iterdir()) == [FILE, "run.gif", "run.mp4"]
 
 
-def test_no_encoder_is_a_missing_component(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_missing_encoder_is_reported(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    found: Outcome = tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan")
-    assert found.status == 4 and "pip install imageio-ffmpeg" in found.err.replace("'", "")
+    result: Outcome = tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan")
+    assert result.status == 4 and "pip install imageio-ffmpeg" in result.err.replace("'", "")
     assert [path.name for path in recorded.iterdir()] == [FILE]
 
 
-def test_a_place_that_cannot_be_written_is_told_before_the_work(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    found: Outcome = tltlc("replay", FILE, "-o", "nowhere/run.mp4")
-    assert found.status == 3 and "error[TLT0005]: cannot write `nowhere/run.mp4`" in found.err
+def test_an_unwritable_file_is_reported_before_the_work(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    result: Outcome = tltlc("replay", FILE, "-o", "nowhere/run.mp4")
+    assert result.status == 3 and "error[TLT0005]: cannot write `nowhere/run.mp4`" in result.err

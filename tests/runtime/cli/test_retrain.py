@@ -1,4 +1,4 @@
-"""``tltlc regress --retrain``: what it says, writes and refuses."""
+"""``tltlc regress --retrain``: its output, its files and its errors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FOLDER = "regression/game/retrained/hopeless"
 
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A game with its baseline, one of whose cases nobody meets."""
+    """A game with its baseline; no player can meet the spec of one case."""
     folder = tmp_path_factory.mktemp("recorded") / "game"
     write_game(folder)
     write_policy(folder / "soon.safetensors", untrained(NEVER, str(folder / "room.toml")))
@@ -46,28 +46,28 @@ def _few_environments(monkeypatch: pytest.MonkeyPatch) -> None:
     with_few_environments(monkeypatch)
 
 
-def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa: F811
-    found = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
-    assert found.status == 1
-    (told,) = (line for line in found.out.splitlines() if line.startswith("hopeless, trained anew"))
-    assert told.startswith("hopeless, trained anew: no way found: neither a search of ")
-    assert found.out.splitlines()[-1] == "3 cases: 2 pass, 1 fail; trained anew: 1 no way found"
+def test_retraining_reports_that_no_way_was_found(tltlc: Run, game: Path) -> None:  # noqa: F811
+    result = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
+    assert result.status == 1
+    (sentence,) = (line for line in result.out.splitlines() if line.startswith("hopeless, trained anew"))
+    assert sentence.startswith("hopeless, trained anew: no way found: neither a search of ")
+    assert result.out.splitlines()[-1] == "3 cases: 2 pass, 1 fail; trained anew: 1 no way found"
     reports = "--json report.json --junit report.xml --workers 1"
     again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
-    (longer,) = (line for line in found.out.splitlines() if line.startswith(f"    to train longer: {again}"))
+    (longer,) = (line for line in result.out.splitlines() if line.startswith(f"    to train longer: {again}"))
     assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.04
-    assert f"hopeless: a training begins with its policy, for 0.02 minutes at the most, in {FOLDER}" in found.err
-    assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in found.err
-    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
-    assert said["complete"] is True and said["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
-    *others, hopeless = said["cases"]
-    assert [case["retrained"] for case in others] == [None, None]
+    assert f"hopeless: a training begins with its policy, for 0.02 minutes at the most, in {FOLDER}" in result.err
+    assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in result.err
+    report = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert report["complete"] is True and report["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
+    *passing, hopeless = report["cases"]
+    assert [case["retrained"] for case in passing] == [None, None]
     assert hopeless["retrained"]["outcome"] == "no_way"
-    assert f"hopeless, trained anew: {hopeless['retrained']['text']}" == told
+    assert f"hopeless, trained anew: {hopeless['retrained']['text']}" == sentence
     assert hopeless["retrained"]["policy"] == "retrained/hopeless/policy.safetensors"
     (tests,) = ET.parse("report.xml").getroot()
-    assert [each.text for each in tests.iter("system-out")][-1] == hopeless["retrained"]["text"]
-    values = {each.get("name"): each.get("value") for each in tests.iter("property")}
+    assert [element.text for element in tests.iter("system-out")][-1] == hopeless["retrained"]["text"]
+    values = {element.get("name"): element.get("value") for element in tests.iter("property")}
     assert (values["hopeless.retrained"], values["hopeless.retrained_pass_rate"]) == ("no_way", "0.0000")
     page = Path("regression/game/report.html").read_text(encoding="utf-8")
     assert page.count("data:image/png;base64,") == 1 and "no way found: neither" in page
@@ -91,18 +91,18 @@ def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa
     assert Path(f"{FOLDER}-2", "policy.safetensors").read_bytes() == learned
 
 
-def test_where_all_pass_nothing_is_trained(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_if_all_cases_pass_nothing_is_trained(tltlc: Run, game: Path) -> None:  # noqa: F811
     text = Path("game.toml").read_text(encoding="utf-8")
     Path("game.toml").write_text(text.rpartition("[[case]]")[0], encoding="utf-8")
-    found = tltlc(*RETRAIN)
-    assert (found.status, Path("regression/game/retrained").exists()) == (0, False)
+    result = tltlc(*RETRAIN)
+    assert (result.status, Path("regression/game/retrained").exists()) == (0, False)
     _training("room-v0")
     assert tltlc(*RETRAIN, "--fresh").status == 0
     assert Path("regression/game/retrained/room-v0/policy.safetensors").exists(), "it is not trained again"
 
 
 def _training(slug: str) -> None:
-    """The files of a training that is over, as far as they are looked for."""
+    """Create the files that mark a finished training."""
     folder = Path("regression/game/retrained", slug)
     folder.mkdir(parents=True)
     for name in ("run.json", "record.json", "policy.safetensors"):
@@ -126,8 +126,8 @@ def _lost(*_: object) -> Retrained:
     raise TltlError([Diagnostic("TLT0850", "a worker was lost")])
 
 
-def _three(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained]) -> None:
-    """Have a suite of three cases that nobody meets, whose trainings, which take no time, come to these."""
+def _write_three_cases(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained]) -> None:
+    """Write a suite of three failing cases, whose retraining takes no time and has these outcomes."""
     head, *_, hopeless = Path("game.toml").read_text(encoding="utf-8").split("[[case]]")
     cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")]
     Path("game.toml").write_text(head + "".join(cases), encoding="utf-8")
@@ -136,56 +136,58 @@ def _three(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained])
     monkeypatch.setattr("tltl_runtime.cli.support.retraining.retrained", lambda *_: next(waiting)())
 
 
-def test_what_is_wrong_with_one_training_leaves_the_others(
+def test_an_error_in_one_training_does_not_stop_the_others(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _three(monkeypatch, _edited, _left, _told)
-    found = tltlc(*RETRAIN, "--json", "report.json")
-    assert found.status == 1
-    lines = found.err.splitlines()
+    _write_three_cases(monkeypatch, _edited, _left, _told)
+    result = tltlc(*RETRAIN, "--json", "report.json")
+    assert result.status == 1
+    lines = result.err.splitlines()
     first, second = (lines.index(f"{name}: nothing can be said of its training") for name in ("edited", "left"))
     assert lines[first + 1] == "error[TLT0905]: `room.toml` changed while `edited` was played"
     assert lines[second + 1] == "error[TLT0806]: level navigation v0, step 3, player: it left"
-    assert "told, trained anew: no way found" in found.out.splitlines()
-    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
-    assert said["complete"] is False
-    assert [case["retrained"] and case["retrained"]["outcome"] for case in said["cases"]] == [None, None, "no_way"]
+    assert "told, trained anew: no way found" in result.out.splitlines()
+    report = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert report["complete"] is False
+    assert [case["retrained"] and case["retrained"]["outcome"] for case in report["cases"]] == [None, None, "no_way"]
 
 
-def test_what_is_wrong_with_the_workers_ends_all(
+def test_a_lost_worker_ends_the_run(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _three(monkeypatch, _lost, _told)
-    found = tltlc(*RETRAIN)
-    assert "error[TLT0850]: a worker was lost" in found.err and "trained anew" not in found.out
+    _write_three_cases(monkeypatch, _lost, _told)
+    result = tltlc(*RETRAIN)
+    assert "error[TLT0850]: a worker was lost" in result.err and "trained anew" not in result.out
 
 
-def test_fresh_trainings_leave_the_older_ones_beside_them(
+def test_fresh_moves_older_trainings_aside(
     tltlc: Run,  # noqa: F811
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _three(monkeypatch, _lost)
+    _write_three_cases(monkeypatch, _lost)
     for slug in ("edited", "told"):
         _training(slug)
-    found = tltlc(*RETRAIN, "--fresh")
+    result = tltlc(*RETRAIN, "--fresh")
     folder = "regression/game/retrained"
     for slug in ("edited", "told"):
-        assert f"{slug}: the training that was in {folder}/{slug} is now in {folder}/{slug}-2" in found.err.splitlines()
+        assert (
+            f"{slug}: the training that was in {folder}/{slug} is now in {folder}/{slug}-2" in result.err.splitlines()
+        )
         assert Path(folder, f"{slug}-2", "policy.safetensors").exists() and not Path(folder, slug).exists()
 
 
-def test_a_policy_where_its_training_goes_is_told_before_anything_is_played(tltlc: Run, game: Path) -> None:  # noqa: F811
+def test_a_policy_in_the_folder_of_its_training_is_reported_before_anything_is_played(tltlc: Run, game: Path) -> None:  # noqa: F811
     Path(FOLDER).mkdir(parents=True)
     Path("soon.safetensors").rename(Path(FOLDER, "policy.safetensors"))
     edit("game.toml", '"soon.safetensors"', f'"{FOLDER}"')
-    found = tltlc(*RETRAIN)
-    assert (found.status, found.out) == (1, "")
-    assert found.err.startswith(f"error[TLT0942]: the policy of the case `hopeless` lies in `{FOLDER}`")
+    result = tltlc(*RETRAIN)
+    assert (result.status, result.out) == (1, "")
+    assert result.err.startswith(f"error[TLT0942]: the policy of the case `hopeless` lies in `{FOLDER}`")
 
 
 @pytest.mark.parametrize(
@@ -195,14 +197,14 @@ def test_a_policy_where_its_training_goes_is_told_before_anything_is_played(tltl
         (("--retrain", "--minutes", "0"), "0 is not in the range"),
     ],
 )
-def test_what_is_refused(tltlc: Run, game: Path, words: tuple[str, ...], said: str) -> None:  # noqa: F811
-    found = tltlc("regress", "game.toml", *words, *ONE)
-    assert (found.status, found.out) == (2, "")
-    assert said in re.sub(r"\s+", " ", found.err)
+def test_invalid_options_are_rejected(tltlc: Run, game: Path, words: tuple[str, ...], said: str) -> None:  # noqa: F811
+    result = tltlc("regress", "game.toml", *words, *ONE)
+    assert (result.status, result.out) == (2, "")
+    assert said in re.sub(r"\s+", " ", result.err)
 
 
 @pytest.mark.slow
-def test_asked_to_end_it_keeps_what_there_is(game: Path) -> None:
+def test_a_signal_ends_it_and_keeps_the_results(game: Path) -> None:
     command = [sys.executable, "-m", "tltlc"]
     words = [*command, "regress", "game.toml", "--retrain", "--minutes", "60", *ONE]
     with subprocess.Popen([*words, "--json", "report.json"], stderr=subprocess.PIPE, text=True) as training:
@@ -217,9 +219,9 @@ def test_asked_to_end_it_keeps_what_there_is(game: Path) -> None:
         "stopped: all cases are judged, and 1 is still to be trained for; to go on: "
         "tltlc regress game.toml --out regression/game --json report.json --workers 1 --retrain --minutes 60"
     ) in err.splitlines()
-    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
-    assert (said["complete"], len(said["cases"]), said["cases"][2]["retrained"]) == (False, 3, None)
-    # Another process, since this one trains in few environments, and a training goes on with its own settings alone.
-    on = subprocess.run([*command, *RETRAIN], capture_output=True, text=True, timeout=HANG_S, check=False)
-    assert f"hopeless: a training goes on, for 0.02 minutes at the most, in {FOLDER}" in on.stderr
-    assert "hopeless, trained anew: no way found" in on.stdout
+    report = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (report["complete"], len(report["cases"]), report["cases"][2]["retrained"]) == (False, 3, None)
+    # Use another process: this one is patched to few environments, and a training resumes only with its own settings.
+    resumed = subprocess.run([*command, *RETRAIN], capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert f"hopeless: a training goes on, for 0.02 minutes at the most, in {FOLDER}" in resumed.stderr
+    assert "hopeless, trained anew: no way found" in resumed.stdout

@@ -1,4 +1,4 @@
-"""The options of what an agent senses, from the command line to the mapping that environments take."""
+"""The sensor options: from the command line to the mapping that environments take."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from click.testing import CliRunner
 from tltl_runtime.cli.support.sensor_options import senses_options
 
 
-def said(*arguments: str) -> tuple[Any, str]:
-    """What a command with these options is given, and what it says."""
-    given: list[Any] = []
+def parsed(*arguments: str) -> tuple[Any, str]:
+    """Invoke a command with these options; return the parsed sensors (None if rejected) and the output."""
+    received: list[Any] = []
 
     @click.command()
     @senses_options
     def command(sensors: dict[str, Any]) -> None:
-        given.append(sensors)
+        received.append(sensors)
 
     result = CliRunner().invoke(command, arguments)
-    return (given[0] if given else None), result.output
+    return (received[0] if received else None), result.output
 
 
 @pytest.mark.parametrize(
@@ -39,8 +39,8 @@ def said(*arguments: str) -> tuple[Any, str]:
         (("--map", "size=3"), {"map": {"size": "3"}}),
     ],
 )
-def test_what_is_said(arguments: tuple[str, ...], sensors: dict[str, Any]) -> None:
-    assert said(*arguments)[0] == sensors
+def test_options_give_the_sensors(arguments: tuple[str, ...], sensors: dict[str, Any]) -> None:
+    assert parsed(*arguments)[0] == sensors
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_what_is_said(arguments: tuple[str, ...], sensors: dict[str, Any]) -> No
         (("--map", "cell=1", "--no-map"), "--map and --no-map exclude each other"),
     ],
 )
-def test_what_cannot_be_said(arguments: tuple[str, ...], message: str) -> None:
-    sensors, output = said(*arguments)
+def test_invalid_options_are_rejected(arguments: tuple[str, ...], message: str) -> None:
+    sensors, output = parsed(*arguments)
     assert sensors is None
     assert message in " ".join(output.split())

@@ -1,4 +1,4 @@
-"""``tltlc table1``: the cells are played and kept, and the table is printed and written."""
+"""``tltlc table1``: the cells are played and cached, and the table is printed and written."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ONE = ("--workers", "1")
 
 @pytest.fixture(autouse=True)
 def _small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One level, and few episodes."""
+    """Restrict the table to one level and few episodes."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(paper_table, "LEVELS", (LEVEL,))
     monkeypatch.setattr(table_cells, "EPISODES", 2)
@@ -34,97 +34,99 @@ def models(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
 
 def cells(folder: Path) -> dict[str, int]:
-    """When each cell was written."""
+    """The modification time of each cell's file, in nanoseconds."""
     return {path.name: path.stat().st_mtime_ns for path in folder.glob("*.json")}
 
 
 def test_the_expert_and_the_shipped_policies(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "expert", "ours")
-    found = tltlc("table1", "--shipped", *ONE)
-    assert found.status == 0, found.err
-    assert found.err.splitlines() == [f"{LEVEL}:{each}, {model}" for model in ("expert", "ours") for each in VARIANTS]
-    assert Path("table1/table1.md").read_text(encoding="utf-8") == found.out
-    rows = [line for line in found.out.splitlines() if line.startswith(f"| {LEVEL} | ")]
+    result = tltlc("table1", "--shipped", *ONE)
+    assert result.status == 0, result.err
+    assert result.err.splitlines() == [
+        f"{LEVEL}:{variant}, {model}" for model in ("expert", "ours") for variant in VARIANTS
+    ]
+    assert Path("table1/table1.md").read_text(encoding="utf-8") == result.out
+    rows = [line for line in result.out.splitlines() if line.startswith(f"| {LEVEL} | ")]
     assert [row.split(" | ")[1] for row in rows] == ["expert", "ours"] * 2
     assert all(row.split(" | ")[2].startswith("1.00") for row in rows), "both meet their spec on v0"
-    assert found.out.count("*the paper: human*") == found.out.count("*the paper: ours*") == 2
+    assert result.out.count("*the paper: human*") == result.out.count("*the paper: ours*") == 2
     before = cells(Path("table1"))
-    assert set(before) == {f"{LEVEL}-{each}-{model}.json" for each in VARIANTS for model in ("expert", "ours")}
+    assert set(before) == {f"{LEVEL}-{variant}-{model}.json" for variant in VARIANTS for model in ("expert", "ours")}
 
-    # Called again it plays what is missing, and nothing else.
+    # A second call plays only the missing cell.
     Path(f"table1/{LEVEL}-v1-expert.json").unlink()
     Path("table1/table1.md").unlink()
     again = tltlc("table1", "--shipped", *ONE)
-    assert (again.status, again.out) == (0, found.out)
+    assert (again.status, again.out) == (0, result.out)
     after = cells(Path("table1"))
     assert {name for name in after if after[name] != before[name]} == {f"{LEVEL}-v1-expert.json"}
-    assert Path("table1/table1.md").read_text(encoding="utf-8") == found.out
+    assert Path("table1/table1.md").read_text(encoding="utf-8") == result.out
 
 
-def test_a_folder_is_one_runs(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_folder_is_used_by_one_run_at_a_time(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "expert")
     with held(Path("mine"), Diagnostic("TLT0931", "busy"), ""):
-        found = tltlc("table1", "--out", "mine", *ONE)
-    assert (found.status, found.out) == (1, "")
-    assert found.err == (
+        result = tltlc("table1", "--out", "mine", *ONE)
+    assert (result.status, result.out) == (1, "")
+    assert result.err == (
         "error[TLT0931]: another run of `tltlc table1` is at work in `mine`\n"
         "  help: wait for its end, or name another folder with --out\n"
     )
     assert cells(Path("mine")) == {}
 
 
-def test_the_folder_of_a_training_is_none_for_a_table(tltlc: Run) -> None:  # noqa: F811
+def test_the_folder_of_a_training_is_rejected_as_output(tltlc: Run) -> None:  # noqa: F811
     Path("mine").mkdir()
     Path("mine/run.json").touch()
-    found = tltlc("table1", "--out", "mine", *ONE)
-    assert (found.status, found.out) == (3, "")
-    assert found.err.startswith("error[TLT0005]: cannot write into `mine`: it is the folder of a training\n")
+    result = tltlc("table1", "--out", "mine", *ONE)
+    assert (result.status, result.out) == (3, "")
+    assert result.err.startswith("error[TLT0005]: cannot write into `mine`: it is the folder of a training\n")
 
 
-def test_asked_to_end_it_says_how_to_go_on(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_stopped_run_reports_the_command_that_resumes_it(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     def stopped(_: object) -> str:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(table1, "_table", stopped)
     again = "stopped: what is over is kept in `{}`; to go on: tltlc table1 --out {}\n"
-    found = tltlc("table1")
-    assert (found.status, found.out, found.err) == (130, "", again.format("table1", "table1"))
+    result = tltlc("table1")
+    assert (result.status, result.out, result.err) == (130, "", again.format("table1", "table1"))
     words = "mine --shipped --minutes 0.5 --workers 1"
     assert tltlc("table1", "--out", *words.split()).err == again.format("mine", words)
 
 
 @pytest.mark.parametrize("minutes", ["nan", "inf", "-1"])
-def test_a_limit_is_a_number(tltlc: Run, minutes: str) -> None:  # noqa: F811
-    found = tltlc("table1", "--minutes", minutes, *ONE)
-    assert found.status == 2 and "invalid value for '--minutes'" in found.err
+def test_an_invalid_limit_is_rejected(tltlc: Run, minutes: str) -> None:  # noqa: F811
+    result = tltlc("table1", "--minutes", minutes, *ONE)
+    assert result.status == 2 and "invalid value for '--minutes'" in result.err
 
 
-def test_a_training_that_did_not_end_is_told(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_an_unfinished_training_is_reported(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "imitation")
     began: list[list[str]] = []
     monkeypatch.setattr(table1, "_train", began.append)
-    found = tltlc("table1", "--minutes", "5", *ONE)
+    result = tltlc("table1", "--minutes", "5", *ONE)
     ((*_, place, method, name, _, steps, minutes, limit),) = began
     assert (method, name, minutes, limit) == ("--method", "imitation", "--minutes", "5")
     assert int(steps) == read_settings().stop.steps
-    assert (found.status, found.out) == (1, "")
-    assert found.err == f"error[TLT0930]: the training in `{place}` did not end\n  help: run the command again\n"
+    assert (result.status, result.out) == (1, "")
+    assert result.err == f"error[TLT0930]: the training in `{place}` did not end\n  help: run the command again\n"
 
 
 @pytest.mark.slow
-def test_a_training_of_moments(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_very_short_training_fills_its_cells(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "imitation")
-    found = tltlc("table1", "--minutes", "0.01", *ONE)
-    assert found.status == 0, found.err
+    result = tltlc("table1", "--minutes", "0.01", *ONE)
+    assert result.status == 0, result.err
     (folder,) = Path("table1").glob(f"{LEVEL}-imitation-*")
-    made = json.loads((folder / "record.json").read_text(encoding="utf-8"))
-    assert (made["end"], made["settings"]["stop"]["minutes"]) == ("minutes", 0.01)
-    # Its only update cloned it.
-    assert made["imitated"]["cloned"] == made["steps"] > 0
-    rows = [line for line in found.out.splitlines() if line.startswith(f"| {LEVEL} | imitation")]
+    record = json.loads((folder / "record.json").read_text(encoding="utf-8"))
+    assert (record["end"], record["settings"]["stop"]["minutes"]) == ("minutes", 0.01)
+    # Its only update was a cloning update.
+    assert record["imitated"]["cloned"] == record["steps"] > 0
+    rows = [line for line in result.out.splitlines() if line.startswith(f"| {LEVEL} | imitation")]
     assert len(rows) == 2 and all(row.endswith("min, 100.0 % cloned |") for row in rows)
 
     monkeypatch.setattr(table1, "_train", lambda arguments: pytest.fail(f"it trains again: {arguments}"))
     Path(f"table1/{LEVEL}-v2-imitation.json").unlink()
     again = tltlc("table1", "--minutes", "0.01", *ONE)
-    assert (again.status, again.out) == (0, found.out)
+    assert (again.status, again.out) == (0, result.out)
