@@ -76,7 +76,7 @@ def test_keys_move_the_player_and_escape_records(display: dict[str, str], tmp_pa
     keys(display, "keyup", "c", "key", "space")
     player.until(lambda: any(step["stepped"][2] for step in player.steps()), "jumps")
     keys(display, "key", "v")
-    player.until(lambda: any(line.get("view") for line in player.told()), "changes its view")
+    player.until(lambda: any(line.get("view") for line in player.log_lines()), "changes its view")
     keys(display, "key", "Escape")
     out = ended(player)
     assert "mine.episode.npz: stopped after" in out

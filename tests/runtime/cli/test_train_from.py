@@ -1,4 +1,4 @@
-"""``tltlc train --from``: from which policy, where, and what is refused."""
+"""``tltlc train --from``: the initial policy, the level it is trained on, and errors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SENSES = "import spatial\nentity s1\nspec other { level cover_and_hide\n limit 8
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with small settings, a spec and a policy for it, made the current one."""
+    """The current folder with small settings, two specs and a policy for one of them."""
     (tmp_path / "small.toml").write_text(SMALL.replace("[network]\nhidden = [8]\n", ""))
     (tmp_path / "soon.tltl").write_text(SOON)
     (tmp_path / "other.tltl").write_text(SENSES)
@@ -33,20 +33,20 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-BEGUN = ("train", "--from", "old.safetensors", "--config", "small.toml")
+TRAIN_FROM = ("train", "--from", "old.safetensors", "--config", "small.toml")
 
 
-def test_spec_level_senses_and_network_are_the_policys(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    found = tltlc(*BEGUN, "--level", "cover_and_hide:v1")
-    assert found.status == 0, found.err
+def test_the_spec_the_sensors_and_the_network_come_from_the_policy(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    result = tltlc(*TRAIN_FROM, "--level", "cover_and_hide:v1")
+    assert result.status == 0, result.err
     folder = Path("training/cover_and_hide-v1-soon-0-tuned")
-    assert found.err.splitlines()[:2] == [
+    assert result.err.splitlines()[:2] == [
         f"training soon on cover_and_hide v1, seed 0, in {folder}",
         "it begins with the weights of old.safetensors; its critic is new, and learns alone in the first 5 iterations",
     ]
     old, new = read_policy("old.safetensors"), read_policy(folder / "policy.safetensors")
     assert (new.card.sensors, new.card.network, new.card.fspa) == (old.card.sensors, old.card.network, old.card.fspa)
-    # It was met at once, while the critic alone had learned.
+    # The spec was met at once, while only the critic was learning.
     assert weights_hash(new) == weights_hash(old)
     run = json.loads((folder / "run.json").read_text())
     assert run["initial"]["path"] == str(here / "old.safetensors")
@@ -56,7 +56,7 @@ def test_spec_level_senses_and_network_are_the_policys(tltlc: TltlcFunction, her
     )
 
 
-def test_by_default_it_is_where_the_policy_was_trained(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+def test_the_default_level_is_the_level_of_the_policy(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     assert (
         tltlc("train", "soon.tltl", "--level", "cover_and_hide:v1", "--config", "small.toml", "--out", "it").status == 0
     )
@@ -65,12 +65,12 @@ def test_by_default_it_is_where_the_policy_was_trained(tltlc: TltlcFunction, her
     assert "training soon on cover_and_hide v1, seed 0, in again" in again.err
 
 
-def test_a_policy_that_comes_with_a_level(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    found = tltlc("train", "--from", "cover_and_hide", "--print-config")
-    assert found.status == 0
-    begun = tltlc("train", "--from", "cover_and_hide:v2", "--config", "small.toml", "--steps", "64", "--out", "it")
-    assert begun.status == 1
-    assert "training cover_and_hide on cover_and_hide v2, seed 0, in it" in begun.err
+def test_a_shipped_policy_is_named_by_its_level(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    result = tltlc("train", "--from", "cover_and_hide", "--print-config")
+    assert result.status == 0
+    started = tltlc("train", "--from", "cover_and_hide:v2", "--config", "small.toml", "--steps", "64", "--out", "it")
+    assert started.status == 1
+    assert "training cover_and_hide on cover_and_hide v2, seed 0, in it" in started.err
     assert json.loads(Path("it/run.json").read_text())["initial"]["path"] == str(shipped_policy("cover_and_hide"))
 
 
@@ -86,7 +86,7 @@ def test_a_policy_that_comes_with_a_level(tltlc: TltlcFunction, here: Path) -> N
         (["--from", "small.toml"], 1, "TLT0840"),
     ],
 )
-def test_what_it_cannot_begin_with(
+def test_unfit_policies_and_options_are_rejected(
     tltlc: TltlcFunction,  # noqa: F811
     here: Path,
     arguments: list[str],
@@ -94,61 +94,63 @@ def test_what_it_cannot_begin_with(
     said: str,
 ) -> None:
     Path("wide.toml").write_text("[network]\nhidden = [7]\n")
-    found = tltlc(*BEGUN, *arguments)
-    assert (found.status, found.out) == (status, ""), found.err
-    assert said in found.err
+    result = tltlc(*TRAIN_FROM, *arguments)
+    assert (result.status, result.out) == (status, ""), result.err
+    assert said in result.err
     assert not Path("training").exists()
 
 
-def test_going_on_it_may_lie_elsewhere_and_be_no_other(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+def test_on_resume_the_policy_may_have_moved_but_not_changed(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
-    assert tltlc(*BEGUN, "--out", "it", "--steps", "64").status == 1
+    assert tltlc(*TRAIN_FROM, "--out", "it", "--steps", "64").status == 1
     shutil.move("old.safetensors", "moved.safetensors")
     write_policy("another.safetensors", untrained("soon.tltl", seed=1))
-    other = tltlc("train", "--resume", "it", "--from", "another.safetensors", "--steps", "128")
-    assert "error[TLT0870]: the training in `it` begins with another policy than `another.safetensors`" in other.err
+    other_policy = tltlc("train", "--resume", "it", "--from", "another.safetensors", "--steps", "128")
+    assert (
+        "error[TLT0870]: the training in `it` begins with another policy than `another.safetensors`" in other_policy.err
+    )
     Path("it/checkpoint.pt").unlink()
-    gone = tltlc("train", "--resume", "it", "--steps", "128")
-    assert (gone.status, gone.out) == (1, "")
-    assert "error[TLT0940]" in gone.err
-    on = tltlc("train", "--resume", "it", "--from", "moved.safetensors", "--steps", "128")
-    assert "error" not in on.err and "128 steps" in on.out, on.err
+    missing = tltlc("train", "--resume", "it", "--steps", "128")
+    assert (missing.status, missing.out) == (1, "")
+    assert "error[TLT0940]" in missing.err
+    resumed = tltlc("train", "--resume", "it", "--from", "moved.safetensors", "--steps", "128")
+    assert "error" not in resumed.err and "128 steps" in resumed.out, resumed.err
     plain = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "plain", "--steps", "64")
     assert plain.status == 1
-    asked = tltlc("train", "--resume", "plain", "--from", "moved.safetensors", "--steps", "128")
-    assert "begins with weights that are drawn, not with the policy `moved.safetensors`" in asked.err
+    rejected = tltlc("train", "--resume", "plain", "--from", "moved.safetensors", "--steps", "128")
+    assert "begins with weights that are drawn, not with the policy `moved.safetensors`" in rejected.err
 
 
-def test_its_level_need_not_be_there_where_another_is_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    """The level of a spec, too; and who goes on needs the file of the policy alone."""
+def test_the_level_of_the_policy_may_be_missing_if_another_is_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    """The level of the spec need not exist either; a resumed training needs only the file of the policy."""
     shutil.copy(level_path("cover_and_hide"), "plan.toml")
     shutil.copytree(level_path("cover_and_hide").parent / "assets", "assets")
     Path("own.tltl").write_text(SOON.replace("level cover_and_hide", "level plan"))
     spec = ("own.tltl", "--config", "small.toml")
     assert tltlc("train", *spec, "--out", "first").status == 0
     alone = ("--from", "first/policy.safetensors")
-    begun = tltlc("train", *spec, *alone, "--out", "second")
-    assert begun.status == 0, begun.err
+    started = tltlc("train", *spec, *alone, "--out", "second")
+    assert started.status == 0, started.err
     assert "error[TLT0800]: there is no level `plan`" in tltlc("train", *alone).err
     Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
     assert tltlc("train", *spec, "--from", "first", "--out", "third", "--steps", "64").status == 1
     Path("third/checkpoint.pt").unlink()
     for old, new in (("plan.toml", "moved.toml"), ("first", "elsewhere")):
         shutil.move(old, new)
-    on = tltlc("train", "--resume", "third", "--level", "moved.toml", "--from", "elsewhere", "--steps", "128")
-    assert "error" not in on.err and "128 steps" in on.out, on.err
+    resumed = tltlc("train", "--resume", "third", "--level", "moved.toml", "--from", "elsewhere", "--steps", "128")
+    assert "error" not in resumed.err and "128 steps" in resumed.out, resumed.err
 
 
-def test_settings_that_agree_with_its_network_are_no_others(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+def test_settings_that_agree_with_the_network_are_accepted(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     own = read_policy("old.safetensors").card.network
     assert own.hidden != (512, 512)
     Path("same.toml").write_text(f'[network]\nactivation = "{own.activation}"\n')
-    found = tltlc("train", "--from", "old.safetensors", "--config", "same.toml", "--print-config")
-    assert found.status == 0, found.err
-    assert f"hidden = {list(own.hidden)}" in found.out
+    result = tltlc("train", "--from", "old.safetensors", "--config", "same.toml", "--print-config")
+    assert result.status == 0, result.err
+    assert f"hidden = {list(own.hidden)}" in result.out
 
 
-def test_once_it_has_begun_the_beginning_is_not_told_again(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+def test_the_initial_policy_is_not_announced_again_on_resume(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
-    assert "it begins with the weights of" in tltlc(*BEGUN, "--out", "it", "--steps", "64").err
+    assert "it begins with the weights of" in tltlc(*TRAIN_FROM, "--out", "it", "--steps", "64").err
     assert "it begins with the weights of" not in tltlc("train", "--resume", "it", "--steps", "128").err

@@ -1,4 +1,4 @@
-"""What is said of a training while it goes on."""
+"""The progress lines of a training."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def stop() -> Stop:
     return read_settings().stop
 
 
-def test_a_line(stop: Stop) -> None:
+def test_the_line_of_an_iteration(stop: Stop) -> None:
     early, late = a_report(count=0, successes=0), a_report(100)
     assert line(early, stop) == "iteration 1: 4,096 steps in 2 s, 2,048 steps/s, at most 32 min 31 s left"
     assert line(late, stop) == (
@@ -45,32 +45,32 @@ def test_a_line(stop: Stop) -> None:
         ((80, 90), "2 ways to meet the spec, the shortest of 80 steps"),
     ],
 )
-def test_a_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
+def test_the_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
     searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
     assert search_line(searched) == f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {said}"
 
 
-def test_a_line_of_what_was_found() -> None:
+def test_the_line_at_the_end_of_the_search() -> None:
     searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=(90, 80), complete=True)
     assert found_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
 
 
-def test_the_nearer_limit_counts(stop: Stop) -> None:
+def test_the_nearer_limit_determines_the_remaining_time(stop: Stop) -> None:
     report = a_report(10)
     assert seconds_left(report, replace(stop, steps=2 * report.steps)) == pytest.approx(report.seconds)
     assert seconds_left(report, replace(stop, minutes=1.0)) == pytest.approx(40.0)
     assert seconds_left(report, replace(stop, steps=1, minutes=9.0)) == 0.0
 
 
-def test_the_time_that_is_left_is_that_of_the_training_without_its_search(stop: Stop) -> None:
+def test_the_remaining_time_excludes_the_search(stop: Stop) -> None:
     report, searched = a_report(10), Searched(6400, 3200, 600.0, 1200, (80,), complete=True)
     after = replace(report, seconds=report.seconds + 600.0, searched=searched)
     assert seconds_left(after, stop) == pytest.approx(seconds_left(report, stop))
-    # Those of the search count for the limit of minutes.
+    # The seconds of the search count towards the limit of minutes.
     assert seconds_left(after, replace(stop, minutes=11.0)) == pytest.approx(40.0)
 
 
-def test_a_line_of_a_confirmation(stop: Stop) -> None:
+def test_the_line_of_a_confirmation(stop: Stop) -> None:
     assert confirmation_line(92, Confirmation(100, 100)) == "confirmed: the policy met it in 100 fresh episodes, too"
     refused = a_report(92, confirmation=Confirmation(12, 100))
     assert ", not confirmed after iteration 92: fresh episode 13 of 100 failed, 2,048" in line(refused, stop)
@@ -80,9 +80,9 @@ def test_a_line_of_a_confirmation(stop: Stop) -> None:
     ("seconds", "said"),
     [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (754, "12 min 34 s"), (12000, "3 h 20 min")],
 )
-def test_spans_of_time(seconds: float, said: str) -> None:
+def test_durations(seconds: float, said: str) -> None:
     assert duration(seconds) == said
 
 
-def test_limits_of_minutes() -> None:
-    assert [minutes(each) for each in (0.5, 1.0, 30.0)] == ["0.5 minutes", "1 minute", "30 minutes"]
+def test_limits_in_minutes() -> None:
+    assert [minutes(limit) for limit in (0.5, 1.0, 30.0)] == ["0.5 minutes", "1 minute", "30 minutes"]

@@ -1,4 +1,4 @@
-"""The picture of a training: it fits into the terminal, whatever its size, and its border stays whole."""
+"""The live display of a training: it fits into terminals of any size, and its border is intact."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def _report() -> Report:
 
 
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (80, 18), (80, 15), (120, 40), (101, 24)])
-def test_it_fits_and_no_figure_is_cut(tmp_path: Path, report: Report, columns: int, lines: int) -> None:
+def test_the_display_fits_and_no_figure_is_cut_off(tmp_path: Path, report: Report, columns: int, lines: int) -> None:
     shown = _lines(tmp_path / ("very-" * 20 + "long"), columns, lines, report)
     assert len(shown) < lines
-    # Ctrl-C twice leaves `^C^C` behind the border.
-    assert {len(each) for each in shown} == {min(100, columns - 4)}
+    # The width leaves four columns, since pressing Ctrl-C twice prints `^C^C` after the border.
+    assert {len(line) for line in shown} == {min(100, columns - 4)}
     text = "\n".join(shown)
-    for said in (
+    for part in (
         "cover_and_hide on cover_and_hide v0, seed 3",
         "of 100, then the policy is confirmed",
         "reward 0.65, 130 steps an episode; best so far: met in 80%",
@@ -53,34 +53,34 @@ def test_it_fits_and_no_figure_is_cut(tmp_path: Path, report: Report, columns: i
         "last checkpoint 0 s ago; Ctrl-C writes one to go on from",
         "state 0",
     ):
-        assert said in text
+        assert part in text
     assert shown[-1].endswith("-very-long ─╯")
 
 
-def test_where_there_are_few_lines_it_shows_the_commonest_states(tmp_path: Path, report: Report) -> None:
+def test_in_a_low_terminal_the_most_frequent_states_are_shown(tmp_path: Path, report: Report) -> None:
     text = "\n".join(_lines(tmp_path, 80, 15, report))
     assert "where the last 50 episodes ended (3 of 4 states)" in text
     assert [number for number in range(5) if f"state {number}" in text] == [0, 1, 4]
 
 
-def test_violations_are_told_where_they_were(tmp_path: Path, report: Report) -> None:
+def test_violations_are_shown_at_the_state_before(tmp_path: Path, report: Report) -> None:
     text = "\n".join(_lines(tmp_path, 120, 40, report))
     assert "20%   15% violated: Reach near(s2), then near(exit)" in text
     assert "The spec is violated." not in text
 
 
-def test_before_the_first_iteration(tmp_path: Path) -> None:
+def test_before_the_first_iteration_the_search_is_shown(tmp_path: Path) -> None:
     assert "playing the first steps" in _lines(tmp_path, 80, 24, None)[1]
-    text = " ".join(each.strip("│ ") for each in _lines(tmp_path, 80, 24, SEARCHED))
+    text = " ".join(line.strip("│ ") for line in _lines(tmp_path, 80, 24, SEARCHED))
     assert "1,200 places, 2 ways to meet the spec, the shortest of 80 steps" in text
 
 
-def test_before_the_first_checkpoint_it_says_that_ctrl_c_writes_one(tmp_path: Path, report: Report) -> None:
+def test_before_the_first_checkpoint_ctrl_c_is_explained(tmp_path: Path, report: Report) -> None:
     text = "\n".join(_lines(tmp_path, 80, 24, replace(report, checkpointed=False)))
     assert "no checkpoint yet; Ctrl-C writes one to go on from" in text
 
 
-def test_it_says_that_nothing_was_found(tmp_path: Path, report: Report) -> None:
+def test_a_search_without_ways_is_shown(tmp_path: Path, report: Report) -> None:
     nothing = replace(report, searched=replace(SEARCHED, lengths=()))
     text = "\n".join(_lines(tmp_path, 80, 24, nothing))
     assert "search: no way found in 1 min 20 s; episodes begin at the level's start" in text

@@ -1,4 +1,4 @@
-"""``tltlc play`` and ``record``, played with real keys, by a test that sees in a file what the game has done so far."""
+"""Run ``tltlc play`` and ``record`` with real keys, and log what the game does into a file for the test."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ Line = dict[str, Any]
 
 
 class Watched:
-    """A running command whose window is open and hears keys.
+    """A running command whose window is open and receives keys.
 
-    Each line that it tells has one of these keys: ``began``; ``looked``, the action that the held keys ask for;
-    ``stepped``, the action of a step, with the way ``x``, ``y`` since the episode began, in metres.
+    Each line of the log has one of these keys: ``began``; ``looked``, the action of the pressed keys;
+    ``stepped``, the action of a step, with the displacement ``x``, ``y`` since the start of the episode in metres.
     """
 
     def __init__(self, display: dict[str, str], folder: Path, *arguments: str) -> None:
@@ -36,45 +36,47 @@ class Watched:
             stderr=subprocess.PIPE,
             text=True,
         )
-        self.until(self._is_seen, "shows its window")
+        # Match only windows of applications: the root window has no class.
+        search = ["xdotool", "search", "--sync", "--onlyvisible", "--class", "."]
+        subprocess.run(search, env=display, check=True, timeout=HANG_S, capture_output=True)
         self.until(self._hears, "hears keys")
 
-    def told(self) -> list[Line]:
-        """All that it has told so far."""
-        # What stands behind the last end of a line is not whole yet.
+    def log_lines(self) -> list[Line]:
+        """All lines of the log so far."""
+        # Text after the last newline is an incomplete line.
         whole, _, _ = self._place.read_text(encoding="utf-8").rpartition("\n")
         return [json.loads(line) for line in whole.splitlines()]
 
     def episode(self) -> list[Line]:
-        """What it has told since the episode began."""
-        told = self.told()
-        return told[max(place for place, line in enumerate(told) if "began" in line) :]
+        """The lines of the log since the episode began."""
+        lines = self.log_lines()
+        return lines[max(place for place, line in enumerate(lines) if "began" in line) :]
 
     def steps(self) -> list[Line]:
         """The steps of the episode so far."""
         return [line for line in self.episode() if "stepped" in line]
 
-    def until(self, event: Callable[[], Any], what: str) -> None:
-        """Wait for an event while the command goes on."""
+    def until(self, event: Callable[[], Any], description: str) -> None:
+        """Wait for an event; fail if the command ends before it."""
 
         def happened() -> bool:
             assert self.process.poll() is None, self.process.communicate()
             return bool(event())
 
-        until(happened, f"a game that {what}", 0.05)
+        until(happened, f"a game that {description}", 0.05)
 
     def begin_again(self) -> None:
-        """Press the key that begins another episode, and wait for that."""
-        before = sum("began" in line for line in self.told())
+        """Press the key that begins another episode, and wait until the episode begins."""
+        before = sum("began" in line for line in self.log_lines())
         keys(self._display, "key", "r")
-        self.until(lambda: sum("began" in line for line in self.told()) > before, "begins again")
+        self.until(lambda: sum("began" in line for line in self.log_lines()) > before, "begins again")
 
     def until_it_looked(self, times: int = 1, wanted: Callable[[Line], bool] = lambda _: True) -> None:
-        """Wait until it has looked at the keys so often from now on, and found what is wanted."""
-        before = len(self.told())
+        """Wait until the game has looked at the keys this many times from now, with a line that is ``wanted``."""
+        before = len(self.log_lines())
 
         def looks() -> list[Line]:
-            return [line for line in self.told()[before:] if "looked" in line and wanted(line)]
+            return [line for line in self.log_lines()[before:] if "looked" in line and wanted(line)]
 
         self.until(lambda: len(looks()) >= times, "looks at the keys")
 
@@ -85,13 +87,13 @@ class Watched:
         return not subprocess.run(search, env=self._display, timeout=HANG_S, capture_output=True).returncode
 
     def _hears(self) -> bool:
-        # A key that means nothing to the game.
+        # A key without a function in the game.
         keys(self._display, "key", "F5")
-        return any("heard" in line for line in self.told())
+        return any("heard" in line for line in self.log_lines())
 
 
-def tell_what_happens(place: Path) -> None:
-    """Have the game of this process write each thing that it does into a file."""
+def log_what_happens(place: Path) -> None:
+    """Patch the game in this process so that it logs each of its actions into a file."""
     import pygame
 
     from tltl_runtime.stealth.recording import RecordEpisode
@@ -99,8 +101,8 @@ def tell_what_happens(place: Path) -> None:
 
     file = place.open("a", encoding="utf-8")
 
-    def tell(**what: Any) -> None:
-        file.write(f"{json.dumps(what)}\n")
+    def log(**fields: Any) -> None:
+        file.write(f"{json.dumps(fields)}\n")
         file.flush()
 
     reset, step, look, events = RecordEpisode.reset, RecordEpisode.step, Window.keys, pygame.event.get
@@ -110,38 +112,38 @@ def tell_what_happens(place: Path) -> None:
         position: Sequence[float] = env.unwrapped.game.snapshot().player.position  # type: ignore[attr-defined]
         return position
 
-    def told_reset(env: RecordEpisode, **options: Any) -> Any:
-        found = reset(env, **options)
+    def logged_reset(env: RecordEpisode, **options: Any) -> Any:
+        result = reset(env, **options)
         start[:] = place_of(env)[:2]
-        tell(began=True)
-        return found
+        log(began=True)
+        return result
 
-    def told_step(env: RecordEpisode, action: Any) -> Any:
-        found = step(env, action)
+    def logged_step(env: RecordEpisode, action: Any) -> Any:
+        result = step(env, action)
         x, y = (now - then for now, then in zip(place_of(env), start, strict=False))
-        tell(stepped=[int(part) for part in action], x=x, y=y)
-        return found
+        log(stepped=[int(part) for part in action], x=x, y=y)
+        return result
 
-    def told_look(window: Window) -> Keys:
-        found = look(window)
-        tell(looked=list(found.action), view=found.view)
-        return found
+    def logged_look(window: Window) -> Keys:
+        keys_now = look(window)
+        log(looked=list(keys_now.action), view=keys_now.view)
+        return keys_now
 
-    def told_events(*arguments: Any) -> Any:
-        found = events(*arguments)
-        if any(event.type == pygame.KEYDOWN for event in found):
-            tell(heard=True)
-        return found
+    def logged_events(*arguments: Any) -> Any:
+        new_events = events(*arguments)
+        if any(event.type == pygame.KEYDOWN for event in new_events):
+            log(heard=True)
+        return new_events
 
-    RecordEpisode.reset, RecordEpisode.step = told_reset, told_step  # type: ignore[method-assign]
-    Window.keys = told_look  # type: ignore[method-assign]
-    pygame.event.get = told_events
+    RecordEpisode.reset, RecordEpisode.step = logged_reset, logged_step  # type: ignore[method-assign]
+    Window.keys = logged_look  # type: ignore[method-assign]
+    pygame.event.get = logged_events
 
 
 if __name__ == "__main__":
     from tltlc.interfaces.cli.main import main
 
-    tell_what_happens(Path(sys.argv[1]))
-    # As a process of its own, which handles signals.
+    log_what_happens(Path(sys.argv[1]))
+    # Run as the command itself, which handles signals.
     sys.argv = ["tltlc", *sys.argv[2:]]
     main()
