@@ -1,4 +1,4 @@
-"""A training that the tests of a module look at."""
+"""Fixtures: a finished training, shared by the tests of a module."""
 
 from __future__ import annotations
 
@@ -19,6 +19,6 @@ def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(name="whole", scope="module")
 def _whole(folder: Path) -> tuple[Run, list[Report]]:
-    """A training of three iterations; of each module its own, since what goes on with it changes it."""
+    """A training of three iterations; each module has its own, since resuming changes it."""
     run = run_in(folder / "whole")
     return run, list(train(run))

@@ -1,4 +1,4 @@
-"""Demonstrations that take no expert, and trainings that imitate them."""
+"""Demonstrations without the expert, and trainings that imitate them."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from tltl_runtime.training.run.run import Run
 from tltlc.core.record import replace
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
-"""A spec that who does anything at all meets, after eight steps."""
+"""A spec that every policy meets after eight steps."""
 ALONG = 1, 0, 0, 0, 1
-"""The action of a demonstration: to run towards greater x."""
+"""The action of a demonstration: run towards greater x."""
 
 
 def played(
     seed: int, spec: str = SOON, variant: str = "v0", steps: int = 8, action: Sequence[int] = ALONG, player: str = "me"
 ) -> Episode:
-    """An episode of one action over and over, which is left after so many steps."""
+    """An episode that repeats one action and stops after ``steps`` steps."""
     env = RecordEpisode(make_env("cover_and_hide", variant, spec), player)
     env.reset(seed=seed)
     for _ in range(steps):
@@ -33,7 +33,7 @@ def played(
 
 
 def kept(folder: Path, *episodes: Episode) -> Path:
-    """The folder, with recordings of these."""
+    """Write recordings of the episodes into the folder; return the folder."""
     folder.mkdir(exist_ok=True)
     for episode in episodes:
         write_episode(new_path(folder, file_stem(episode)), episode)
@@ -41,6 +41,6 @@ def kept(folder: Path, *episodes: Episode) -> Path:
 
 
 def imitating(folder: Path, demonstrations: Path | None, **changes: Any) -> Run:
-    """A training of three iterations that imitates, of which the actor is cloned in the first."""
+    """A training by imitation of three iterations; the actor is cloned in the first one."""
     run = run_in(folder, SOON, **{"method": "imitation", "imitation__cloning": 0.3, **changes})
     return replace(run, demonstrations=str(demonstrations) if demonstrations else None)

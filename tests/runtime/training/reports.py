@@ -1,4 +1,4 @@
-"""Reports of a training that nobody ran."""
+"""Handmade reports of a training."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def a_report(
     confirmation: Confirmation | None = None,
     checkpointed: bool = False,
 ) -> Report:
-    """The report of an iteration of 4096 steps, of which there were 2048 a second."""
+    """The report of an iteration of 4096 steps, at 2048 steps per second."""
     progress = 0.5 + successes / count / 2 if count else 0.0
     return Report(
         iteration=Iteration(number, 4096, finished, {"value": 0.25, "entropy": 3.5}, 1.5, 0.5),

@@ -1,4 +1,4 @@
-"""Trainings that take seconds; :func:`main` is one as a program."""
+"""Trainings that take seconds; :func:`main` runs one as a program."""
 
 from __future__ import annotations
 
@@ -39,8 +39,10 @@ SMALL: dict[str, Any] = {
 
 
 def run_in(folder: Path, spec: str | None = None, **changes: Any) -> Run:
-    """A training on cover_and_hide of three iterations of 64 steps, with ``changes`` of :data:`SMALL`; dots in the
-    names of settings are written as two underscores.  ``spec`` is the text of another one than the level's own.
+    """A training on cover_and_hide of three iterations of 64 steps, with the settings :data:`SMALL`.
+
+    ``changes`` override settings; dots in their names are written as two underscores.  ``spec`` is the text of a
+    spec that replaces the spec of the level.
     """
     level = load_level("cover_and_hide")
     task = load_task(spec or spec_of(level), offered=params(level))
@@ -55,24 +57,24 @@ def run_in(folder: Path, spec: str | None = None, **changes: Any) -> Run:
 
 
 def checkpoint_of(run: Run) -> Checkpoint:
-    """The checkpoint that a training has left."""
+    """The checkpoint that a training has written."""
     checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert checkpoint is not None
     return checkpoint
 
 
 class Telling(Runner):
-    """A runner that tells the weights after each iteration, as their hash."""
+    """A runner that prints the hash of the weights after each iteration."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
-            weights = b"".join(each.numpy().tobytes() for each in self.alg.actor.state_dict().values())
+            weights = b"".join(parameter.numpy().tobytes() for parameter in self.alg.actor.state_dict().values())
             _say(weights=hashlib.sha256(weights).hexdigest(), iteration=iteration.number)
             yield iteration
 
 
 class Diverging(Runner):
-    """A runner whose second iteration gives a loss that is no number."""
+    """A runner whose second iteration has a loss of NaN."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
@@ -80,7 +82,7 @@ class Diverging(Runner):
 
 
 class Growing(Runner):
-    """A runner one of whose weights grows larger than a policy's file can hold."""
+    """A runner with a weight that is too large for the file of a policy."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
@@ -89,7 +91,7 @@ class Growing(Runner):
 
 
 class Failing(Runner):
-    """A runner whose environment gives, from its second iteration on, an observation that has no number."""
+    """A runner whose environment returns NaN in an observation from the second iteration on."""
 
     def _step(self, observation: Any) -> Any:
         if self.current_learning_iteration == 1:
@@ -99,9 +101,7 @@ class Failing(Runner):
 
 
 class Weighing(Runner):
-    """A runner that tells the weights of the entropy bonus and of the terminal penalty's rise, and this rise at the
-    first step, among the losses.
-    """
+    """A runner that reports the entropy weight, the severity, and the rise of the penalty at step 0 as losses."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
@@ -111,23 +111,23 @@ class Weighing(Runner):
 
 
 def _say(**values: Any) -> None:
-    # In one piece: several processes may write at once.
+    # Write with a single call, since several processes may write at once.
     os.write(1, (json.dumps({"rank": os.environ.get("RANK", "0"), **values}) + "\n").encode())
 
 
-def main(folder: str, *given: str) -> None:
-    """Train in a folder with ``NAME=VALUE`` of :func:`run_in`, the values in JSON, or go on there with ``--resume``.
+def main(folder: str, *options: str) -> None:
+    """Train in a folder with settings ``NAME=VALUE`` as in :func:`run_in`, values in JSON; ``--resume`` resumes.
 
-    It prints a line of JSON for each report; in several processes of torchrun each does. With ``--wait-in-search`` it
-    prints how many steps a search has taken when it first tells, and waits there until somebody kills it.
+    It prints a line of JSON for each report; with torchrun, each process does.  With ``--wait-in-search`` it prints
+    the number of steps of the search at its first progress report, and waits there to be killed.
     """
 
     def searching(searched: Searched) -> None:
-        if "--wait-in-search" in given:
+        if "--wait-in-search" in options:
             _say(searched=searched.steps)
             signal.pause()
 
-    changes = dict(each.split("=", 1) for each in given if "=" in each)
+    changes = dict(option.split("=", 1) for option in options if "=" in option)
     run = run_in(Path(folder), **{name: json.loads(value) for name, value in changes.items()})
-    for report in train(run, resume="--resume" in given, searching=searching):
+    for report in train(run, resume="--resume" in options, searching=searching):
         _say(number=report.iteration.number, steps=report.steps, stop=report.stop, finished=report.window.count)

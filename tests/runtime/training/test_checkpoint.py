@@ -1,4 +1,4 @@
-"""The files without which no training goes on."""
+"""Writing the files that a training needs to resume."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _checkpoint() -> Checkpoint:
 
 @pytest.fixture(name="synced")
 def _synced(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """The sizes of the files that are synced."""
+    """The sizes of the files at each call of ``os.fsync``."""
     sizes, sync = [], os.fsync
 
     def synced(descriptor: int) -> None:
@@ -48,16 +48,16 @@ def _synced(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return sizes
 
 
-def test_a_checkpoint_outlasts_a_loss_of_power(tmp_path: Path, checkpoint: Checkpoint, synced: list[int]) -> None:
+def test_a_checkpoint_is_synced_to_disk(tmp_path: Path, checkpoint: Checkpoint, synced: list[int]) -> None:
     write_checkpoint(path := tmp_path / "checkpoint.pt", checkpoint)
     assert synced[0] == path.stat().st_size
-    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
     again = read_checkpoint(path, checkpoint.run)
     assert again is not None
     assert torch.equal(again.processes[0]["cpu"], checkpoint.processes[0]["cpu"])
     assert replace(again, processes=()) == replace(checkpoint, processes=())
 
 
-def test_what_is_trained_outlasts_a_loss_of_power(tmp_path: Path, synced: list[int]) -> None:
+def test_the_description_of_a_training_is_synced_to_disk(tmp_path: Path, synced: list[int]) -> None:
     write_run(run_in(tmp_path))
     assert synced[0] == (tmp_path / RUN).stat().st_size

@@ -1,4 +1,4 @@
-"""The picture of a training."""
+"""The picture of the learning curve of a training."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def _texts(figure: Figure) -> set[str]:
     return {text.get_text() for text in figure.findobj(Text)}  # type: ignore[attr-defined]
 
 
-def test_axes_say_what_they_are() -> None:
+def test_the_axes_are_labelled() -> None:
     texts = _texts(curve_figure("plans", CURVE))
     assert {"plans", "steps (decisions of all environments)", "pass rate, mean progress (0 to 1)"} < texts
     assert {"pass rate", "progress"} < texts
     assert "no episode has ended" not in texts
 
 
-def test_the_legend_covers_no_line() -> None:
+def test_the_legend_does_not_cover_the_axes() -> None:
     figure = curve_figure("plans", CURVE)
     figure.draw_without_rendering()
     (legend,) = figure.legends
@@ -39,13 +39,13 @@ def test_the_legend_covers_no_line() -> None:
 
 
 @pytest.mark.parametrize("curve", [[], CURVE[:1]])
-def test_it_says_that_no_episode_has_ended(curve: list[dict[str, Any]]) -> None:
+def test_a_curve_without_episodes_has_a_note(curve: list[dict[str, Any]]) -> None:
     figure = curve_figure("plans", curve)
     assert "no episode has ended" in _texts(figure)
     assert not figure.legends
 
 
-def test_a_single_point_is_seen() -> None:
+def test_a_single_point_is_visible() -> None:
     assert draw_curve("plans", CURVE[:2]) != draw_curve("plans", CURVE[:1])
 
 

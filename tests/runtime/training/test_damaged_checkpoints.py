@@ -1,4 +1,4 @@
-"""Checkpoints with any one value changed: a training goes on from them, or refuses them with a code."""
+"""Checkpoints with one changed value: a training resumes from them, or rejects them with an error code."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 Content = dict[Any, Any]
 Path_ = tuple[Any, ...]
-"""The keys that lead to a value in a checkpoint."""
+"""The keys on the path to a value in a checkpoint."""
 
 SPEC: Final = """\
 signal stamina: ratio
 predicate tired in [-1, 1] = 0.98 - stamina
 spec get_tired { limit 3 steps  require eventually tired }
 """
-"""Some episodes of it succeed by chance, and others fail."""
+"""With random actions some episodes meet the spec, and others fail."""
 MISSING: Final = object()
 OTHERS: Final[Mapping[str, Callable[[Any], object]]] = {
     "missing": lambda value: MISSING,
@@ -55,7 +55,7 @@ OTHERS: Final[Mapping[str, Callable[[Any], object]]] = {
     "a tensor of large numbers": lambda value: torch.full_like(_like(value), 100),
     "a tensor of zeros": lambda value: torch.zeros_like(_like(value)),
     "a sparse tensor": lambda value: torch.zeros(2, 2).to_sparse(),
-    "one value more": lambda value: _more(value),
+    "one value more": lambda value: _with_one_more(value),
 }
 
 _OPTIMIZER: Final = "algorithm", "optimizer_state_dict"
@@ -85,31 +85,31 @@ CHOSEN: Final[Mapping[Path_, tuple[str, ...]]] = {
     **{("standstill", index): _NUMBERS for index in (0, 1)},
     **{("window", 0, index): _NUMBERS for index in (2, 3)},
 }
-"""Some that ended a training with a bug or a signal, or that went unnoticed into its numbers."""
+"""Changes that once crashed a training, or silently changed its results."""
 
 
 def _like(value: object) -> Tensor:
     return value if isinstance(value, Tensor) else torch.zeros(2)
 
 
-def _more(value: Any) -> object:
-    """A value with another one in it, or beside it."""
+def _with_one_more(value: Any) -> object:
+    """A container with one more value, or a list of a value and itself."""
     if isinstance(value, dict):
         return value | {99: {"x": 1}}
     return [*value, None] if isinstance(value, (list, tuple)) else [value, value]
 
 
 def values(content: object, path: Path_ = ()) -> Iterator[Path_]:
-    """The places of all values in a checkpoint, the tables and lists that hold others included."""
+    """The paths of all values in a checkpoint, including tables and lists."""
     if path:
         yield path
-    inside = content.items() if isinstance(content, dict) else enumerate(content) if _is_list(content) else ()
-    for key, each in inside:
-        yield from values(each, (*path, key))
+    items = content.items() if isinstance(content, dict) else enumerate(content) if _is_list(content) else ()
+    for key, value in items:
+        yield from values(value, (*path, key))
 
 
 def changed(content: Any, path: Path_, change: Callable[[Any], object]) -> Any:
-    """The content with another value at a place."""
+    """The content with a changed value at a path."""
     if not path:
         return change(content)
     items = dict(content) if isinstance(content, dict) else dict(enumerate(content))
@@ -124,9 +124,9 @@ def _is_list(value: object) -> bool:
 
 @pytest.fixture(name="made", scope="module")
 def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Run, Content]]:
-    """A training that searches, with a checkpoint in which every part holds something.
+    """A training with a search, and the content of its checkpoint, in which no part is empty.
 
-    All trainings of this module share its environments: to start processes for each would take long.
+    All trainings of this module share its environments, since starting processes for each is slow.
     """
     run = run_in(
         tmp_path_factory.mktemp("damaged") / "run",
@@ -153,7 +153,7 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Run, Conte
 
 
 def goes_on(run: Run, content: Any, folder: Path) -> bool:
-    """Whether a training goes on from a checkpoint with this content; if it does not, it refuses it with a code."""
+    """Whether a training resumes from a checkpoint with this content; if not, check that the rejection has a code."""
     shutil.copytree(run.folder, folder)
     run = replace(run, folder=folder)
     torch.save(content, folder / CHECKPOINT)
@@ -165,18 +165,18 @@ def goes_on(run: Run, content: Any, folder: Path) -> bool:
         assert read_checkpoint(folder / CHECKPOINT)
         return True
     except TltlError as error:
-        assert {each.code for each in error.diagnostics} <= {"TLT0864", "TLT0866", "TLT0868"}
-        # Whatever was refused is left as it was.
+        assert {diagnostic.code for diagnostic in error.diagnostics} <= {"TLT0864", "TLT0866", "TLT0868"}
+        # A rejected checkpoint is not changed.
         assert error.diagnostics[0].code == "TLT0866" or (folder / CHECKPOINT).read_bytes() == before
         return False
     finally:
         shutil.rmtree(folder)
 
 
-def test_the_checkpoint_holds_something_in_every_part(made: tuple[Run, Content], tmp_path: Path) -> None:
+def test_no_part_of_the_checkpoint_is_empty(made: tuple[Run, Content], tmp_path: Path) -> None:
     run, content = made
-    own = content["processes"][0]
-    assert all(own[name].numel() for name in ("way_actions", "failure_actions", "rates"))
+    process = content["processes"][0]
+    assert all(process[name].numel() for name in ("way_actions", "failure_actions", "rates"))
     assert content["window"]
     assert content["best"]
     assert content["searched"]["lengths"]
@@ -185,22 +185,22 @@ def test_the_checkpoint_holds_something_in_every_part(made: tuple[Run, Content],
 
 def check(made: tuple[Run, Content], chosen: list[tuple[Path_, str]], folder: Path) -> None:
     run, content = made
-    wrong = []
+    errors = []
     for number, (path, name) in enumerate(chosen):
         try:
             goes_on(run, changed(content, path, OTHERS[name]), folder / str(number))
         except Exception as error:
-            wrong.append(f"{'.'.join(map(str, path))}, {name}: {error!r:.200}")
-    assert not wrong, "\n".join(wrong)
+            errors.append(f"{'.'.join(map(str, path))}, {name}: {error!r:.200}")
+    assert not errors, "\n".join(errors)
 
 
-def test_changes_that_ended_trainings_are_refused(made: tuple[Run, Content], tmp_path: Path) -> None:
+def test_changes_that_once_crashed_are_rejected_or_harmless(made: tuple[Run, Content], tmp_path: Path) -> None:
     check(made, [(path, name) for path, names in CHOSEN.items() for name in names], tmp_path)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OTHERS)
-def test_every_change_of_each_value_is_refused_or_harmless(
+def test_every_change_of_each_value_is_rejected_or_harmless(
     made: tuple[Run, Content], tmp_path: Path, name: str
 ) -> None:
     check(made, [(path, name) for path in values(made[1])], tmp_path)

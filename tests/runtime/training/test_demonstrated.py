@@ -1,4 +1,4 @@
-"""What is learned from recordings: the decisions, with what the agent would have sensed."""
+"""The imitation data from recordings: the decisions with the observations before them."""
 
 from __future__ import annotations
 
@@ -22,40 +22,42 @@ def read(folder: Path) -> Demonstrated:
     return read_demonstrations(folder, make)
 
 
-def test_each_decision_with_what_was_sensed_before_it(tmp_path: Path) -> None:
-    found = read(kept(tmp_path, played(1), played(2, action=(0, 2, 0, 1, 0))))
-    assert (found.about.episodes, found.about.decisions, found.about.players) == (2, 16, ("me",))
-    assert found.actions.tolist() == [list(map(float, ALONG))] * 8 + [[0.0, 2.0, 0.0, 1.0, 0.0]] * 8
+def test_each_decision_has_the_observation_before_it(tmp_path: Path) -> None:
+    demonstrated = read(kept(tmp_path, played(1), played(2, action=(0, 2, 0, 1, 0))))
+    assert (demonstrated.about.episodes, demonstrated.about.decisions, demonstrated.about.players) == (2, 16, ("me",))
+    assert demonstrated.actions.tolist() == [list(map(float, ALONG))] * 8 + [[0.0, 2.0, 0.0, 1.0, 0.0]] * 8
     env = make()
     observation, _ = env.reset(seed=2)
-    along = [observation, *(env.step([0, 2, 0, 1, 0])[0] for _ in range(7))]
+    step_observations = [observation, *(env.step([0, 2, 0, 1, 0])[0] for _ in range(7))]
     env.close()
-    assert set(found.observations.keys()) == set(observation)
+    assert set(demonstrated.observations.keys()) == set(observation)
     for key in observation:
-        sensed = np.stack([each[key] for each in along]).astype(np.float32)
-        assert np.array_equal(found.observations[key][8:].numpy(), sensed), key
+        sensed = np.stack([step_observation[key] for step_observation in step_observations]).astype(np.float32)
+        assert np.array_equal(demonstrated.observations[key][8:].numpy(), sensed), key
 
 
-def test_what_is_no_demonstration_here_is_left_out_with_the_reason(tmp_path: Path) -> None:
-    found = read(kept(tmp_path, played(1), played(2, steps=7), played(3, variant="v1")))
-    assert found.about.episodes == 1
-    assert found.about.left_out == (
+def test_recordings_that_do_not_fit_are_left_out_with_a_reason(tmp_path: Path) -> None:
+    demonstrated = read(kept(tmp_path, played(1), played(2, steps=7), played(3, variant="v1")))
+    assert demonstrated.about.episodes == 1
+    assert demonstrated.about.left_out == (
         "cover_and_hide-v0-2.episode.npz: it does not meet `soon`",
         "cover_and_hide-v1-3.episode.npz: it is of another level, `cover_and_hide:v1` as it was then",
     )
 
 
-def test_what_cannot_be_read_is_left_out_with_the_reason(tmp_path: Path) -> None:
+def test_unreadable_recordings_are_left_out_with_a_reason(tmp_path: Path) -> None:
     folder = kept(tmp_path, played(1))
     (folder / "damaged.episode.npz").write_bytes(b"PK, and no more")
-    found = read(folder)
-    assert found.about.episodes == 1
-    (left_out,) = found.about.left_out
+    demonstrated = read(folder)
+    assert demonstrated.about.episodes == 1
+    (left_out,) = demonstrated.about.left_out
     assert left_out.startswith("damaged.episode.npz: TLT0820, ")
 
 
 @pytest.mark.parametrize("name", ["TLT0921", "TLT0921_empty", "TLT0921_unfit"])
-def test_nothing_to_imitate(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_without_demonstrations_is_reported(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     folder = Path("mine")
     if name != "TLT0921":
@@ -67,13 +69,13 @@ def test_nothing_to_imitate(name: str, tmp_path: Path, monkeypatch: pytest.Monke
     compare(name, caught.value)
 
 
-def test_decisions_are_drawn_by_torchs_generator(tmp_path: Path) -> None:
-    found = read(kept(tmp_path, played(1)))
+def test_decisions_are_sampled_with_the_generator_of_torch(tmp_path: Path) -> None:
+    demonstrated = read(kept(tmp_path, played(1)))
     torch.manual_seed(1)
-    once = found.drawn(5)[0]["entities"], [actions for _, actions in found.shuffled(3)]
+    once = demonstrated.drawn(5)[0]["entities"], [actions for _, actions in demonstrated.shuffled(3)]
     torch.manual_seed(1)
-    again = found.drawn(5)[0]["entities"], [actions for _, actions in found.shuffled(3)]
+    again = demonstrated.drawn(5)[0]["entities"], [actions for _, actions in demonstrated.shuffled(3)]
     assert torch.equal(once[0], again[0])
-    assert [len(each) for each in once[1]] == [3, 3, 2]
-    seen = torch.cat([observations["entities"] for observations, _ in found.shuffled(3)])
-    assert sorted(seen.tolist()) == sorted(found.observations["entities"].tolist())
+    assert [len(batch) for batch in once[1]] == [3, 3, 2]
+    entities = torch.cat([observations["entities"] for observations, _ in demonstrated.shuffled(3)])
+    assert sorted(entities.tolist()) == sorted(demonstrated.observations["entities"].tolist())

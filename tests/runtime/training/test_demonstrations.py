@@ -1,4 +1,4 @@
-"""Which episodes are kept as demonstrations, and how many the expert plays."""
+"""The episodes that are kept as demonstrations, and the number that the expert plays."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tltl_runtime.training.imitation.demonstrations import (
 from tltlc.diagnostics.diagnostic import TltlError
 
 IN_VAIN = "import spatial\nentity exit\nspec vain { level cover_and_hide\n limit 2 steps\n reach near(exit) }\n"
-"""A spec that nobody meets."""
+"""A spec that no player can meet."""
 LONGER = SOON.replace("8 steps", "9 steps")
 
 
@@ -36,77 +36,77 @@ def _env() -> Iterator[RecordEpisode]:
     env.close()
 
 
-def of(env: RecordEpisode, folder: Path) -> Demonstrations:
+def demonstrations_in(env: RecordEpisode, folder: Path) -> Demonstrations:
     return Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
 
 
-def test_what_meets_the_spec_is_kept_and_nothing_else(env: RecordEpisode, tmp_path: Path) -> None:
-    made = of(env, tmp_path / "new")
-    good, stopped = made.add(played(3)), made.add(played(4, steps=5))
+def test_only_episodes_that_meet_the_spec_are_kept(env: RecordEpisode, tmp_path: Path) -> None:
+    demonstrations = demonstrations_in(env, tmp_path / "new")
+    good, stopped = demonstrations.add(played(3)), demonstrations.add(played(4, steps=5))
     assert good.path == tmp_path / "new" / "cover_and_hide-v0-3.episode.npz"
-    assert (stopped.path, good.kept, stopped.kept, made.count) == (None, 1, 1, 1)
+    assert (stopped.path, good.kept, stopped.kept, demonstrations.count) == (None, 1, 1, 1)
     pipes.put_beside(tmp_path / "new" / "pipe.episode.npz")
     assert recordings(tmp_path / "new") == [good.path]
     assert read_episode(good.path).seed == 3
 
 
-def test_what_is_there_counts_where_level_and_spec_are_right(env: RecordEpisode, tmp_path: Path) -> None:
+def test_existing_recordings_of_the_level_and_the_spec_count(env: RecordEpisode, tmp_path: Path) -> None:
     folder = kept(tmp_path / "old", played(1), played(2, variant="v1"), played(3, LONGER, steps=9), played(4, steps=7))
-    made = of(env, folder)
-    assert (made.count, made.seeds("me"), made.seeds("expert")) == (1, [1], [])
-    assert [(each.path.name.split("-", 1)[1], each.why) for each in made.others] == [
+    demonstrations = demonstrations_in(env, folder)
+    assert (demonstrations.count, demonstrations.seeds("me"), demonstrations.seeds("expert")) == (1, [1], [])
+    assert [(recording.path.name.split("-", 1)[1], recording.why) for recording in demonstrations.others] == [
         ("v0-3.episode.npz", "it is of another spec"),
         ("v0-4.episode.npz", "it does not meet the spec"),
         ("v1-2.episode.npz", "it is of another level"),
     ]
 
 
-def test_what_cannot_be_read_is_another_one(env: RecordEpisode, tmp_path: Path) -> None:
+def test_an_unreadable_recording_does_not_count(env: RecordEpisode, tmp_path: Path) -> None:
     folder = kept(tmp_path / "old", played(1), played(2))
     damaged = recordings(folder)[1]
     damaged.write_bytes(damaged.read_bytes()[:1000])
-    made = of(env, folder)
-    assert made.seeds("me") == [1]
-    (other,) = made.others
+    demonstrations = demonstrations_in(env, folder)
+    assert demonstrations.seeds("me") == [1]
+    (other,) = demonstrations.others
     assert other.path == damaged and other.why.startswith("TLT0820, ")
 
 
-def test_the_expert_adds_what_is_missing(env: RecordEpisode, tmp_path: Path) -> None:
-    first = list(islice(by_expert(env, of(env, tmp_path), 3, seed=5), 2))
-    assert [(each.episode.seed, each.kept) for each in first] == [(5, 1), (6, 2)]
+def test_the_expert_records_only_the_missing_demonstrations(env: RecordEpisode, tmp_path: Path) -> None:
+    first = list(islice(by_expert(env, demonstrations_in(env, tmp_path), 3, seed=5), 2))
+    assert [(attempt.episode.seed, attempt.kept) for attempt in first] == [(5, 1), (6, 2)]
     times = {path: path.stat().st_mtime_ns for path in recordings(tmp_path)}
-    rest = list(by_expert(env, of(env, tmp_path), 3, seed=5))
-    assert [(each.episode.seed, each.kept) for each in rest] == [(7, 3)]
+    rest = list(by_expert(env, demonstrations_in(env, tmp_path), 3, seed=5))
+    assert [(attempt.episode.seed, attempt.kept) for attempt in rest] == [(7, 3)]
     assert {path: path.stat().st_mtime_ns for path in times} == times
-    assert not list(by_expert(env, of(env, tmp_path), 3, seed=5))
-    # Another beginning is no reason to play what is there.
-    assert [each.episode.seed for each in by_expert(env, of(env, tmp_path), 4, seed=0)] == [8]
+    assert not list(by_expert(env, demonstrations_in(env, tmp_path), 3, seed=5))
+    # With another first seed, existing demonstrations are not played again.
+    assert [attempt.episode.seed for attempt in by_expert(env, demonstrations_in(env, tmp_path), 4, seed=0)] == [8]
 
 
-def test_seeds_of_a_person_are_not_the_experts(env: RecordEpisode, tmp_path: Path) -> None:
+def test_the_seeds_of_a_person_do_not_count_for_the_expert(env: RecordEpisode, tmp_path: Path) -> None:
     kept(tmp_path, played(900))
-    assert [each.episode.seed for each in by_expert(env, of(env, tmp_path), 2)] == [0]
+    assert [attempt.episode.seed for attempt in by_expert(env, demonstrations_in(env, tmp_path), 2)] == [0]
 
 
-def test_the_expert_gives_up(tmp_path: Path) -> None:
+def test_the_expert_gives_up_after_many_failures(tmp_path: Path) -> None:
     env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
     tried: list[Tried] = []
     with pytest.raises(TltlError) as caught:
-        tried.extend(by_expert(env, of(env, tmp_path / "none"), 2))
+        tried.extend(by_expert(env, demonstrations_in(env, tmp_path / "none"), 2))
     env.close()
     compare("TLT0920", caught.value)
     assert not (tmp_path / "none").exists()
     assert not recordings(tmp_path)
 
 
-def test_failures_before_are_told(tmp_path: Path) -> None:
+def test_failures_are_reported_before_the_expert_gives_up(tmp_path: Path) -> None:
     env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
-    tried = list(islice(by_expert(env, of(env, tmp_path), 2), MOST_FAILURES))
+    tried = list(islice(by_expert(env, demonstrations_in(env, tmp_path), 2), MOST_FAILURES))
     env.close()
-    assert [(each.path, each.kept, each.episode.seed) for each in tried] == [
+    assert [(attempt.path, attempt.kept, attempt.episode.seed) for attempt in tried] == [
         (None, 0, seed) for seed in range(MOST_FAILURES)
     ]
 
 
-def test_the_expert_plays_seed_by_seed(env: RecordEpisode) -> None:
-    assert [(each.seed, each.success) for each in expert_episodes(env, (9, 4))] == [(9, True), (4, True)]
+def test_the_expert_plays_the_given_seeds(env: RecordEpisode) -> None:
+    assert [(episode.seed, episode.success) for episode in expert_episodes(env, (9, 4))] == [(9, True), (4, True)]

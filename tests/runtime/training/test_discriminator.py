@@ -1,4 +1,4 @@
-"""Demonstrations and the agent are told apart."""
+"""The discriminator tells decisions of demonstrations and of the agent apart."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def _discriminator() -> Discriminator:
 
 
 def learn(discriminator: Discriminator, theirs: Decisions, agents: Decisions, penalty: float) -> list[float]:
-    steps = torch.optim.Adam(discriminator.parameters(), lr=1e-2)
+    optimizer = torch.optim.Adam(discriminator.parameters(), lr=1e-2)
     losses = []
     for _ in range(150):
         judged = discriminator.judged(theirs, agents, penalty)
-        steps.zero_grad()
+        optimizer.zero_grad()
         judged.loss.backward()
-        steps.step()
+        optimizer.step()
         losses.append(judged.loss.item())
     return losses
 
@@ -55,14 +55,14 @@ def test_equal_decisions_stay_undecided(discriminator: Discriminator) -> None:
     assert judged.theirs == judged.agents == pytest.approx(0.5, abs=0.02)
 
 
-def test_the_reward_is_that_of_the_probability(discriminator: Discriminator) -> None:
-    made = decisions(8)
-    probability = discriminator(made).sigmoid()
-    assert torch.allclose(discriminator.reward(made), -torch.log(1 - probability), atol=1e-6)
-    assert (discriminator.reward(made) >= 0).all()
+def test_the_reward_is_a_function_of_the_probability(discriminator: Discriminator) -> None:
+    sample = decisions(8)
+    probability = discriminator(sample).sigmoid()
+    assert torch.allclose(discriminator.reward(sample), -torch.log(1 - probability), atol=1e-6)
+    assert (discriminator.reward(sample) >= 0).all()
 
 
-def test_the_penalty_draws_the_gradient_towards_one(discriminator: Discriminator) -> None:
+def test_the_penalty_pulls_the_gradient_norm_towards_one(discriminator: Discriminator) -> None:
     theirs, agents = decisions(64), decisions(64, shift=3.0)
 
     def steepness(between: float) -> float:

@@ -1,4 +1,4 @@
-"""What PPO is told of episodes that end: which are over, and which of them might have gone on."""
+"""The ends of episodes as PPO sees them: terminated, or truncated by a time limit."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ spec stoop { level navigation
   avoid leaping
 }
 """
-"""A spec that a crouch meets and a jump violates, both at once."""
+"""A spec that crouching meets and jumping violates, in one step."""
 STAY, WALK, JUMP, CROUCH = [0, 0, 0, 0, 0], [1, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0]
 WAY = Way(5, [STAY, CROUCH], end=1)
 ON_IT = Start(5, [STAY], part=(WAY.end, 0))
 STARTS = (Start(5), Start(5), Start(5), ON_IT, ON_IT, Start(5, [STAY], part=(WAY.end, 0), most=2), ON_IT)
-"""Where the episodes of each environment begin."""
+"""The start of the episodes of each environment."""
 
 
 class Fixed(Restarts):
-    """Restarts that draw the same starts in turn."""
+    """Restarts that return the same starts in turn."""
 
     def __init__(self) -> None:
         super().__init__(1, np.random.default_rng(0))
@@ -64,35 +64,35 @@ def _env(make: Callable[[], TrainingEnv]) -> TrainingEnv:
     return make()
 
 
-def test_episodes_that_are_cut_or_out_of_time_are_time_outs_and_those_on_ways_are_not_counted(env: TrainingEnv) -> None:
+def test_truncated_episodes_are_time_outs_and_episodes_on_ways_are_not_counted(env: TrainingEnv) -> None:
     first = env.get_observations()
-    told = []
+    ends = []
     for actions in ([WALK, JUMP, CROUCH, JUMP, CROUCH, WALK, WALK], *[[WALK] * len(STARTS)] * 3):
         observation, _, dones, extras = env.step(torch.tensor(actions))
-        rows, late = (torch.nonzero(each).flatten().tolist() for each in (dones, extras["time_outs"]))
-        told.append((rows, late, env.finished()))
-        if len(told) == 2:
-            # The episode that was cut is followed at once by one that begins where it did.
+        rows, late = (torch.nonzero(mask).flatten().tolist() for mask in (dones, extras["time_outs"]))
+        ends.append((rows, late, env.finished()))
+        if len(ends) == 2:
+            # The truncated episode is followed at once by one with the same start.
             assert all(torch.equal(observation[key][5], first[key][5]) for key in env.shapes)
     violated, met = Finished(False, 0.0, 1, 0, violated=True), Finished(True, 1.0, 1, 1, violated=False)
-    assert told == [
-        # What is violated or met has no value beyond its end.
+    assert ends == [
+        # Violated or met episodes terminate: they have no value beyond their end.
         ([1, 2, 3, 4], [], (violated, met)),
-        # Environment 5 took as many decisions as its start allows, environment 6 as many as the spec does.
+        # Environment 5 reached the limit of its start, environment 6 the limit of the spec.
         ([5], [5], ()),
         ([6], [6], ()),
         ([0, 3, 4, 5], [0, 3, 4, 5], (Finished(False, 0.0, 4, 0, violated=False),)),
     ]
 
 
-def test_failures_cost_more_the_greater_the_severity(make: Callable[[], TrainingEnv]) -> None:
+def test_failures_cost_more_with_a_greater_severity(make: Callable[[], TrainingEnv]) -> None:
     mild, severe = make(), make()
     severe.severity = 0.5
     steps = [[WALK, JUMP, CROUCH, JUMP, CROUCH, WALK, WALK], *[[WALK] * len(STARTS)] * 3]
     further = torch.stack([mild.step(actions)[1] - severe.step(actions)[1] for actions in map(torch.tensor, steps)])
     expected = torch.zeros(4, len(STARTS))
-    # Violated at once, and on a way after what was played again.
+    # A violation at once, and a violation after a replayed way.
     expected[0, 1], expected[0, 3] = 5.0, 10.0
-    # The limit is a failure, too; an episode that is cut off is none.
+    # The limit of the spec is a failure, too; a truncated episode is not.
     expected[2, 6] = expected[3, 0] = expected[3, 3] = expected[3, 4] = 20.0
     torch.testing.assert_close(further, expected)

@@ -1,4 +1,4 @@
-"""Checkpoints of the right types whose tensors do not fit the training that goes on from them."""
+"""Checkpoints of the right types whose tensors do not fit the training that resumes from them."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ def changed(run: Run, change: Callable[[Content], object]) -> None:
 
 
 def refusal(run: Run) -> str:
-    """What a training says that goes on from a checkpoint; the checkpoint itself can be read."""
+    """The reason why a training cannot resume from a checkpoint; the checkpoint itself is readable."""
     assert read_checkpoint(run.folder / CHECKPOINT)
     before = (run.folder / CHECKPOINT).read_bytes()
     with pytest.raises(TltlError) as caught:
         next(train(run, resume=True))
-    (found,) = caught.value.diagnostics
-    assert found.code == "TLT0864"
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0864"
     assert (run.folder / CHECKPOINT).read_bytes() == before
-    return found.title.partition(" cannot be resumed from: ")[2]
+    return diagnostic.title.partition(" cannot be resumed from: ")[2]
 
 
 @pytest.fixture(name="copy")
@@ -54,9 +54,9 @@ def _first(weights: dict[str, Any], change: Callable[[Any], object]) -> None:
 
 
 def _cut(content: Content) -> dict[str, Any]:
-    """The actor's weights, the first of them without its last row."""
+    """The weights of the actor; the first tensor lacks its last row."""
     weights: dict[str, Any] = dict(content["algorithm"]["actor_state_dict"])
-    _first(weights, lambda each: each[:-1])
+    _first(weights, lambda tensor: tensor[:-1])
     return weights
 
 
@@ -65,7 +65,7 @@ def _state(content: Content) -> dict[Any, Any]:
     return state
 
 
-def _groups(content: Content) -> dict[str, Any]:
+def _group(content: Content) -> dict[str, Any]:
     group: dict[str, Any] = content["algorithm"]["optimizer_state_dict"]["param_groups"][0]
     return group
 
@@ -98,13 +98,13 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
     ),
     "averages that are missing": (lambda it: _state(it).pop("exp_avg_sq"), "an optimizer in it has other averages"),
     "averages that are no tensor": (lambda it: _state(it).update(exp_avg="text"), "holds what is no average"),
-    "optimizer of fewer weights": (lambda it: _groups(it)["params"].pop(), "is of another optimizer"),
+    "optimizer of fewer weights": (lambda it: _group(it)["params"].pop(), "is of another optimizer"),
     "optimizer whose rate is a text": (
-        lambda it: _groups(it).update(lr="fast"),
+        lambda it: _group(it).update(lr="fast"),
         "an optimizer in it has other options",
     ),
     "optimizer whose rate is no number": (
-        lambda it: _groups(it).update(lr=float("nan")),
+        lambda it: _group(it).update(lr=float("nan")),
         "an optimizer in it has other options: `lr`",
     ),
     "optimizer with averages of no weight": (
@@ -112,7 +112,7 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
         "`algorithm.optimizer_state_dict.state` is of another optimizer",
     ),
     "optimizer whose betas are one": (
-        lambda it: _groups(it).update(betas=(0.9,)),
+        lambda it: _group(it).update(betas=(0.9,)),
         "an optimizer in it has other options",
     ),
     "generator that is too short": (
@@ -128,31 +128,31 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_what_does_not_fit_is_refused(copy: Run, name: str) -> None:
+def test_a_checkpoint_that_does_not_fit_is_rejected(copy: Run, name: str) -> None:
     change, why = CHANGES[name]
     changed(copy, change)
     assert why in refusal(copy)
 
 
-def test_a_whole_checkpoint_fits(copy: Run) -> None:
+def test_an_unchanged_checkpoint_fits(copy: Run) -> None:
     assert next(train(copy, resume=True)).stop == "steps"
 
 
-def test_a_checkpoint_of_no_process_is_refused(copy: Run) -> None:
+def test_a_checkpoint_without_processes_is_rejected(copy: Run) -> None:
     changed(copy, lambda it: it.update(processes=()))
     with pytest.raises(TltlError, match="TLT0864"):
         read_checkpoint(copy.folder / CHECKPOINT)
 
 
-def test_starts_of_another_shape_are_refused(tmp_path: Path) -> None:
+def test_starts_of_another_shape_are_rejected(tmp_path: Path) -> None:
     run = run_in(tmp_path / "run", exploration__ways=1, exploration__steps=64, stop__steps=64)
     list(train(run))
     changed(run, lambda it: it["processes"][0].update(rates=torch.zeros(2, 3)))
     assert refusal(run).startswith("`processes` 1: `rates` must be float64 of the shape [")
 
 
-def played() -> dict[str, Any]:
-    """The arrays of a trajectory and a failure."""
+def restarts_state() -> dict[str, Any]:
+    """The state of restarts with one trajectory and one failure."""
     restarts = Restarts(4, np.random.default_rng(0))
     restarts.add(Way(1, [[0] * 5, [1] * 5], 2))
     restarts.failures.append(Failure(3, [[0] * 5], 1))
@@ -179,8 +179,8 @@ STARTS: dict[str, Callable[[dict[str, Any]], object]] = {
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_damaged_starts_are_refused(name: str) -> None:
-    whole = played()
+def test_damaged_starts_are_rejected(name: str) -> None:
+    whole = restarts_state()
     Restarts(4, np.random.default_rng(0)).load(whole)
     STARTS[name](whole)
     with pytest.raises(ValueError, match="`"):

@@ -1,4 +1,4 @@
-"""Trainings that imitate: cloning first, then the rewards of a discriminator."""
+"""Trainings by imitation: first behavioural cloning, then the rewards of a discriminator."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _imitated(folder: Path, mine: Path) -> tuple[Run, list[Report]]:
 
 
 def numbers(reports: list[Report]) -> list[Any]:
-    return [(each.iteration.number, each.iteration.losses, each.steps, each.window) for each in reports]
+    return [(report.iteration.number, report.iteration.losses, report.steps, report.window) for report in reports]
 
 
 def equal(one: Any, other: Any) -> bool:
@@ -57,21 +57,21 @@ def equal(one: Any, other: Any) -> bool:
 
 
 def algorithm_of(run: Run) -> Gail:
-    """What learns in a training, before its first step."""
+    """The algorithm of a training before its first step."""
     own = peers()
     played = environments(run)
     torch.manual_seed(0)
     env, _ = prepared(run, own, "cpu", played, None, print, demonstrated(run, own, print), None)
-    made = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
+    algorithm = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
     played.close()
-    assert isinstance(made, Gail)
-    return made
+    assert isinstance(algorithm, Gail)
+    return algorithm
 
 
 def test_cloning_comes_first(imitated: tuple[Run, list[Report]]) -> None:
     run, reports = imitated
-    assert [set(each.iteration.losses) for each in reports] == [CLONING, GAIL, GAIL]
-    assert [each.steps for each in reports] == [64, 128, 192]
+    assert [set(report.iteration.losses) for report in reports] == [CLONING, GAIL, GAIL]
+    assert [report.steps for report in reports] == [64, 128, 192]
     assert [line["losses"].keys() for line in read_metrics(run.folder / METRICS)] == [CLONING, GAIL, GAIL]
     assert reports[-1].searched is None
     assert reports[-1].replayed == 0
@@ -80,17 +80,17 @@ def test_cloning_comes_first(imitated: tuple[Run, list[Report]]) -> None:
     assert (about.episodes, about.decisions, about.players, about.left_out) == (2, 16, ("me",), ())
 
 
-def test_its_record_and_its_policy_tell_how_it_was_made(imitated: tuple[Run, list[Report]]) -> None:
+def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Run, list[Report]]) -> None:
     run, reports = imitated
-    made = write_record(run, reports[-1])
-    assert made["imitated"] == {"episodes": 2, "decisions": 16, "players": ["me"], "left_out": [], "cloned": 64}
-    assert (made["settings"]["method"], made["search"]) == ("imitation", None)
+    record = write_record(run, reports[-1])
+    assert record["imitated"] == {"episodes": 2, "decisions": 16, "players": ["me"], "left_out": [], "cloned": 64}
+    assert (record["settings"]["method"], record["search"]) == ("imitation", None)
     policy = read_policy(run.folder / POLICY)
-    assert policy.card.training == made
+    assert policy.card.training == record
     assert policy.card.network == run.settings.network
 
 
-def test_equal_trainings_give_equal_numbers_and_so_do_equal_checkpoints(
+def test_equal_trainings_and_equal_checkpoints_give_equal_numbers(
     folder: Path, mine: Path, imitated: tuple[Run, list[Report]]
 ) -> None:
     run, reports = imitated
@@ -99,8 +99,8 @@ def test_equal_trainings_give_equal_numbers_and_so_do_equal_checkpoints(
     assert equal(checkpoint_of(run).algorithm, checkpoint_of(again).algorithm)
     shutil.copytree(run.folder, folder / "copy")
     longer = [imitating(folder / name, mine, stop__steps=320) for name in ("again", "copy")]
-    resumed = [list(train(each, resume=True)) for each in longer]
-    assert [each.iteration.number for each in resumed[0]] == [4, 5]
+    resumed = [list(train(longer_run, resume=True)) for longer_run in longer]
+    assert [report.iteration.number for report in resumed[0]] == [4, 5]
     assert numbers(resumed[0]) == numbers(resumed[1])
     assert equal(checkpoint_of(longer[0]).algorithm, checkpoint_of(longer[1]).algorithm)
 
@@ -108,8 +108,8 @@ def test_equal_trainings_give_equal_numbers_and_so_do_equal_checkpoints(
 def test_a_higher_limit_does_not_clone_again(folder: Path, mine: Path) -> None:
     run = imitating(folder / "longer", mine)
     list(train(run))
-    kept_ = checkpoint_of(run).algorithm
-    assert (kept_["steps"], kept_["cloning_steps"]) == (192, 57)
+    algorithm_state = checkpoint_of(run).algorithm
+    assert (algorithm_state["steps"], algorithm_state["cloning_steps"]) == (192, 57)
     longer = replace(run, settings=imitating(folder, mine, stop__steps=2 * 10**4).settings)
     reports = train(longer, resume=True)
     assert set(next(reports).iteration.losses) == GAIL
@@ -117,36 +117,36 @@ def test_a_higher_limit_does_not_clone_again(folder: Path, mine: Path) -> None:
     assert checkpoint_of(longer).algorithm["cloning_steps"] == 57
 
 
-def test_of_a_limit_of_minutes_it_clones_a_share_too(folder: Path, mine: Path) -> None:
+def test_cloning_takes_a_share_of_a_limit_in_minutes(folder: Path, mine: Path) -> None:
     limits = {"stop__steps": 10**9, "stop__minutes": 60.0}
     run = imitating(folder / "minutes", mine, imitation__cloning=1e-6, **limits)
     reports = train(run)
-    told = [next(reports) for _ in range(3)]
+    first_reports = [next(reports) for _ in range(3)]
     reports.close()
-    # 3.6 ms, in which no rollout is played, and 1,000 steps, which are more than the three of them.
-    assert [set(each.iteration.losses) for each in told] == [CLONING, GAIL, GAIL]
-    kept_ = checkpoint_of(run).algorithm
-    assert (kept_["cloning_steps"], kept_["cloning_s"]) == (1000, pytest.approx(0.0036))
+    # The share of cloning is 3.6 ms, less than a rollout takes, and 1,000 steps, more than three rollouts have.
+    assert [set(report.iteration.losses) for report in first_reports] == [CLONING, GAIL, GAIL]
+    algorithm_state = checkpoint_of(run).algorithm
+    assert (algorithm_state["cloning_steps"], algorithm_state["cloning_s"]) == (1000, pytest.approx(0.0036))
     longer = replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, minutes=10**6)))
     reports = train(longer, resume=True)
     assert set(next(reports).iteration.losses) == GAIL
     reports.close()
-    assert checkpoint_of(longer).algorithm["cloning_s"] == kept_["cloning_s"]
+    assert checkpoint_of(longer).algorithm["cloning_s"] == algorithm_state["cloning_s"]
 
 
-def test_without_a_limit_of_minutes_time_does_not_count(tmp_path: Path, mine: Path) -> None:
-    made = algorithm_of(imitating(tmp_path / "endless", mine))
-    made.seconds = 1e12
-    assert made.clones
+def test_without_a_limit_in_minutes_time_does_not_end_cloning(tmp_path: Path, mine: Path) -> None:
+    algorithm = algorithm_of(imitating(tmp_path / "endless", mine))
+    algorithm.seconds = 1e12
+    assert algorithm.clones
 
 
-def test_workers_do_not_count(folder: Path, imitated: tuple[Run, list[Report]], mine: Path) -> None:
+def test_the_number_of_workers_does_not_count(folder: Path, imitated: tuple[Run, list[Report]], mine: Path) -> None:
     two = imitating(folder / "two", mine, rollout__workers=2)
     assert numbers(list(train(two))) == numbers(imitated[1])
     assert equal(checkpoint_of(two).algorithm, checkpoint_of(imitated[0]).algorithm)
 
 
-def test_the_rewards_of_the_automaton_do_not_count(
+def test_the_settings_of_automaton_rewards_do_not_count(
     folder: Path, imitated: tuple[Run, list[Report]], mine: Path
 ) -> None:
     changes = {"reward__mode": "edge", "reward__termination": "paper", "exploration__ways": 3}
@@ -155,10 +155,10 @@ def test_the_rewards_of_the_automaton_do_not_count(
     assert equal(checkpoint_of(other).algorithm, checkpoint_of(imitated[0]).algorithm)
 
 
-def test_a_clone_does_as_it_was_shown(folder: Path, mine: Path) -> None:
+def test_a_clone_repeats_the_demonstrated_action(folder: Path, mine: Path) -> None:
     run = imitating(folder / "clone", mine, imitation__cloning=1.0, stop__steps=64 * 30, ppo__learning_rate=3e-3)
     reports = list(train(run))
-    losses = [each.iteration.losses["cloning"] for each in reports]
+    losses = [report.iteration.losses["cloning"] for report in reports]
     assert losses[-1] < 0.05 * losses[0]
     policy = read_policy(run.folder / POLICY)
     env = make_env("cover_and_hide", "v0", SOON)
@@ -167,87 +167,98 @@ def test_a_clone_does_as_it_was_shown(folder: Path, mine: Path) -> None:
     assert tuple(policy.choose(observation)) == ALONG
 
 
-def test_the_critic_learns_while_the_actor_is_cloned_and_neither_moves_the_other(tmp_path: Path, mine: Path) -> None:
-    made = algorithm_of(imitating(tmp_path / "apart", mine))
-    made.train_mode()
-    actor, critic = ([each.detach().clone() for each in model.parameters()] for model in (made.actor, made.critic))
-    _rollout(made)
-    made._value()
-    assert all(torch.equal(each, before) for each, before in zip(made.actor.parameters(), actor, strict=True))
-    assert not all(torch.equal(each, before) for each, before in zip(made.critic.parameters(), critic, strict=True))
-    critic = [each.detach().clone() for each in made.critic.parameters()]
-    made._clone()
-    assert not all(torch.equal(each, before) for each, before in zip(made.actor.parameters(), actor, strict=True))
-    assert all(torch.equal(each, before) for each, before in zip(made.critic.parameters(), critic, strict=True))
+def test_cloning_trains_actor_and_critic_separately(tmp_path: Path, mine: Path) -> None:
+    algorithm = algorithm_of(imitating(tmp_path / "apart", mine))
+    algorithm.train_mode()
+    actor, critic = (
+        [parameter.detach().clone() for parameter in model.parameters()]
+        for model in (algorithm.actor, algorithm.critic)
+    )
+    _rollout(algorithm)
+    algorithm._value()
+    assert all(
+        torch.equal(parameter, before) for parameter, before in zip(algorithm.actor.parameters(), actor, strict=True)
+    )
+    assert not all(
+        torch.equal(parameter, before) for parameter, before in zip(algorithm.critic.parameters(), critic, strict=True)
+    )
+    critic = [parameter.detach().clone() for parameter in algorithm.critic.parameters()]
+    algorithm._clone()
+    assert not all(
+        torch.equal(parameter, before) for parameter, before in zip(algorithm.actor.parameters(), actor, strict=True)
+    )
+    assert all(
+        torch.equal(parameter, before) for parameter, before in zip(algorithm.critic.parameters(), critic, strict=True)
+    )
 
 
-def _rollout(made: Gail, successes: tuple[int, ...] = (), ends: tuple[int, ...] = ()) -> None:
-    """A rollout of 16 steps, which ends in its last one in those environments."""
-    observations = made.demonstrated.observations[:4]
+def _rollout(algorithm: Gail, successes: tuple[int, ...] = (), ends: tuple[int, ...] = ()) -> None:
+    """A rollout of 16 steps; episodes of the environments ``successes`` and ``ends`` end in the last step."""
+    observations = algorithm.demonstrated.observations[:4]
     with torch.inference_mode():
         for step in range(16):
-            made.act(observations)
+            algorithm.act(observations)
             last = step == 15
             dones = torch.tensor([last and row in (*successes, *ends) for row in range(4)])
             met = torch.tensor([last and row in successes for row in range(4)])
             extras = {"successes": met, "time_outs": dones & ~met}
-            made.process_env_step(observations, torch.full((4,), 7.0), dones, extras)
-        made.compute_returns(observations)
+            algorithm.process_env_step(observations, torch.full((4,), 7.0), dones, extras)
+        algorithm.compute_returns(observations)
 
 
-def test_the_reward_is_the_discriminators_and_the_end_of_the_episode(tmp_path: Path, mine: Path) -> None:
-    made = algorithm_of(imitating(tmp_path / "rewards", mine, imitation__strength=0.5, imitation__terminal=2.0))
-    _rollout(made, successes=(1,), ends=(3,))
-    observations, actions = made.storage.observations.flatten(0, 1), made.storage.actions.flatten(0, 1)
-    given = 0.5 * made.discriminator.reward((observations, actions)).view(16, 4)
+def test_the_reward_is_from_the_discriminator_and_the_end_of_the_episode(tmp_path: Path, mine: Path) -> None:
+    algorithm = algorithm_of(imitating(tmp_path / "rewards", mine, imitation__strength=0.5, imitation__terminal=2.0))
+    _rollout(algorithm, successes=(1,), ends=(3,))
+    observations, actions = algorithm.storage.observations.flatten(0, 1), algorithm.storage.actions.flatten(0, 1)
+    rewards = 0.5 * algorithm.discriminator.reward((observations, actions)).view(16, 4)
     ends = torch.zeros(16, 4)
     ends[15, 1], ends[15, 3] = 2.0, -2.0
-    assert torch.allclose(made.storage.rewards.squeeze(-1), given + ends, atol=1e-6)
+    assert torch.allclose(algorithm.storage.rewards.squeeze(-1), rewards + ends, atol=1e-6)
 
 
 @pytest.mark.parametrize(("share", "worth"), [(0.5, 0.693), (1 - 1 / math.e, 1.0), (0.7, 1.204)])
-def test_what_it_is_worth_to_live_on(
+def test_the_return_of_an_endless_episode(
     tmp_path: Path, mine: Path, monkeypatch: pytest.MonkeyPatch, share: float, worth: float
 ) -> None:
-    """By the default settings, where all decisions are taken for demonstrated ones with a probability ``share``."""
-    made = algorithm_of(imitating(tmp_path / "alive", mine))
+    """With the default settings, if the discriminator gives each decision the probability ``share``."""
+    algorithm = algorithm_of(imitating(tmp_path / "alive", mine))
     logit = math.log(share / (1 - share))
-    monkeypatch.setattr(made.discriminator, "forward", lambda decisions: torch.full((len(decisions[1]),), logit))
-    _rollout(made, successes=(1,))
-    rewards = made.storage.rewards.squeeze(-1)
-    endless = rewards[0, 0].item() / (1 - made.gamma)
+    monkeypatch.setattr(algorithm.discriminator, "forward", lambda decisions: torch.full((len(decisions[1]),), logit))
+    _rollout(algorithm, successes=(1,))
+    rewards = algorithm.storage.rewards.squeeze(-1)
+    endless = rewards[0, 0].item() / (1 - algorithm.gamma)
     assert endless == pytest.approx(worth, abs=0.001)
     assert rewards[15, 1].item() == pytest.approx(1 + 0.01 * worth, abs=0.001)
 
 
-def test_the_experts_demonstrations_are_recorded_first(folder: Path) -> None:
+def test_the_expert_records_demonstrations_first(folder: Path) -> None:
     run = imitating(folder / "expert", None, imitation__demonstrations=2, stop__steps=64)
-    told: list[Any] = []
-    (report,) = train(run, recording=told.append)
-    assert [(each.episode.player, each.kept) for each in told] == [("expert", 1), ("expert", 2)]
+    recorded: list[Any] = []
+    (report,) = train(run, recording=recorded.append)
+    assert [(attempt.episode.player, attempt.kept) for attempt in recorded] == [("expert", 1), ("expert", 2)]
     assert len(list((run.folder / DEMONSTRATIONS).iterdir())) == 2
     assert report.imitated is not None
     assert report.imitated.players == ("expert",)
     longer = replace(run, settings=imitating(folder, None, imitation__demonstrations=2, stop__steps=128).settings)
-    told.clear()
-    assert [each.iteration.number for each in train(longer, resume=True, recording=told.append)] == [2]
-    assert not told
+    recorded.clear()
+    assert [report.iteration.number for report in train(longer, resume=True, recording=recorded.append)] == [2]
+    assert not recorded
 
 
-def test_a_recording_that_was_broken_off_goes_on(folder: Path) -> None:
+def test_an_interrupted_recording_resumes(folder: Path) -> None:
     run = imitating(folder / "broken", None, imitation__demonstrations=3, stop__steps=64)
 
-    def broken_off(_: Any) -> None:
+    def interrupt(_: Any) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        list(train(run, recording=broken_off))
-    told: list[Any] = []
-    list(train(run, resume=True, recording=told.append))
-    assert [each.kept for each in told] == [2, 3]
+        list(train(run, recording=interrupt))
+    recorded: list[Any] = []
+    list(train(run, resume=True, recording=recorded.append))
+    assert [attempt.kept for attempt in recorded] == [2, 3]
 
 
-def test_other_demonstrations_are_another_training(folder: Path, mine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_demonstrations_are_rejected_on_resume(folder: Path, mine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     shutil.copytree(mine, folder / "copied")
     run = imitating(Path("other"), Path("copied"))
@@ -258,12 +269,12 @@ def test_other_demonstrations_are_another_training(folder: Path, mine: Path, mon
     with pytest.raises(TltlError) as caught:
         next(train(run, resume=True))
     compare("TLT0922", caught.value)
-    # Those that lie elsewhere now are no others.
+    # Equal demonstrations in another folder are accepted.
     assert list(train(replace(run, demonstrations=str(mine)), resume=True))[-1].stop == "steps"
     assert read_run(run.folder).demonstrations == str(mine)
 
 
-def test_an_algorithm_that_cannot_imitate_is_refused(tmp_path: Path, mine: Path) -> None:
+def test_an_algorithm_that_cannot_imitate_is_rejected(tmp_path: Path, mine: Path) -> None:
     run = imitating(tmp_path / "none", mine, classes__algorithm="rsl_rl.algorithms:PPO")
     with pytest.raises(TltlError) as caught:
         next(train(run))
@@ -271,7 +282,7 @@ def test_an_algorithm_that_cannot_imitate_is_refused(tmp_path: Path, mine: Path)
     assert "no subclass of Gail" in str(caught.value)
 
 
-def test_what_is_shown_is_what_is_done(mine: Path, tmp_path: Path) -> None:
+def test_the_demonstrated_actions_are_read(mine: Path, tmp_path: Path) -> None:
     assert set(map(tuple, algorithm_of(imitating(tmp_path / "a", mine)).demonstrated.actions.tolist())) == {
         tuple(map(float, ALONG))
     }
