@@ -1,4 +1,4 @@
-"""Trainings that begin with a policy's weights."""
+"""Trainings that start from the weights of a policy."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 
 def tuned(folder: Path, path: Path, **changes: object) -> Run:
-    """A training that begins with the policy in a file."""
+    """A training that starts from the policy in a file."""
     return replace(run_in(folder, **changes), initial=initial_of(path, read_policy(path)))
 
 
@@ -41,10 +41,10 @@ def _policy(tmp_path: Path, whole: tuple[Run, list[Report]]) -> Path:
 
 
 def weights(run: Run) -> dict[str, torch.Tensor]:
-    return {name: each.half() for name, each in checkpoint_of(run).algorithm["actor_state_dict"].items()}
+    return {name: weight.half() for name, weight in checkpoint_of(run).algorithm["actor_state_dict"].items()}
 
 
-def differ(one: dict[str, torch.Tensor], other: dict[str, torch.Tensor]) -> list[str]:
+def differing(one: dict[str, torch.Tensor], other: dict[str, torch.Tensor]) -> list[str]:
     return [name for name in one if not torch.equal(one[name], other[name])]
 
 
@@ -55,51 +55,53 @@ def test_the_critic_learns_first_and_then_the_actor(tmp_path: Path, policy: Path
     for report in training:
         checkpoint = checkpoint_of(run)
         critics.append(checkpoint.algorithm["critic_state_dict"])
-        assert bool(differ(old, weights(run))) == (report.iteration.number == 3)
+        assert bool(differing(old, weights(run))) == (report.iteration.number == 3)
         assert report.iteration.losses["value"] > 0.0
     assert len(critics) == 3
-    assert all(differ(one, next_) for one, next_ in pairwise(critics))
+    assert all(differing(one, next_) for one, next_ in pairwise(critics))
 
 
 def test_without_a_warm_up_the_actor_learns_at_once(tmp_path: Path, policy: Path) -> None:
     run = tuned(tmp_path / "run", policy, ppo__warm_up=0, stop__steps=64)
     list(train(run))
-    assert differ(read_policy(policy).weights(), weights(run))
+    assert differing(read_policy(policy).weights(), weights(run))
 
 
-def test_it_is_sharpened_after_the_warm_up_alone() -> None:
+def test_the_actor_is_sharpened_only_after_the_warm_up() -> None:
     last = nn.Linear(2, 2)
     runner = Runner.__new__(Runner)
     runner.cfg, runner.alg = {"warm_up": 2}, SimpleNamespace(actor=SimpleNamespace(mlp=[nn.Linear(2, 2), last]))
     before = copied(last.state_dict())
     for runner.current_learning_iteration in (1, 2):
         runner.sharpen(1.5)
-        assert not differ(before, last.state_dict())
+        assert not differing(before, last.state_dict())
     runner.current_learning_iteration = 3
     runner.sharpen(1.5)
-    assert all(torch.equal(each, 1.5 * before[name]) for name, each in last.state_dict().items())
+    assert all(torch.equal(weight, 1.5 * before[name]) for name, weight in last.state_dict().items())
 
 
-def test_a_new_actor_does_not_wait(tmp_path: Path) -> None:
+def test_a_new_actor_has_no_warm_up(tmp_path: Path) -> None:
     waiting, other = (run_in(tmp_path / str(number), ppo__warm_up=number, stop__steps=64) for number in (5, 0))
     list(train(waiting))
     list(train(other))
-    assert not differ(weights(waiting), weights(other))
+    assert not differing(weights(waiting), weights(other))
 
 
-def test_it_plays_first_in_the_search(tmp_path: Path) -> None:
-    met = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
-    old = run_in(tmp_path / "old", met, stop__steps=64)
+def test_the_initial_policy_plays_first_in_the_search(tmp_path: Path) -> None:
+    spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+    old = run_in(tmp_path / "old", spec, stop__steps=64)
     list(train(old))
-    run = run_in(tmp_path / "run", met, exploration__ways=4, exploration__steps=400, stop__steps=64)
+    run = run_in(tmp_path / "run", spec, exploration__ways=4, exploration__steps=400, stop__steps=64)
     path = old.folder / POLICY
     searches: list[Searched] = []
     list(train(replace(run, initial=initial_of(path, read_policy(path))), searching=searches.append))
-    # Each of the four environments: one episode of eight steps, and none from a place that was reached.
+    # Each of the four environments plays one episode of eight steps, and none from a discovered place.
     assert (searches[-1].lengths, searches[-1].steps, searches[-1].replayed) == ((8, 8, 8, 8), 32, 0)
 
 
-def test_one_that_gives_no_numbers_is_refused(tmp_path: Path, policy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_initial_policy_that_gives_no_numbers_is_rejected(
+    tmp_path: Path, policy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def refuse(*_: object) -> None:
         raise NoNumbersError("it gives no numbers")
 
@@ -109,23 +111,23 @@ def test_one_that_gives_no_numbers_is_refused(tmp_path: Path, policy: Path, monk
         list(train(run))
 
 
-def test_with_a_checkpoint_it_goes_on_without_its_policy(tmp_path: Path, policy: Path) -> None:
+def test_a_training_resumes_from_its_checkpoint_without_the_policy(tmp_path: Path, policy: Path) -> None:
     run, old = tuned(tmp_path / "run", policy, ppo__warm_up=2), read_policy(policy).weights()
     part = replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=64)))
     list(train(part))
     policy.unlink()
     assert read_run(run.folder) == part
-    changed = [bool(differ(old, weights(run))) for _ in train(run, resume=True)]
+    changed = [bool(differing(old, weights(run))) for _ in train(run, resume=True)]
     assert (changed, checkpoint_of(run).iteration) == ([False, True], 3)
 
 
-def test_its_policy_is_part_of_what_is_trained(tmp_path: Path, policy: Path) -> None:
+def test_the_initial_policy_is_part_of_the_identity(tmp_path: Path, policy: Path) -> None:
     run = tuned(tmp_path / "run", policy)
     without = identity(replace(run, initial=None))
     assert identity(run) == {**without, "policy": weights_hash(read_policy(policy))}
 
 
-def test_the_record_in_a_file_does_not_make_another_policy(tmp_path: Path, policy: Path) -> None:
+def test_the_training_record_does_not_change_the_hash_of_the_weights(tmp_path: Path, policy: Path) -> None:
     old = read_policy(policy)
     again = tmp_path / "again.safetensors"
     write_policy(again, Policy(replace(old.card, training={"seed": 1}), old.weights()))
@@ -134,7 +136,7 @@ def test_the_record_in_a_file_does_not_make_another_policy(tmp_path: Path, polic
 
 
 @pytest.mark.parametrize("name", ["TLT0940", "TLT0940_gone"])
-def test_without_a_checkpoint_it_needs_the_policy_that_it_began_with(
+def test_without_a_checkpoint_the_initial_policy_is_needed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, policy: Path, name: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -150,14 +152,14 @@ def test_without_a_checkpoint_it_needs_the_policy_that_it_began_with(
     compare(name, caught.value)
 
 
-def test_the_record_says_where_it_began(tmp_path: Path, policy: Path) -> None:
+def test_the_record_names_the_initial_policy(tmp_path: Path, policy: Path) -> None:
     run, old = tuned(tmp_path / "run", policy, stop__steps=64), read_policy(policy)
     (last,) = train(run)
     so_far = record_so_far(run.folder)["initial"]
-    made = write_record(run, last)["initial"]
-    assert made == so_far == {
+    record = write_record(run, last)["initial"]
+    assert record == so_far == {
         "weights": weights_hash(old), "level": "cover_and_hide", "variant": "v0", "level_hash": old.card.level_hash
     }  # fmt: skip
-    assert str(tmp_path) not in json.dumps(made)
+    assert str(tmp_path) not in json.dumps(record)
     text = summary_text(summary(read_policy(run.folder / POLICY)))
-    assert f"cover_and_hide v0 (hash {made['weights'][:12]})" in " ".join(text.split())
+    assert f"cover_and_hide v0 (hash {record['weights'][:12]})" in " ".join(text.split())

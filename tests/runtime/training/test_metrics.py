@@ -1,4 +1,4 @@
-"""What a training measured: the lines of ``metrics.jsonl``, and what TensorBoard shows."""
+"""The measurements of a training: ``metrics.jsonl`` and the events for TensorBoard."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def _measure(folder: Path, fspa: Fspa, numbers: range, after: int = 0) -> None:
     metrics.close()
 
 
-def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
+def test_each_iteration_is_a_line(tmp_path: Path, fspa: Fspa) -> None:
     metrics = Metrics(tmp_path, fspa)
     metrics.add(a_report(1, count=0, successes=0))
     metrics.add(a_report(2, finished=(an_episode(True), an_episode(False)), confirmation=Confirmation(12, 100)))
-    first, second = read_metrics(tmp_path / METRICS)  # each is there before the files are closed
+    first, second = read_metrics(tmp_path / METRICS)  # lines are written before the files are closed
     metrics.close()
     assert (first["window"], first["pass_rate"], first["confirmation"], first["states"]) == (0, None, None, [])
     assert second == {
@@ -67,24 +67,26 @@ def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
     }
 
 
-def test_the_page_names_the_keys(tmp_path: Path, fspa: Fspa) -> None:
+def test_the_page_lists_the_keys(tmp_path: Path, fspa: Fspa) -> None:
     _measure(tmp_path, fspa, range(1, 2))
     page = (DOCS / "training.md").read_text(encoding="utf-8")
     table = page[page.index("### `metrics.jsonl`") : page.index("## The record")]
-    said = [name for row in re.findall(r"^\| (`.*?) \|", table, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)]
-    assert said == list(read_metrics(tmp_path / METRICS)[0])
+    documented = [
+        name for row in re.findall(r"^\| (`.*?) \|", table, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)
+    ]
+    assert documented == list(read_metrics(tmp_path / METRICS)[0])
 
 
-def test_what_came_after_the_checkpoint_is_measured_again(tmp_path: Path, fspa: Fspa) -> None:
+def test_iterations_after_the_checkpoint_are_measured_again(tmp_path: Path, fspa: Fspa) -> None:
     _measure(tmp_path, fspa, range(1, 6))
     with (tmp_path / METRICS).open("a") as file:
-        file.write('{"iteration": 6, "st')  # as a machine leaves it that lost power
+        file.write('{"iteration": 6, "st')  # an incomplete line, as after a power failure
     _measure(tmp_path, fspa, range(4, 8), after=3)
     assert [line["iteration"] for line in read_metrics(tmp_path / METRICS)] == list(range(1, 8))
 
 
 @pytest.mark.parametrize("name", ["iteration", "steps", "seconds", "episodes", "window", "pass_rate", "reward"])
-def test_a_line_without_what_is_read_again_is_left_out(tmp_path: Path, fspa: Fspa, name: str) -> None:
+def test_a_line_without_a_required_key_is_left_out(tmp_path: Path, fspa: Fspa, name: str) -> None:
     _measure(tmp_path, fspa, range(1, 4))
     lines = (tmp_path / METRICS).read_text().splitlines(keepends=True)
     second = json.loads(lines[1])
@@ -95,7 +97,7 @@ def test_a_line_without_what_is_read_again_is_left_out(tmp_path: Path, fspa: Fsp
 
 @pytest.mark.parametrize("value", [None, "2", 2.0, True, []])
 @pytest.mark.parametrize("name", ["iteration", "steps", "episodes", "window"])
-def test_a_line_whose_counts_are_none_is_left_out(tmp_path: Path, fspa: Fspa, name: str, value: Any) -> None:
+def test_a_line_with_an_invalid_count_is_left_out(tmp_path: Path, fspa: Fspa, name: str, value: Any) -> None:
     _measure(tmp_path, fspa, range(1, 3))
     first, second = (tmp_path / METRICS).read_text().splitlines(keepends=True)
     (tmp_path / METRICS).write_text(first + json.dumps({**json.loads(second), name: value}) + "\n" + "[" * 10**5)
@@ -114,13 +116,13 @@ def test_tensorboard_shows_each_step_once(tmp_path: Path, fspa: Fspa) -> None:
     assert events.Scalars("train/pass_rate")[0].value == pytest.approx(0.8)
 
 
-def test_a_place_that_cannot_be_written_to(tmp_path: Path, fspa: Fspa) -> None:
+def test_an_unwritable_file_is_reported(tmp_path: Path, fspa: Fspa) -> None:
     (tmp_path / METRICS).mkdir()
     with pytest.raises(TltlError, match="it is a folder"):
         Metrics(tmp_path, fspa)
 
 
-def test_measurements_without_end_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_endless_measurements_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.training.run.metrics.MEASUREMENTS", Limit(size=1 << 20))
     (tmp_path / METRICS).symlink_to("/dev/zero")
     with pytest.raises(TltlError, match="TLT0004"):

@@ -1,4 +1,4 @@
-"""A training comes to the same policy, whoever plays."""
+"""A training gives the same policy for any number and kind of workers."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 
 SPEC = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
-"""A spec that who does anything at all meets, after eight steps, so that there are ways to begin on."""
+"""A spec that every policy meets after eight steps, so that the search finds ways."""
 
 
 def _trained(folder: Path, initial: Path | None = None, **settings: Any) -> bytes:
-    """The policy of two iterations after a search that finds ways, from that in a file perhaps."""
+    """Train two iterations after a search that finds ways, optionally from a policy; return the policy's file."""
     spec = folder.with_suffix(".tltl")
     spec.write_text(SPEC, encoding="utf-8")
     task = load_task(spec)
@@ -38,15 +38,15 @@ def _trained(folder: Path, initial: Path | None = None, **settings: Any) -> byte
 
 @pytest.fixture(name="alone", scope="module")
 def _alone(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The policy that one process has played for."""
+    """The policy that was trained with one process."""
     return _trained(tmp_path_factory.mktemp("trainings") / "alone")
 
 
-def test_with_two_processes(alone: bytes, tmp_path: Path) -> None:
+def test_two_processes_give_the_same_policy(alone: bytes, tmp_path: Path) -> None:
     assert _trained(tmp_path / "two", rollout__workers=2) == alone
 
 
-def test_from_a_policy_with_two_processes(alone: bytes, tmp_path: Path) -> None:
+def test_two_processes_give_the_same_policy_from_an_initial_policy(alone: bytes, tmp_path: Path) -> None:
     (tmp_path / "old.safetensors").write_bytes(alone)
     one, two = (
         _trained(tmp_path / str(workers), tmp_path / "old.safetensors", rollout__workers=workers, ppo__warm_up=0)
@@ -56,6 +56,6 @@ def test_from_a_policy_with_two_processes(alone: bytes, tmp_path: Path) -> None:
 
 
 @needs_ray
-def test_on_a_ray_cluster(alone: bytes, tmp_path: Path) -> None:
+def test_a_ray_cluster_gives_the_same_policy(alone: bytes, tmp_path: Path) -> None:
     with own_cluster():
         assert _trained(tmp_path / "ray", rollout__pool="ray") == alone

@@ -1,4 +1,4 @@
-"""Trainings in processes of their own: killed ones, and several that train together."""
+"""Trainings in separate processes: killed ones, and several that train together."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[3]
 PROGRAM = ["-c", f"import sys; from {runs.__name__} import main; main(*sys.argv[1:])"]
-"""As a file each process that plays would import it, and torch, anew."""
+"""The program as a string; worker processes would import a file, and torch, again."""
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
 
 
@@ -44,32 +44,32 @@ def _started(*arguments: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def _lines(process: subprocess.Popen[str]) -> list[dict[str, Any]]:
-    """What the processes say, to their ends."""
+    """Wait for the processes to end; return the lines of JSON that they printed."""
     output, errors = process.communicate(timeout=HANG_S)
     assert process.returncode == 0, errors
     return [json.loads(line) for line in output.splitlines()]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as Linux shows them")
-def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoint(tmp_path: Path) -> None:
+def test_a_training_killed_at_any_time_resumes_from_its_last_checkpoint(tmp_path: Path) -> None:
     random, steps = Random(0), 64 * 400
     run = run_in(tmp_path / "run", stop__steps=steps)
-    told = 0
+    reported = 0
     for kill in range(3):
         resume = ["--resume"] if kill else []
         with _started(*PROGRAM, str(run.folder), *resume, f"stop__steps={steps}") as process:
             assert process.stdout is not None
             first = json.loads(process.stdout.readline())
-            assert first["number"] == told + 1
-            said = [process.stdout.readline().rstrip() for _ in range(random.randrange(12))]
+            assert first["number"] == reported + 1
+            output = [process.stdout.readline().rstrip() for _ in range(random.randrange(12))]
             workers = children(process.pid)
             process.send_signal(signal.SIGKILL)
-            said += process.stdout.read().splitlines()
-        # Each iteration wrote a checkpoint before it was told of, and a line may have been cut short.
-        told = max((json.loads(line)["number"] for line in said if line.endswith("}")), default=first["number"])
+            output += process.stdout.read().splitlines()
+        # Each iteration writes a checkpoint before it is reported, and the last line may be incomplete.
+        reported = max((json.loads(line)["number"] for line in output if line.endswith("}")), default=first["number"])
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
         assert checkpoint is not None
-        assert told <= checkpoint.iteration <= told + 1
+        assert reported <= checkpoint.iteration <= reported + 1
         assert checkpoint.steps == 64 * checkpoint.iteration
         measured = [line["iteration"] for line in read_metrics(run.folder / METRICS)]
         assert measured in (
@@ -78,54 +78,54 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
         )
         assert workers
         until_gone(workers)
-        told = checkpoint.iteration
-    last = told + 3
+        reported = checkpoint.iteration
+    last = reported + 3
     with _started(*PROGRAM, str(run.folder), "--resume", f"stop__steps={64 * last}") as process:
         lines = _lines(process)
-    assert [line["number"] for line in lines] == [told + 1, told + 2, told + 3]
+    assert [line["number"] for line in lines] == [reported + 1, reported + 2, reported + 3]
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == list(range(1, last + 1))
     assert read_policy(run.folder / POLICY).card.level == "cover_and_hide"
 
 
-def test_a_training_that_is_killed_loses_what_came_after_its_last_checkpoint(tmp_path: Path) -> None:
-    """One is written before the first iteration; others are hours away."""
+def test_a_killed_training_loses_the_iterations_after_its_last_checkpoint(tmp_path: Path) -> None:
+    """One checkpoint is written before the first iteration; the next one would follow hours later."""
     run = run_in(tmp_path / "run", checkpoint_s=7200.0, stop__steps=10**6)
-    given = [str(run.folder), "checkpoint_s=7200.0"]
-    with _started(*PROGRAM, *given, "stop__steps=1000000") as process:
+    arguments = [str(run.folder), "checkpoint_s=7200.0"]
+    with _started(*PROGRAM, *arguments, "stop__steps=1000000") as process:
         assert process.stdout is not None
-        told = [json.loads(process.stdout.readline())["number"] for _ in range(4)]
+        numbers = [json.loads(process.stdout.readline())["number"] for _ in range(4)]
         process.send_signal(signal.SIGKILL)
-    assert told == [1, 2, 3, 4]
+    assert numbers == [1, 2, 3, 4]
     assert len(read_metrics(run.folder / METRICS)) >= 4
     checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert checkpoint is not None
     assert checkpoint.iteration == 0
-    with _started(*PROGRAM, *given, "stop__steps=64", "--resume") as process:
+    with _started(*PROGRAM, *arguments, "stop__steps=64", "--resume") as process:
         (line,) = _lines(process)
     assert (line["number"], line["stop"]) == (1, "steps")
     assert len(read_metrics(run.folder / METRICS)) == 1
 
 
-def test_a_training_that_is_killed_in_its_search_begins_it_anew(tmp_path: Path) -> None:
+def test_a_training_killed_in_its_search_restarts_the_search(tmp_path: Path) -> None:
     spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
-    given = [f"spec={json.dumps(spec)}", "exploration__ways=100000", "exploration__steps=20000", "stop__steps=64"]
+    arguments = [f"spec={json.dumps(spec)}", "exploration__ways=100000", "exploration__steps=20000", "stop__steps=64"]
     folder = tmp_path / "run"
-    with _started(*PROGRAM, str(folder), *given, "--wait-in-search") as process:
+    with _started(*PROGRAM, str(folder), *arguments, "--wait-in-search") as process:
         assert process.stdout is not None
         assert json.loads(process.stdout.readline())["searched"] > 0
         process.send_signal(signal.SIGKILL)
     assert (folder / RUN).exists()
     assert not (folder / CHECKPOINT).exists()
-    with _started(*PROGRAM, str(folder), *given, "--resume") as process:
+    with _started(*PROGRAM, str(folder), *arguments, "--resume") as process:
         (line,) = _lines(process)
     assert (line["number"], line["stop"]) == (1, "steps")
 
 
 def _together(folder: Path, *arguments: str) -> list[dict[str, Any]]:
-    """What each of two processes of torchrun says, which is the same."""
+    """Train in two processes of torchrun; check that both print the same lines, and return them."""
     torchrun = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2", "--no-python", sys.executable]
-    telling = 'classes__runner="tests.runtime.training.runs:Telling"'
-    with _started(*torchrun, *PROGRAM, str(folder), telling, *arguments) as process:
+    runner = 'classes__runner="tests.runtime.training.runs:Telling"'
+    with _started(*torchrun, *PROGRAM, str(folder), runner, *arguments) as process:
         lines = _lines(process)
     one, other = ([{**line, "rank": None} for line in lines if line["rank"] == rank] for rank in "01")
     assert one == other
@@ -137,7 +137,7 @@ def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -
     begun = _together(folder, "rollout__steps=64", "stop__steps=1536")
     resumed = _together(folder, "rollout__steps=64", "stop__steps=2048", "--resume")
     reports = [line for line in begun + resumed if "number" in line]
-    # Steps are those of both: 2 processes, 4 environments, 64 decisions.
+    # Steps are the sum of both processes: 2 processes, 4 environments, 64 decisions.
     assert [(line["number"], line["steps"], line["stop"]) for line in reports] == [
         (1, 512, None),
         (2, 1024, None),
@@ -148,11 +148,11 @@ def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -
     assert [line["iteration"] for line in read_metrics(folder / METRICS)] == [1, 2, 3, 4]
 
 
-def test_of_processes_that_train_by_command_the_first_one_alone_speaks(tmp_path: Path) -> None:
+def test_only_the_first_process_of_a_command_prints(tmp_path: Path) -> None:
     settings = "[rollout]\nenvs = 4\nsteps = 16\n[network]\nhidden = [16]\nchannels = [4]\n[exploration]\nways = 0\n"
     (tmp_path / "small.toml").write_text(settings, encoding="utf-8")
     torchrun = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2"]
-    # Nobody can do what the spec asks there, which is warned of.
+    # The spec cannot be met on this level, which gives a warning.
     train = ["-m", "tltlc", "train", "--level", "navigation:v2", "--config", str(tmp_path / "small.toml")]
     limits = ["--steps", "256", "--workers", "1", "--out", str(tmp_path / "run")]
     with _started(*torchrun, *train, *limits) as process:
@@ -163,22 +163,22 @@ def test_of_processes_that_train_by_command_the_first_one_alone_speaks(tmp_path:
     assert read_policy(tmp_path / "run" / POLICY).card.variant == "v2"
 
 
-def test_processes_of_torchrun_keep_their_own_ways_and_imitate_them_together(tmp_path: Path) -> None:
-    # A spec that who does anything at all meets, after eight steps.
+def test_processes_of_torchrun_imitate_their_own_ways_together(tmp_path: Path) -> None:
+    # A spec that every policy meets after eight steps.
     spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
     changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5}
-    given = [f"spec={json.dumps(spec)}", *(f"{name}={value}" for name, value in changes.items())]
+    arguments = [f"spec={json.dumps(spec)}", *(f"{name}={value}" for name, value in changes.items())]
     folder, ways, replayed, weights = tmp_path / "run", [], [], set()
     for steps, resume in ((256, []), (512, ["--resume"])):
-        said = _together(folder, *given, f"stop__steps={steps}", *resume)
-        weights |= {line["weights"] for line in said if "weights" in line}
+        lines = _together(folder, *arguments, f"stop__steps={steps}", *resume)
+        weights |= {line["weights"] for line in lines if "weights" in line}
         run = run_in(folder, spec, **changes, classes__runner="tests.runtime.training.runs:Telling")
         checkpoint = read_checkpoint(folder / CHECKPOINT, identity(run))
         assert checkpoint is not None
-        ways.append([{*own["way_seeds"].tolist()} for own in checkpoint.processes])
+        ways.append([{*process["way_seeds"].tolist()} for process in checkpoint.processes])
         replayed.append(checkpoint.replayed)
     assert len(weights) == 4
-    # Steps are those of both: 2 processes, 4 environments, 16 decisions.
+    # Steps are the sum of both processes: 2 processes, 4 environments, 16 decisions.
     measured = read_metrics(folder / METRICS)
     assert [line["steps"] for line in measured] == [128, 256, 384, 512]
     assert any("imitation" in line["losses"] for line in measured)
@@ -193,10 +193,10 @@ def test_processes_of_torchrun_keep_their_own_ways_and_imitate_them_together(tmp
 def test_processes_of_torchrun_imitate_the_same_demonstrations(tmp_path: Path) -> None:
     spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
     changes = {"method": "imitation", "imitation__demonstrations": 2, "imitation__cloning": 0.5}
-    given = [f"spec={json.dumps(spec)}", *(f"{name}={json.dumps(value)}" for name, value in changes.items())]
-    said = _together(tmp_path / "run", *given, "stop__steps=512", "stop__episodes=100000")
-    assert len({line["weights"] for line in said if "weights" in line}) == 4
-    # Steps are those of both: 2 processes, 4 environments, 16 decisions.
+    arguments = [f"spec={json.dumps(spec)}", *(f"{name}={json.dumps(value)}" for name, value in changes.items())]
+    lines = _together(tmp_path / "run", *arguments, "stop__steps=512", "stop__episodes=100000")
+    assert len({line["weights"] for line in lines if "weights" in line}) == 4
+    # Steps are the sum of both processes: 2 processes, 4 environments, 16 decisions.
     losses = [line["losses"].keys() for line in read_metrics(tmp_path / "run" / METRICS)]
-    assert ["cloning" in each for each in losses] == [True, True, False, False]
+    assert ["cloning" in keys for keys in losses] == [True, True, False, False]
     assert len(list((tmp_path / "run" / "demonstrations").iterdir())) == 2

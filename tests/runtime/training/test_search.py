@@ -1,4 +1,4 @@
-"""The search for ways, and where episodes begin on them."""
+"""The search for ways, and the restarts on them."""
 
 from __future__ import annotations
 
@@ -35,65 +35,65 @@ def envs(workers: int, spec: str = NEAR) -> WorkerVectorEnv:
 
 @pytest.fixture
 def env() -> Iterator[WorkerVectorEnv]:
-    made = envs(1)
-    yield made
-    made.close()
+    vector_env = envs(1)
+    yield vector_env
+    vector_env.close()
 
 
 def search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[Way], list[Searched]]:
-    found = Search(env, exploration, np.random.SeedSequence(7))
-    told = list(found.run())
-    return found.ways, told
+    searching = Search(env, exploration, np.random.SeedSequence(7))
+    reports = list(searching.run())
+    return searching.ways, reports
 
 
-def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> None:
-    ways, told = search(env, Exploration(ways=3, steps=20_000, parts=4, imitation=0))
+def test_ways_meet_the_spec_when_they_are_replayed(env: WorkerVectorEnv) -> None:
+    ways, reports = search(env, Exploration(ways=3, steps=20_000, parts=4, imitation=0))
     assert len(ways) >= 3
-    assert told[-1].lengths == tuple(sorted(len(way.actions) for way in ways))
-    assert told[-1].places > 10
-    alone = make_env("navigation", "v0", NEAR)
+    assert reports[-1].lengths == tuple(sorted(len(way.actions) for way in ways))
+    assert reports[-1].places > 10
+    single_env = make_env("navigation", "v0", NEAR)
     assert {way.end for way in ways} == {1}
     for way in ways:
-        alone.reset(seed=way.seed)
-        infos = [alone.step(action)[4] for action in way.actions]
+        single_env.reset(seed=way.seed)
+        infos = [single_env.step(action)[4] for action in way.actions]
         assert [info["success"] for info in infos] == [False] * (len(infos) - 1) + [True]
-    alone.close()
+    single_env.close()
 
 
-def test_a_player_plays_first(env: WorkerVectorEnv) -> None:
+def test_a_given_player_plays_first(env: WorkerVectorEnv) -> None:
     exploration = Exploration(ways=4, steps=20_000, parts=4, imitation=0)
-    ways, told = search(env, exploration)
-    alone = make_env("navigation", "v0", NEAR)
+    ways, reports = search(env, exploration)
+    single_env = make_env("navigation", "v0", NEAR)
     ahead = []
     for way in ways:
-        first, _ = alone.reset(seed=way.seed)
-        seen = [first, *(alone.step(action)[0] for action in way.actions[:-1])]
+        first, _ = single_env.reset(seed=way.seed)
+        seen = [first, *(single_env.step(action)[0] for action in way.actions[:-1])]
         ahead.append(list(zip(seen, way.actions, strict=True)))
-    alone.close()
+    single_env.close()
 
     def follow(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
-        """The next decision on the way where this is seen next, else none."""
+        """The next action of the way that has this observation next, else no action."""
         for way in filter(None, ahead):
             if all(np.array_equal(seen, observation[name]) for name, seen in way[0][0].items()):
                 return np.array(way.pop(0)[1])
         return np.zeros(5, np.int64)
 
-    # Its first episodes have the seeds of the first search's.
-    found = Search(env, replace(exploration, ways=1), np.random.SeedSequence(7), player=follow)
-    (*_, last) = found.run()
-    assert found.ways[0] in ways
-    assert (last.steps, last.replayed) == (env.num_envs * len(found.ways[0].actions), 0)
-    assert last.steps < told[-1].steps
+    # Its first episodes have the same seeds as in the first search.
+    searching = Search(env, replace(exploration, ways=1), np.random.SeedSequence(7), player=follow)
+    (*_, last) = searching.run()
+    assert searching.ways[0] in ways
+    assert (last.steps, last.replayed) == (env.num_envs * len(searching.ways[0].actions), 0)
+    assert last.steps < reports[-1].steps
 
 
-def test_where_a_player_fails_chance_goes_on_from_its_places(
+def test_if_a_player_fails_the_search_continues_from_its_places(
     env: WorkerVectorEnv, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     decisions: list[list[int]] = []
     starts: list[Start] = []
 
     def walk(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
-        """First away from the switch, and then not at all, by turns of all environments."""
+        """Walk away from the switch for 20 decisions of each environment, then stand still."""
         decisions.append([2, 1, 0, 0, 0] if len(decisions) < 20 * env.num_envs else [0, 0, 0, 0, 0])
         return np.array(decisions[-1])
 
@@ -104,24 +104,24 @@ def test_where_a_player_fails_chance_goes_on_from_its_places(
     draw = Search._draw
     monkeypatch.setattr(Search, "_draw", drawn)
     exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
-    found = Search(env, exploration, np.random.SeedSequence(7), player=walk)
-    list(found.run())
-    assert len(found.ways) >= 2
-    # Its episodes end at the limit of 300 decisions.
+    searching = Search(env, exploration, np.random.SeedSequence(7), player=walk)
+    list(searching.run())
+    assert len(searching.ways) >= 2
+    # The episodes of the player end at the limit of 300 decisions.
     assert len(decisions) == env.num_envs * 300
     from_its_places = [start for start in starts if 0 < len(start.actions) <= 20]
     assert any([*start.actions] == decisions[:: env.num_envs][: len(start.actions)] for start in from_its_places)
 
 
-def test_ways_are_found_from_where_episodes_failed(env: WorkerVectorEnv) -> None:
+def test_ways_are_found_from_failures(env: WorkerVectorEnv) -> None:
     exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
-    # Up to shortly before the switch is reached, as ways lead there.
+    # Failures are ways without their last three actions, shortly before the switch.
     failures = [Failure(way.seed, way.actions[:-3], 0) for way in search(env, exploration)[0]]
-    found = Search(env, exploration, np.random.SeedSequence(8), failures)
-    steps = list(found.run())[-1].steps
-    assert {way.seed for way in found.ways} == {failure.seed for failure in failures}
-    for way in found.ways:
-        (failure,) = (each for each in failures if each.seed == way.seed)
+    searching = Search(env, exploration, np.random.SeedSequence(8), failures)
+    steps = list(searching.run())[-1].steps
+    assert {way.seed for way in searching.ways} == {failure.seed for failure in failures}
+    for way in searching.ways:
+        (failure,) = (candidate for candidate in failures if candidate.seed == way.seed)
         half = len(failure.actions) // 2
         assert way.actions[:half] == failure.actions[:half]
     assert steps < 5000
@@ -138,28 +138,28 @@ def test_any_number_of_workers_finds_the_same_ways(env: WorkerVectorEnv) -> None
 
 def test_a_search_ends_at_its_limit() -> None:
     env = envs(1, FAR)
-    ways, told = search(env, Exploration(ways=1, steps=200, parts=4, imitation=0))
+    ways, reports = search(env, Exploration(ways=1, steps=200, parts=4, imitation=0))
     env.close()
     assert not ways
-    assert told[-1].steps == 200
+    assert reports[-1].steps == 200
 
 
-def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
+def test_episodes_start_with_replayed_actions(env: WorkerVectorEnv) -> None:
     rng = np.random.default_rng(3)
-    actions = [[int(each) for each in rng.integers(0, (3, 3, 1, 2, 2))] for _ in range(25)]
+    actions = [[int(choice) for choice in rng.integers(0, (3, 3, 1, 2, 2))] for _ in range(25)]
     starts = iter([Start(5, actions[:20])] * 4 + [Start(5, actions, most=2)] * 20)
     episodes = Episodes(env, lambda: next(starts))
-    alone = make_env("navigation", "v0", NEAR)
-    alone.reset(seed=5)
+    single_env = make_env("navigation", "v0", NEAR)
+    single_env.reset(seed=5)
     for action in actions[:20]:
-        observation, *_ = alone.step(action)
+        observation, *_ = single_env.step(action)
     for key, value in observation.items():
         assert np.array_equal(episodes.observation[key], np.stack([value] * 4))
     for action in actions[20:]:
         episodes.step(np.array([action] * 4))
-        observation, *_ = alone.step(action)
+        observation, *_ = single_env.step(action)
     assert not any(episodes.is_spent(row) for row in range(4))
-    # The next ones begin where these are now.
+    # The next episodes start where these are now.
     cut = episodes.cut(np.array([True, False, False, True]))
     for key, value in observation.items():
         assert np.array_equal(cut[key], np.stack([value] * 4))
@@ -168,15 +168,15 @@ def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
     for _ in range(2):
         episodes.step(np.zeros((4, 5), dtype=np.int64))
     assert [episodes.is_spent(row) for row in range(4)] == [True, False, False, True]
-    alone.close()
+    single_env.close()
 
 
 @pytest.mark.parametrize("prepared", [0, 1, 10, 1000])
-def test_an_episode_that_was_prepared_meanwhile_is_the_same(prepared: int) -> None:
+def test_a_prepared_episode_equals_an_unprepared_one(prepared: int) -> None:
     actions = np.array([[2, 1, 0, 0, 0]] * 20, dtype=np.int8)
     env = Replayed(partial(make_env, "navigation", "v0", NEAR))
     env.begin = 4, actions
-    # What was prepared for a beginning that is another now counts for nothing.
+    # Preparation for an earlier start is discarded.
     assert all(env.prepare() for _ in range(5))
     env.begin = 5, actions
     assert sum(env.prepare() for _ in range(prepared)) == min(prepared, len(actions))
@@ -201,7 +201,7 @@ def test_an_episode_that_was_prepared_meanwhile_is_the_same(prepared: int) -> No
         ([0, 3], [(0, 14, 1, 3), (1, 11, 1, 4), (2, 12, 1, 4), (3, 17, 1, 3)]),
     ],
 )
-def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(
+def test_a_lost_worker_is_reported_with_the_seeds_of_its_episodes(
     env: WorkerVectorEnv, begun: list[int], told: list[tuple[int, ...]]
 ) -> None:
     starts = iter([Start(seed, [[0] * 5] * 3) for seed in range(10, 20)])
@@ -211,26 +211,26 @@ def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(
     assert worker is not None
     os.kill(worker, signal.SIGKILL)
     until_gone([worker])
-    with pytest.raises(WorkerError) as found:
-        # It is lost in a step, or where some are to begin anew.
+    with pytest.raises(WorkerError) as caught:
+        # The loss is detected in a step, or when episodes are cut.
         episodes.cut(np.isin(range(4), begun)) if begun else episodes.step(np.zeros((4, 5), dtype=np.int64))
-    assert [(each.env, each.seed, each.episode, each.step) for each in found.value.playing] == told
+    assert [(playing.env, playing.seed, playing.episode, playing.step) for playing in caught.value.playing] == told
 
 
-def test_a_place_counts_once(env: WorkerVectorEnv) -> None:
-    # With each way the places of its seed are forgotten, and found again.
+def test_each_place_is_counted_once(env: WorkerVectorEnv) -> None:
+    # After each way, the places of its seed are removed from the archive and can be found again.
     seen: set[tuple[int, int]] = set()
     step = env.step
 
-    def noted(actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        given = step(actions)
-        seen.update(zip(given[4]["state"].tolist(), given[4]["cell"].tolist(), strict=True))
-        return given
+    def noting_step(actions: NDArray[np.int64]) -> tuple[Any, ...]:
+        step_result = step(actions)
+        seen.update(zip(step_result[4]["state"].tolist(), step_result[4]["cell"].tolist(), strict=True))
+        return step_result
 
-    env.step = noted  # type: ignore[method-assign]
-    ways, told = search(env, Exploration(ways=8, steps=20_000, parts=4, imitation=0))
+    env.step = noting_step  # type: ignore[method-assign]
+    ways, reports = search(env, Exploration(ways=8, steps=20_000, parts=4, imitation=0))
     assert len(ways) == 8
-    assert len(seen) / 2 < told[-1].places <= len(seen)
+    assert len(seen) / 2 < reports[-1].places <= len(seen)
 
 
 def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:
@@ -240,7 +240,7 @@ def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:
     return restarts
 
 
-def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
+def test_restarts_move_from_the_end_of_a_way_to_its_start() -> None:
     way = Way(1, [[0, 0, 0, 0, 0]] * 80, 1)
     restarts = restarts_of([way], 8, 0)
 
@@ -256,7 +256,7 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
         for _ in range(times):
             restarts.ended(Start(1, way.actions[: 10 * part], (1, part)), longer, 1)
     later = drawn()
-    # What is learned teaches little, and what is far from it nothing yet.
+    # Learned parts and parts far from them are drawn less often.
     assert later[5] > 2 * later[4] > 10 * max(later[7], later[6])
     assert later[4] > 1.3 * later[3] > 2 * later[1]
     for _ in range(500):
@@ -265,7 +265,7 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
 
 
 @pytest.mark.parametrize(("from_start", "on_ways"), [(1, 150), (5, 700), (100, 100), (600, 5)])
-def test_the_better_the_agent_the_more_episodes_begin_at_the_levels_start(from_start: int, on_ways: int) -> None:
+def test_a_better_agent_starts_more_episodes_at_the_start_of_the_level(from_start: int, on_ways: int) -> None:
     shares = []
     for passed in (0.0, 0.5, 1.0):
         restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
@@ -278,7 +278,7 @@ def test_the_better_the_agent_the_more_episodes_begin_at_the_levels_start(from_s
 
 
 @pytest.mark.parametrize("length", [30, 90, 900])
-def test_a_fifth_of_the_decisions_is_from_the_levels_start_however_long_episodes_are(length: int) -> None:
+def test_a_fifth_of_the_decisions_is_in_episodes_from_the_start_of_the_level(length: int) -> None:
     way = Way(1, [[0] * 5] * 80, 1)
     restarts = restarts_of([way], 8)
     decisions = Counter[bool]()
@@ -291,17 +291,17 @@ def test_a_fifth_of_the_decisions_is_from_the_levels_start_however_long_episodes
     assert 0.15 < decisions[True] / decisions.total() < 0.25
 
 
-def test_the_last_failures_from_the_levels_start_are_kept() -> None:
+def test_the_last_32_failures_from_the_start_of_the_level_are_kept() -> None:
     restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
     for seed in range(40):
         restarts.ended(Start(seed), [[0] * 5] * 9, None, 2)
         restarts.ended(Start(seed, part=(1, 3)), [[0] * 5] * 9, None, 2)
         restarts.ended(Start(seed), [[0] * 5] * 9, 1, 3)
         restarts.ended(Start(seed), [[0] * 5] * 9, None)
-    assert [(each.seed, each.state) for each in restarts.failures] == [(seed, 2) for seed in range(8, 40)]
+    assert [(failure.seed, failure.state) for failure in restarts.failures] == [(seed, 2) for seed in range(8, 40)]
 
 
-def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
+def test_a_start_lies_in_its_part_and_leaves_enough_time() -> None:
     way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)], 1)
     restarts = restarts_of([way], 16)
     for start in (restarts.draw() for _ in range(300)):
@@ -314,7 +314,7 @@ def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
             assert start.most >= 160 - len(start.actions)
 
 
-def test_the_shortest_ways_to_each_end_are_kept_and_the_agents_own_join_them() -> None:
+def test_the_shortest_ways_to_each_end_are_kept() -> None:
     ways = [Way(index, [[0] * 5] * (100 + index), index % 2) for index in range(20)]
     ways += [Way(0, [[0] * 5] * length, 0) for length in (99, 150)]
     restarts = restarts_of(ways, 4)
@@ -327,13 +327,13 @@ def test_the_shortest_ways_to_each_end_are_kept_and_the_agents_own_join_them() -
     assert {start.part[0] for start in (restarts.draw() for _ in range(200)) if start.part} == {0, 1, 3}
 
 
-def test_without_ways_episodes_begin_at_their_beginning() -> None:
+def test_without_ways_episodes_start_at_the_start_of_the_level() -> None:
     restarts = restarts_of([], 4)
     assert all(start.part is None and not start.actions for start in (restarts.draw() for _ in range(50)))
 
 
 @pytest.mark.parametrize("count", [0, 3])
-def test_what_is_kept_of_restarts_is_all_of_them(count: int) -> None:
+def test_the_saved_state_of_restarts_is_complete(count: int) -> None:
     ways = [Way(index, [[index, 0, 1, 0, 1]] * (5 + index), index) for index in range(count)]
     restarts = restarts_of(ways, 4)
     if count:

@@ -1,4 +1,4 @@
-"""What is imitated, and that it is."""
+"""Self-imitation: the imitated decisions, and the effect on the policy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ make = partial(make_env, "cover_and_hide")
 
 
 class Counting(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Counts how often it is reset."""
+    """An environment that counts its resets."""
 
     resets = 0
 
@@ -35,7 +35,7 @@ class Counting(gymnasium.Wrapper[Any, Any, Any, Any]):
         return super().reset(**options)
 
 
-def test_decisions_are_drawn_with_what_is_sensed_before_each() -> None:
+def test_decisions_are_drawn_with_the_observations_before_them() -> None:
     lessons = Lessons(make, restarts_of([WAY], 4))
     drawn = lessons.draw()
     lessons.close()
@@ -43,15 +43,15 @@ def test_decisions_are_drawn_with_what_is_sensed_before_each() -> None:
     observations, actions = drawn
     env = make()
     first, _ = env.reset(seed=WAY.seed)
-    along = [first, *(env.step(action)[0] for action in WAY.actions)]
+    step_observations = [first, *(env.step(action)[0] for action in WAY.actions)]
     env.close()
-    entities = np.stack([each["entities"] for each in along])
+    entities = np.stack([step_observation["entities"] for step_observation in step_observations])
     for sensed, action in zip(observations["entities"].numpy(), actions.tolist(), strict=True):
         (decisions,) = np.nonzero((entities == sensed).all(axis=1))
         assert action in [WAY.actions[index] for index in decisions]
 
 
-def test_a_way_is_played_again_once() -> None:
+def test_a_way_is_replayed_only_once() -> None:
     other = Way(6, [[1, 1, 0, 0, 0]] * 30, 1)
     restarts = restarts_of([WAY, other], 4)
     env = Counting(make())
@@ -67,7 +67,7 @@ def test_a_way_is_played_again_once() -> None:
 @pytest.mark.parametrize(
     ("rates", "parts"), [([0, 0, 0, 0.5], {0, 1, 2, 3}), ([0, 1, 0, 0], {0}), ([1, 0, 0, 0], set())]
 )
-def test_what_is_learned_is_imitated_no_more(rates: list[float], parts: set[int]) -> None:
+def test_learned_parts_are_not_imitated(rates: list[float], parts: set[int]) -> None:
     restarts = restarts_of([WAY], 4)
     restarts.rates[1][:] = rates
     decisions = restarts.lessons(BATCH)
@@ -79,33 +79,33 @@ def test_what_is_learned_is_imitated_no_more(rates: list[float], parts: set[int]
     assert (Lessons(make, restarts).draw() is None) == (not parts)
 
 
-def test_a_runner_takes_up_weights_that_lie_otherwise_in_memory() -> None:
+def test_a_runner_loads_optimizer_moments_with_another_memory_layout() -> None:
     run = run_in(Path("none"))
     played = make_vec("cover_and_hide", "v0", 2, 1)
     env = TrainingEnv(played, 1)
     config = rsl_config(run.settings, env.shapes, env.branches)
-    begun, other = (Runner(env, dict(config)) for _ in range(2))
+    saved_runner, runner = (Runner(env, dict(config)) for _ in range(2))
     lessons = Lessons(make, restarts_of([WAY], 4))
     drawn = lessons.draw()
     lessons.close()
     played.close()
     assert drawn is not None
-    imitate(begun.alg, *drawn)
-    saved = begun.alg.save()
-    for model in (other.alg.actor, other.alg.critic):
+    imitate(saved_runner.alg, *drawn)
+    saved = saved_runner.alg.save()
+    for model in (runner.alg.actor, runner.alg.critic):
         model.to(memory_format=torch.contiguous_format)
-    other.take_up(saved)
-    weights = other.alg.optimizer.param_groups[0]["params"]
-    lying = [each.stride() for each in begun.alg.optimizer.param_groups[0]["params"]]
-    assert lying != [each.stride() for each in weights]
-    # The critic's have none yet.
+    runner.take_up(saved)
+    weights = runner.alg.optimizer.param_groups[0]["params"]
+    strides = [parameter.stride() for parameter in saved_runner.alg.optimizer.param_groups[0]["params"]]
+    assert strides != [parameter.stride() for parameter in weights]
+    # The parameters of the critic have no moments yet.
     moments = saved["optimizer_state_dict"]["state"]
     for number in moments:
         for name in ("exp_avg", "exp_avg_sq"):
-            taken = other.alg.optimizer.state[weights[number]][name]
-            assert taken.stride() == weights[number].stride()
-            assert taken.equal(moments[number][name])
-    assert len(moments) == len(list(other.alg.actor.parameters()))
+            moment = runner.alg.optimizer.state[weights[number]][name]
+            assert moment.stride() == weights[number].stride()
+            assert moment.equal(moments[number][name])
+    assert len(moments) == len(list(runner.alg.actor.parameters()))
 
 
 def test_imitation_makes_the_actions_likelier() -> None:

@@ -1,4 +1,4 @@
-"""Settings of trainings: the defaults, and files in which some of them differ."""
+"""Settings of trainings: the defaults, and files that override some of them."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _read(tmp_path: Path, text: str) -> Settings:
     return read_settings(file)
 
 
-def test_the_defaults_are_those_of_the_paper() -> None:
+def test_the_defaults_are_from_the_paper() -> None:
     settings = read_settings()
     ppo = settings.ppo
     assert (ppo.learning_rate, ppo.entropy, ppo.clip, ppo.lam, ppo.gamma) == (3e-4, 0.01, 0.2, 0.95, 0.99)
@@ -104,30 +104,30 @@ def test_the_defaults_are_those_of_the_paper() -> None:
     assert (settings.stop.windows, settings.stop.episodes, settings.stop.confirmation) == (2, 50, 300)
 
 
-def test_the_file_of_defaults_has_every_setting_and_no_other() -> None:
+def test_the_default_file_has_exactly_all_settings() -> None:
     values = read_values(SourceFile("settings.toml", default_text()))
     assert {table: set(keys) for table, keys in values.items()} == {table: set(keys) for table, keys in KINDS.items()}
     for name, kind in get_type_hints(Settings).items():
-        # The discount of rewards is that of the algorithm.
+        # Rewards use the discount of the algorithm.
         fields = set(getattr(kind, "__match_args__", ())) - ({"gamma"} if name == "reward" else set())
         assert fields == set(KINDS.get(name, {})), name
     assert {name for name in get_type_hints(Settings) if name not in KINDS} == set(KINDS[""])
 
 
-def test_the_words_on_settings_are_true_of_other_values_too(tmp_path: Path) -> None:
-    said = settings_text(_read(tmp_path, '[ppo]\nentropy_schedule = "fixed"\n'))
-    assert "with their defaults" not in said
+def test_the_comments_on_settings_hold_for_other_values_too(tmp_path: Path) -> None:
+    printed = settings_text(_read(tmp_path, '[ppo]\nentropy_schedule = "fixed"\n'))
+    assert "with their defaults" not in printed
     schedule = (
         'entropy_schedule = "fixed"          # of that weight: "fading" as the pass rate rises, to nothing at 1, or'
     )
-    assert f'{schedule} "fixed"' in said.splitlines()
+    assert f'{schedule} "fixed"' in printed.splitlines()
 
 
-def test_the_default_network_is_that_of_policies() -> None:
+def test_the_default_network_is_the_network_of_policies() -> None:
     assert read_settings().network == Network()
 
 
-def test_a_file_has_what_differs(tmp_path: Path) -> None:
+def test_a_file_overrides_settings(tmp_path: Path) -> None:
     settings = _read(tmp_path, 'threads = 2\n[ppo]\ngamma = 0.9\n[network]\nhidden = [64]\n[reward]\nmode = "sparse"\n')
     default = read_settings()
     assert settings == replace(
@@ -140,11 +140,11 @@ def test_a_file_has_what_differs(tmp_path: Path) -> None:
     assert isinstance(_read(tmp_path, "checkpoint_s = 5\n").checkpoint_s, float)
 
 
-def test_nothing_but_the_printed_defaults_changes_nothing(tmp_path: Path) -> None:
+def test_printing_and_reading_the_defaults_changes_nothing(tmp_path: Path) -> None:
     assert _read(tmp_path, default_text()) == _read(tmp_path, "") == read_settings()
 
 
-def test_settings_that_all_differ_are_printed_and_read_again(tmp_path: Path) -> None:
+def test_printed_settings_are_read_unchanged(tmp_path: Path) -> None:
     values, defaults = (read_values(SourceFile("settings.toml", text)) for text in (OTHER, default_text()))
     assert [(table, key) for table in KINDS for key in KINDS[table] if values[table][key] == defaults[table][key]] == []
     settings = _read(tmp_path, OTHER)
@@ -154,7 +154,7 @@ def test_settings_that_all_differ_are_printed_and_read_again(tmp_path: Path) -> 
     assert "threads = 2             # of torch while it learns; " in printed
 
 
-def test_rsl_rl_is_told_all(tmp_path: Path) -> None:
+def test_the_config_of_rsl_rl_has_all_settings(tmp_path: Path) -> None:
     config = rsl_config(_read(tmp_path, "[ppo]\nclip = 0.3\n"), {"automaton": (6,), "map": (3, 11, 11)}, (3, 2))
     assert config["actor"]["class_name"] == config["critic"]["class_name"] == "CNNModel"
     assert config["actor"]["distribution_cfg"]["branches"] == (3, 2)
@@ -172,14 +172,14 @@ def test_rsl_rl_is_told_all(tmp_path: Path) -> None:
         (2.0, 100, 120.0, "steps"),
     ],
 )
-def test_the_limit_that_is_reached(minutes: float, steps: int, seconds: float, limit: str | None) -> None:
+def test_the_reached_limit(minutes: float, steps: int, seconds: float, limit: str | None) -> None:
     stop = replace(read_settings().stop, steps=100, minutes=minutes)
     assert stop.reached(steps, seconds) == limit
     assert stop.is_late(seconds) == (minutes > 0 and seconds == 120.0)
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_message(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_message_is_as_expected(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("settings.toml").write_text(WRONG[name], encoding="utf-8")
     with pytest.raises(TltlError) as caught:
@@ -188,8 +188,8 @@ def test_message(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def compare(name: str, error: TltlError) -> None:
-    found, expected = render(error.diagnostics), GOLDEN / f"{name}.txt"
+    message, expected = render(error.diagnostics), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
-        expected.write_text(found, encoding="utf-8")
-    assert found == expected.read_text(encoding="utf-8")
-    assert name[:7] in found
+        expected.write_text(message, encoding="utf-8")
+    assert message == expected.read_text(encoding="utf-8")
+    assert name[:7] in message

@@ -1,4 +1,4 @@
-"""What ``torch.save`` wrote is read; what would fill the memory is refused before it does."""
+"""Files of ``torch.save`` are read; files that would fill the memory are rejected first."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def saved(value: object) -> bytes:
 
 
 def repacked(data: bytes, change: Callable[[str, bytes], bytes], compression: int = zipfile.ZIP_STORED) -> bytes:
-    """The archive with other members."""
+    """The archive with changed members."""
     out = BytesIO()
     with zipfile.ZipFile(BytesIO(data)) as old, zipfile.ZipFile(out, "w", compression) as new:
         for name in old.namelist():
@@ -36,7 +36,7 @@ def repacked(data: bytes, change: Callable[[str, bytes], bytes], compression: in
 
 
 def shared(levels: int) -> list[Any]:
-    """A list that holds 2 ** levels values, and takes a line each level."""
+    """A list of 2 ** levels values whose pickle grows only linearly with ``levels``."""
     value: list[Any] = [1]
     for _ in range(levels):
         value = [value, value]
@@ -44,7 +44,7 @@ def shared(levels: int) -> list[Any]:
 
 
 class Zeros:
-    """Asks for 5 GiB of memory when it is read."""
+    """An object that allocates 5 GiB when it is unpickled."""
 
     def __reduce__(self) -> tuple[type[bytearray], tuple[int]]:
         return bytearray, (5 << 30,)
@@ -60,7 +60,7 @@ def test_plain_data_and_tensors_are_read() -> None:
     assert [tensor.dtype for tensor in again["tensors"]] == list(kinds)
 
 
-def test_a_small_file_that_unpacks_to_gigabytes_is_refused() -> None:
+def test_compressed_members_are_rejected() -> None:
     data = repacked(saved(torch.zeros(1 << 20)), lambda _, content: content, zipfile.ZIP_DEFLATED)
     assert len(data) < 1 << 16
     with pytest.raises(TorchArchiveError, match="compressed"):
@@ -76,12 +76,12 @@ def test_a_small_file_that_unpacks_to_gigabytes_is_refused() -> None:
     ],
     ids=["tensor", "lists", "bytes"],
 )
-def test_what_would_fill_the_memory_is_refused(value: object, why: str) -> None:
+def test_values_that_would_fill_the_memory_are_rejected(value: object, why: str) -> None:
     with pytest.raises(TorchArchiveError, match=why):
         read_torch(saved(value))
 
 
-def test_a_value_that_nests_too_deep_is_refused() -> None:
+def test_deeply_nested_values_are_rejected() -> None:
     value: list[Any] = []
     for _ in range(40):
         value = [value]
@@ -97,20 +97,20 @@ def test_a_value_that_nests_too_deep_is_refused() -> None:
     ],
     ids=["dict", "ordered dict"],
 )
-def test_keys_that_take_for_ever_to_hash_are_refused(pickled: bytes) -> None:
+def test_keys_that_take_very_long_to_hash_are_rejected(pickled: bytes) -> None:
     data = repacked(saved({}), lambda name, content: pickled if name.endswith("data.pkl") else content)
     with pytest.raises(TorchArchiveError, match="no text and no number"):
         read_torch(data)
 
 
-def test_more_operations_than_any_checkpoint_takes_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pickles_with_too_many_operations_are_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(torch_archive, "CHECKPOINT", Limit(size=1 << 20, depth=32, values=10))
     with pytest.raises(TorchArchiveError, match="more than 10 values"):
         read_torch(saved([None] * 1000))
 
 
 def test_torch_reads_the_members_that_were_checked() -> None:
-    """Python's reader finds the table of contents before the end, torch's where the last record says."""
+    """Python's reader finds the central directory by its end, torch's by the offset in the last record."""
     good, bad = saved(torch.zeros(10)), repacked(saved(torch.ones(1000)), lambda _, c: c, zipfile.ZIP_DEFLATED)
     start, end = bad.rindex(b"PK\x05\x06"), good.rindex(b"PK\x05\x06")
     where = int.from_bytes(bad[start + 16 : start + 20], "little")
@@ -118,25 +118,25 @@ def test_torch_reads_the_members_that_were_checked() -> None:
     record[16:20] = where.to_bytes(4, "little")
     mixed = bad[:start] + good[:end] + bytes(record)
     try:
-        found = read_torch(mixed)
+        value = read_torch(mixed)
     except TorchArchiveError:
         return
-    assert torch.equal(found, torch.zeros(10))
+    assert torch.equal(value, torch.zeros(10))
 
 
-def test_members_that_overlap_are_refused() -> None:
+def test_overlapping_members_are_rejected() -> None:
     data = bytearray(saved({"a": torch.zeros(1000), "b": torch.zeros(1000)}))
     with zipfile.ZipFile(BytesIO(data)) as archive:
-        (first, second) = [each for each in archive.infolist() if each.file_size == 4000]
+        (first, second) = [member for member in archive.infolist() if member.file_size == 4000]
     central = data.rindex(second.filename.encode()) - 46
     data[central + 42 : central + 46] = first.header_offset.to_bytes(4, "little")
-    # The second entry of the table points at the first member now: reading either says which name it has.
+    # The second entry of the central directory now points at the first member, whose name does not match.
     with pytest.raises(TorchArchiveError):
         read_torch(bytes(data))
 
 
 @given(place=st.integers(0, 3000), byte=st.integers(0, 255), cut=st.integers(0, 3000))
-def test_damaged_bytes_are_read_or_refused(place: int, byte: int, cut: int) -> None:
+def test_damaged_bytes_are_read_or_rejected(place: int, byte: int, cut: int) -> None:
     data = bytearray(saved({"a": torch.arange(20.0), "b": [1, "x", None], "c": (2.5, True)}))
     data[place % len(data)] = byte
     for damaged in (bytes(data), bytes(data[: cut % len(data)])):
@@ -150,12 +150,12 @@ def test_the_time_to_read_a_pickle_grows_with_its_length() -> None:
     data = repacked(saved([]), lambda name, content: pickled if name.endswith("data.pkl") else content)
     began = monotonic()
     assert len(read_torch(data)) == 2 * count
-    # It takes two seconds, and with a search through all of the stack for each mark minutes.
+    # It takes two seconds; a search through the whole stack for each mark would take minutes.
     assert monotonic() - began < 60
 
 
 @pytest.mark.parametrize("pickled", [b"\x80\x02t.", b"\x80\x02(0t.", b"\x80\x02((00t.", b"\x80\x02(N1t."])
-def test_a_pickle_that_takes_a_mark_that_is_gone_is_refused(pickled: bytes) -> None:
+def test_a_pickle_that_pops_a_missing_mark_is_rejected(pickled: bytes) -> None:
     data = repacked(saved([]), lambda name, content: pickled if name.endswith("data.pkl") else content)
     with pytest.raises(TorchArchiveError, match="damaged"):
         read_torch(data)

@@ -1,4 +1,4 @@
-"""Trainings that are run, interrupted and resumed."""
+"""Running, interrupting and resuming trainings."""
 
 from __future__ import annotations
 
@@ -47,15 +47,15 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
-"""A spec that who does anything at all meets, after eight steps."""
+"""A spec that every policy meets after eight steps."""
 IN_VAIN = "import spatial\nentity exit\nspec vain { level cover_and_hide\n limit 8 steps\n reach near(exit) }\n"
-"""A spec that nobody meets."""
+"""A spec that no policy can meet."""
 CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n avoid sneaking }\n"
-"""A spec that an agent that has learned nothing meets in one of four episodes or so."""
+"""A spec that an untrained agent meets in about one of four episodes."""
 
 
 def _numbers(reports: list[Report]) -> list[Any]:
-    return [(each.iteration.number, each.iteration.losses, each.steps, each.window) for each in reports]
+    return [(report.iteration.number, report.iteration.losses, report.steps, report.window) for report in reports]
 
 
 def _assert_equal_weights(one: Run, other: Run) -> None:
@@ -65,14 +65,14 @@ def _assert_equal_weights(one: Run, other: Run) -> None:
         assert all(torch.equal(first[part][name], second[part][name]) for name in first[part])
 
 
-def test_it_ends_at_its_limit_and_leaves_its_files(whole: tuple[Run, list[Report]]) -> None:
+def test_a_training_ends_at_its_limit_and_writes_its_files(whole: tuple[Run, list[Report]]) -> None:
     run, reports = whole
-    assert [(each.iteration.number, each.steps, each.stop) for each in reports] == [
+    assert [(report.iteration.number, report.steps, report.stop) for report in reports] == [
         (1, 64, None),
         (2, 128, None),
         (3, 192, "steps"),
     ]
-    assert all(each.checkpointed for each in reports)
+    assert all(report.checkpointed for report in reports)
     assert {path.name for path in run.folder.iterdir() if not path.name.startswith((".", "events"))} == {
         RUN,
         CHECKPOINT,
@@ -87,46 +87,46 @@ def test_it_ends_at_its_limit_and_leaves_its_files(whole: tuple[Run, list[Report
     )
 
 
-def test_the_library_below_prints_nothing(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_rsl_rl_prints_nothing(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     run = run_in(folder / "quiet", stop__steps=64)
     assert len(list(train(run))) == 1
     assert capfd.readouterr() == ("", "")
 
 
-def test_equal_runs_give_equal_numbers_and_so_do_equal_checkpoints(
-    folder: Path, whole: tuple[Run, list[Report]]
-) -> None:
+def test_equal_runs_and_equal_checkpoints_give_equal_numbers(folder: Path, whole: tuple[Run, list[Report]]) -> None:
     run, reports = whole
     again = replace(run, folder=folder / "again")
     assert _numbers(list(train(again))) == _numbers(reports)
     _assert_equal_weights(run, again)
-    longer = [replace(each, settings=run_in(folder, stop__steps=320).settings) for each in (run, again)]
-    resumed = [list(train(each, resume=True)) for each in longer]
-    assert [each.iteration.number for each in resumed[0]] == [4, 5]
+    longer = [replace(finished_run, settings=run_in(folder, stop__steps=320).settings) for finished_run in (run, again)]
+    resumed = [list(train(longer_run, resume=True)) for longer_run in longer]
+    assert [report.iteration.number for report in resumed[0]] == [4, 5]
     assert _numbers(resumed[0]) == _numbers(resumed[1])
     _assert_equal_weights(*longer)
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3, 4, 5]
 
 
-def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) -> None:
+def test_a_closed_training_resumes_after_its_last_iteration(folder: Path) -> None:
     run = run_in(folder / "left", checkpoint_s=3600.0, threads=1)
     reports = train(run)
     assert not next(reports).checkpointed
     next(reports)
     reports.close()
     assert (checkpoint_of(run).iteration, checkpoint_of(run).steps) == (2, 128)
-    # What a process that was killed had measured beyond its checkpoint is measured again.
+    # Iterations that a killed process measured after its checkpoint are measured again.
     beyond = {**read_metrics(run.folder / METRICS)[-1], "iteration": 3}
     with (run.folder / METRICS).open("a") as file:
         file.write(json.dumps(beyond) + "\n" + '{"iterat')
-    assert [each.iteration.number for each in train(run, resume=True)] == [3]
+    assert [report.iteration.number for report in train(run, resume=True)] == [3]
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3]
-    # It is over: its end is told once more.
+    # The training is finished: resuming reports its end again.
     (last,) = train(run, resume=True)
     assert (last.iteration.number, last.steps, last.stop) == (3, 192, "steps")
 
 
-def test_a_checkpoint_follows_the_first_iteration_after_its_time(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_checkpoint_is_written_after_the_first_iteration_that_is_due(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     clock = SimpleNamespace(now=100.0)
     monkeypatch.setattr(keeping, "time", SimpleNamespace(perf_counter=lambda: clock.now))
     run = run_in(folder / "due", checkpoint_s=1.0, stop__steps=10**6)
@@ -158,49 +158,47 @@ def _judged_by(run: Run, spec: str) -> Run:
     return replace(run, fspa=task.fspa, params=task.params)
 
 
-def test_a_training_that_is_broken_off_while_it_saves_saves_again(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def broken_off(path: Path, checkpoint: Checkpoint) -> None:
+def test_a_training_interrupted_while_it_saves_saves_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(path: Path, checkpoint: Checkpoint) -> None:
         monkeypatch.undo()
         raise KeyboardInterrupt
 
     reports = train(run := run_in(folder / "broken"))
     next(reports)
-    monkeypatch.setattr("tltl_runtime.training.run.training_files.write_checkpoint", broken_off)
+    monkeypatch.setattr("tltl_runtime.training.run.training_files.write_checkpoint", interrupt)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 2
 
 
 @pytest.mark.parametrize("broken", ["train.Report", "metrics.Metrics.add"])
-def test_no_checkpoint_tells_of_an_iteration_that_was_not_measured(
+def test_no_checkpoint_contains_an_unmeasured_iteration(
     folder: Path, monkeypatch: pytest.MonkeyPatch, broken: str
 ) -> None:
-    def broken_off(*_: object, **__: object) -> None:
+    def interrupt(*_: object, **__: object) -> None:
         monkeypatch.undo()
         raise KeyboardInterrupt
 
     reports = train(run := run_in(folder / f"before-{broken}"))
     next(reports)
-    monkeypatch.setattr(f"tltl_runtime.training.run.{broken}", broken_off)
+    monkeypatch.setattr(f"tltl_runtime.training.{broken}", interrupt)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 1
-    assert [each.iteration.number for each in train(run, resume=True)] == [2, 3]
+    assert [report.iteration.number for report in train(run, resume=True)] == [2, 3]
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3]
 
 
-def test_a_training_goes_on_until_its_policy_is_confirmed(folder: Path) -> None:
+def test_a_training_continues_until_its_policy_is_confirmed(folder: Path) -> None:
     changes = {"stop__windows": 2, "stop__episodes": 2, "stop__steps": 10**5, "rollout__envs": 8}
     run = _judged_by(run_in(folder / "confirmed", **changes), CHANCE)
     reports = list(train(run))
-    refused = [each for each in reports if each.confirmation and not each.confirmation.passed]
+    refused = [report for report in reports if report.confirmation and not report.confirmation.passed]
     assert refused
-    assert all(each.stop is None and each.unbroken == 0 and each.confirmation.met < 4 for each in refused)
-    assert [each.confirmation for each in reports if each.stop == "met"] == [Confirmation(4, 4)]
-    told = [line["confirmation"] for line in read_metrics(run.folder / METRICS)]
-    assert told == [each.confirmation and {"met": each.confirmation.met, "of": 4} for each in reports]
+    assert all(report.stop is None and report.unbroken == 0 and report.confirmation.met < 4 for report in refused)
+    assert [report.confirmation for report in reports if report.stop == "met"] == [Confirmation(4, 4)]
+    confirmations = [line["confirmation"] for line in read_metrics(run.folder / METRICS)]
+    assert confirmations == [report.confirmation and {"met": report.confirmation.met, "of": 4} for report in reports]
 
 
 def test_a_policy_is_not_confirmed_on_a_level_that_has_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -218,7 +216,7 @@ def test_a_policy_is_not_confirmed_on_a_level_that_has_changed(tmp_path: Path, m
     with pytest.raises(TltlError) as caught:
         next(train(run, resume=True))
     compare("TLT0868_resumed", caught.value)
-    # Nor does what has no checkpoint yet go on on another level.
+    # A training without a checkpoint does not resume on a changed level either.
     (run.folder / CHECKPOINT).unlink()
     with pytest.raises(TltlError) as caught:
         next(train(run, resume=True))
@@ -227,7 +225,7 @@ def test_a_policy_is_not_confirmed_on_a_level_that_has_changed(tmp_path: Path, m
     assert list(train(run, resume=True))[-1].stop == "met"
 
 
-def test_a_training_that_goes_on_has_no_record_of_its_end(folder: Path) -> None:
+def test_a_resumed_training_has_no_record_of_its_end(folder: Path) -> None:
     run = run_in(folder / "longer", stop__steps=64)
     (last,) = train(run)
     write_record(run, last)
@@ -238,11 +236,11 @@ def test_a_training_that_goes_on_has_no_record_of_its_end(folder: Path) -> None:
     assert not (run.folder / CURVE).exists()
     reports.close()
     (last,) = train(run, resume=True)
-    made = write_record(run, last)
-    assert read_policy(run.folder / POLICY).card.training == made
+    record = write_record(run, last)
+    assert read_policy(run.folder / POLICY).card.training == record
 
 
-def test_a_training_that_was_resumed_begins_on_the_ways_that_it_knew(folder: Path) -> None:
+def test_a_resumed_training_starts_on_its_known_ways(folder: Path) -> None:
     def run_of(name: str, steps: int) -> Run:
         changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5, "stop__steps": steps}
         return _judged_by(run_in(folder / name, **changes), SOON)
@@ -257,14 +255,14 @@ def test_a_training_that_was_resumed_begins_on_the_ways_that_it_knew(folder: Pat
     shutil.copytree(run.folder, folder / "ways-2")
     resumed = [list(train(run_of(name, 256), resume=True)) for name in ("ways", "ways-2")]
     assert _numbers(resumed[0]) == _numbers(resumed[1])
-    assert [each.iteration.number for each in resumed[0]] == [3, 4]
+    assert [report.iteration.number for report in resumed[0]] == [3, 4]
     assert resumed[0][-1].searched == first[-1].searched
     assert resumed[0][-1].replayed == resumed[1][-1].replayed > first[-1].replayed
     assert {*kept["way_seeds"].tolist()} <= {*checkpoint_of(run).processes[0]["way_seeds"].tolist()}
 
 
-def test_the_best_policy_is_the_one_that_played_the_end_of_its_window(folder: Path) -> None:
-    # Every episode on this level that lasts no longer than a rollout fails; a window is one episode.
+def test_the_best_policy_played_the_end_of_its_window(folder: Path) -> None:
+    # Every episode on this level that is not longer than a rollout fails; a window is one episode.
     run = run_in(folder / "best", rollout__steps=512, stop__steps=2048, stop__episodes=1)
     reports = train(run)
     report = next(report for report in reports if report.best_pass_rate is not None)
@@ -279,13 +277,13 @@ def test_the_best_policy_is_the_one_that_played_the_end_of_its_window(folder: Pa
     assert not all(torch.equal(best[name], now[name]) for name in weights)
 
 
-def test_a_policy_that_ended_no_episode_is_not_the_best(folder: Path) -> None:
-    # All episodes end after eight steps, and in vain; a rollout is four.
+def test_a_policy_without_finished_episodes_is_not_the_best(folder: Path) -> None:
+    # All episodes fail after eight steps; a rollout has four.
     changes = {"rollout__steps": 4, "stop__steps": 16 * 3, "stop__episodes": 4}
     run = _judged_by(run_in(folder / "none", **changes), IN_VAIN)
     reports = list(train(run))
-    assert [len(each.iteration.finished) for each in reports] == [0, 4, 0]
-    assert [each.best_steps for each in reports] == [None, 16, 16]
+    assert [len(report.iteration.finished) for report in reports] == [0, 4, 0]
+    assert [report.best_steps for report in reports] == [None, 16, 16]
 
 
 def test_a_run_is_read_as_it_was_written(tmp_path: Path) -> None:
@@ -295,33 +293,33 @@ def test_a_run_is_read_as_it_was_written(tmp_path: Path) -> None:
     assert identity(read_run(run.folder)) == identity(run)
 
 
-def test_a_checkpoint_depends_on_all_settings_but_those_that_may_change(folder: Path, tmp_path: Path) -> None:
+def test_the_identity_depends_on_all_settings_that_may_not_change(folder: Path, tmp_path: Path) -> None:
     run = replace(run_in(folder), settings=read_settings())
     settings, other = dict(leaves(to_json(run.settings))), tmp_path / "other.toml"
     other.write_text(OTHER, encoding="utf-8")
-    others = dict(leaves(to_json(read_settings(other))))
-    assert MAY_CHANGE <= others.keys() == settings.keys()
+    other_values = dict(leaves(to_json(read_settings(other))))
+    assert MAY_CHANGE <= other_values.keys() == settings.keys()
     for name, value in settings.items():
         document: Any = to_json(run.settings)
         table, _, key = name.rpartition(".")
-        assert value != others[name]
-        (document[table] if table else document)[key] = others[name]
+        assert value != other_values[name]
+        (document[table] if table else document)[key] = other_values[name]
         changed = replace(run, settings=from_json(Settings, document, "settings"))
         assert (identity(changed) == identity(run)) == (name in MAY_CHANGE), name
 
 
 @pytest.fixture
 def told_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A search tells after its first step how far it is, and a limit that has passed by then breaks it off."""
+    """Let a search report after its first step, so that a limit that has passed interrupts it."""
     monkeypatch.setattr("tltl_runtime.training.exploration.search._TOLD_EVERY_S", 0.0)
 
 
 SEARCH = {"exploration__ways": 10, "exploration__steps": 800}
-"""A search that is not over after its first step, nor finds as many ways."""
+"""A search that is not finished after its first step, and does not find this many ways."""
 
 
 @pytest.mark.usefixtures("told_at_once")
-def test_a_limit_of_minutes_ends_the_search_too(folder: Path) -> None:
+def test_a_limit_in_minutes_ends_the_search_too(folder: Path) -> None:
     run = run_in(folder / "short", exploration__ways=10, exploration__steps=10**9, stop__minutes=1e-9)
     (report,) = train(run)
     assert report.stop == "minutes"
@@ -330,7 +328,7 @@ def test_a_limit_of_minutes_ends_the_search_too(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("told_at_once")
-def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
+def test_an_interrupted_search_starts_again(folder: Path) -> None:
     run = run_in(folder / "anew", **SEARCH, stop__minutes=1e-9)
     (report,) = train(run)
     assert report.searched is not None
@@ -343,19 +341,19 @@ def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("told_at_once")
-def test_a_search_that_a_limit_broke_off_with_a_way_is_not_made_anew(folder: Path) -> None:
+def test_an_interrupted_search_with_a_way_does_not_start_again(folder: Path) -> None:
     run = run_in(folder / "enough", **SEARCH, stop__minutes=1e-9)
     list(train(run))
     kept = checkpoint_of(run)
     assert kept.searched is not None
-    found = replace(kept.searched, lengths=(9,), complete=False)
+    searched = replace(kept.searched, lengths=(9,), complete=False)
     longer = replace(run, settings=run_in(folder, **SEARCH).settings)
-    write_checkpoint(run.folder / CHECKPOINT, replace(kept, searched=found, run=identity(longer)))
-    assert next(train(longer, resume=True)).searched == found
+    write_checkpoint(run.folder / CHECKPOINT, replace(kept, searched=searched, run=identity(longer)))
+    assert next(train(longer, resume=True)).searched == searched
 
 
 @pytest.mark.usefixtures("told_at_once")
-def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_repeated_search_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stopped(_: Runner) -> Iterator[Iteration]:
         raise KeyboardInterrupt
 
@@ -371,21 +369,19 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
     assert searched.seconds > first.searched.seconds
 
 
-def test_a_training_at_a_standstill_searches_again_for_what_fails(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_training_at_a_standstill_searches_again_from_failures(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.training.ppo.windows._BETWEEN", (0.0, 2.0))
     monkeypatch.setattr("tltl_runtime.training.ppo.windows._STANDSTILL_STEPS", 256)
-    told: list[Searched] = []
+    search_reports: list[Searched] = []
     run = run_in(folder / "standstill", CHANCE, exploration__ways=4, exploration__steps=2000, stop__steps=640)
-    reports = list(train(run, searching=told.append))
+    reports = list(train(run, searching=search_reports.append))
     searches = [report.searched for report in reports if report.searched]
     assert [report.steps for report in reports] == list(range(64, 641, 64))
     first, last = searches[0], searches[-1]
-    ends = [each for each in told if each.complete]
-    assert len(ends) > 1, "it was searched again"
-    assert last.steps == sum(each.steps for each in ends)
-    assert len(last.lengths) == sum(len(each.lengths) for each in ends)
+    finished_searches = [search for search in search_reports if search.complete]
+    assert len(finished_searches) > 1, "it was searched again"
+    assert last.steps == sum(search.steps for search in finished_searches)
+    assert len(last.lengths) == sum(len(search.lengths) for search in finished_searches)
     assert last.steps > first.steps
     assert all(one.replayed <= other.replayed for one, other in pairwise(reports))
     assert checkpoint_of(run).searched == last
@@ -397,18 +393,18 @@ def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     monkeypatch.setattr("tltl_runtime.training.ppo.windows._BETWEEN", (0.0, 2.0))
     monkeypatch.setattr("tltl_runtime.training.ppo.windows._STANDSTILL_STEPS", 256)
     changes = {"exploration__ways": 4, "exploration__steps": 2000, "checkpoint_s": 10**6}
-    run, told = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[Searched]()
-    reports = train(run, searching=told.append)
+    run, search_reports = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[Searched]()
+    reports = train(run, searching=search_reports.append)
     before = [next(reports) for _ in range(4)][-1]
-    first = len(told)
+    first = len(search_reports)
     next(reports)
-    # It is killed then.
+    # Simulate that the process is killed here.
     monkeypatch.setattr("tltl_runtime.training.run.training_files.Keeping.save", lambda *_: None)
     reports.close()
     kept = checkpoint_of(run)
     assert before.searched is not None and kept.searched is not None
-    assert len(told) > first and kept.searched.steps == before.searched.steps + told[-1].steps
-    assert kept.seconds >= before.seconds + told[-1].seconds
+    assert len(search_reports) > first and kept.searched.steps == before.searched.steps + search_reports[-1].steps
+    assert kept.seconds >= before.seconds + search_reports[-1].seconds
     assert (kept.iteration, kept.standstill[1]) == (4, 256)
 
 
@@ -419,12 +415,12 @@ def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str,
     )
     first, *_, report = train(_judged_by(run, SOON))
     assert report.window.pass_rate == 1.0
-    # A success in each of a few episodes says little: the windows have a hundred.
+    # Few successful episodes count little, since the windows have 100 episodes.
     assert first.iteration.losses["weight"] == 0.01
     assert report.iteration.losses["weight"] == pytest.approx(last)
 
 
-def test_the_likelier_becomes_likelier_as_the_spec_is_met(folder: Path) -> None:
+def test_the_policy_is_sharpened_as_the_spec_is_met(folder: Path) -> None:
     def run_of(sharpening: float) -> Run:
         changes = {"stop__windows": 1, "stop__episodes": 10, "ppo__sharpening": sharpening}
         return _judged_by(run_in(folder / f"by-{sharpening:.0f}", **changes), SOON)
@@ -437,12 +433,12 @@ def test_the_likelier_becomes_likelier_as_the_spec_is_met(folder: Path) -> None:
         learned.append(checkpoint_of(run).algorithm["actor_state_dict"])
     same, sharper = learned
     for name, weights in same.items():
-        # From a half of the episodes on, up to all: eight of ten are six tenths of the way.
+        # The factor rises with pass rates from 0.5 to 1; a pass rate of 0.8 is 0.6 of this range.
         factor = 1 + 0.6 * 2 if name.startswith("mlp.2.") else 1
         assert torch.allclose(sharper[name], weights * factor), name
 
 
-def test_a_training_that_is_resumed_sharpens_from_there(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_resumed_training_continues_to_sharpen(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = _judged_by(run_in(folder / "sharpened", stop__windows=1, stop__episodes=10, ppo__sharpening=3.0), SOON)
     reports = train(run)
     next(reports)
@@ -464,7 +460,7 @@ def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
     assert first.iteration.losses["dearer"] == rise(0) > 0
 
 
-def test_a_training_that_is_resumed_weighs_as_it_did(folder: Path) -> None:
+def test_a_resumed_training_keeps_its_weights_of_entropy_and_penalty(folder: Path) -> None:
     changes = {"stop__windows": 1, "stop__episodes": 10, "classes__runner": "tests.runtime.training.runs:Weighing"}
     run = _judged_by(run_in(folder / "weighed", **changes), SOON)
     reports = train(run)

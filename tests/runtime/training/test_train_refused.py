@@ -1,4 +1,4 @@
-"""Trainings that are refused, and what becomes of their files."""
+"""Trainings that are rejected, and their files afterwards."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _other_seed(run: Run) -> Run:
 
 
 def _other_settings(run: Run) -> Run:
-    """As of a version that took the hash of its settings otherwise."""
+    """Write a checkpoint with another hash of the settings, as of another version."""
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     torch.save({**content, "run": {**content["run"], "settings": "0" * 64}}, run.folder / CHECKPOINT)
     return run
@@ -84,7 +84,7 @@ def _partial(run: Run) -> Run:
 
 
 def _wider(run: Run) -> Run:
-    """As of a network with another layer."""
+    """Write a checkpoint with weights of another shape, as of another network."""
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     weights = content["algorithm"]["actor_state_dict"]
     weights |= {name: torch.zeros(3, 5) for name in list(weights)[:1]}
@@ -105,25 +105,25 @@ def _wider(run: Run) -> Run:
         ("TLT0864_shape", _wider),
     ],
 )
-def test_a_checkpoint_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Run], Run]) -> None:
+def test_a_checkpoint_that_does_not_fit_is_rejected(copy: Run, name: str, change: Callable[[Run], Run]) -> None:
     with pytest.raises(TltlError) as caught:
         next(train(change(copy), resume=True))
     compare(name, caught.value)
 
 
-def test_a_new_training_writes_over_no_other(copy: Run) -> None:
+def test_a_new_training_does_not_overwrite_another_one(copy: Run) -> None:
     with pytest.raises(TltlError) as caught:
         next(train(copy))
     compare("TLT0867", caught.value)
 
 
-def test_two_trainings_in_one_folder_are_refused(copy: Run) -> None:
+def test_a_folder_is_used_by_one_training_at_a_time(copy: Run) -> None:
     with held(copy.folder), pytest.raises(TltlError) as caught:
         next(train(copy, resume=True))
     compare("TLT0865", caught.value)
 
 
-def test_a_folder_that_cannot_be_written_to_is_resumed_from_nowhere_else(copy: Run) -> None:
+def test_an_unwritable_folder_is_reported_on_resume(copy: Run) -> None:
     (copy.folder / ".lock").unlink()
     (copy.folder / ".lock").mkdir()
     with pytest.raises(TltlError) as caught:
@@ -132,8 +132,8 @@ def test_a_folder_that_cannot_be_written_to_is_resumed_from_nowhere_else(copy: R
 
 
 def _with_ppo(document: Any, **changes: Any) -> Any:
-    """The description with other settings of PPO, without those that are None."""
-    ppo = {name: each for name, each in {**document["settings"]["ppo"], **changes}.items() if each is not None}
+    """The description with changed settings of PPO; None removes a setting."""
+    ppo = {name: value for name, value in {**document["settings"]["ppo"], **changes}.items() if value is not None}
     return {**document, "settings": {**document["settings"], "ppo": ppo}}
 
 
@@ -142,13 +142,13 @@ def _with_ppo(document: Any, **changes: Any) -> Any:
     [
         ("TLT0863", lambda document: None),
         ("TLT0863_other", lambda document: []),
-        ("TLT0863_key", lambda document: {name: each for name, each in document.items() if name != "seed"}),
+        ("TLT0863_key", lambda document: {name: value for name, value in document.items() if name != "seed"}),
         ("TLT0863_value", lambda document: _with_ppo(document, epochs="three")),
         ("TLT0863_older", lambda document: _with_ppo(document, entropy_schedule=None)),
         ("TLT0863_gone", lambda document: _with_ppo(document, momentum=0.9)),
     ],
 )
-def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Any], Any]) -> None:
+def test_an_invalid_description_is_rejected(copy: Run, name: str, change: Callable[[Any], Any]) -> None:
     path = copy.folder / RUN
     changed = change(json.loads(path.read_text()))
     path.write_text("{" if changed is None else json.dumps(changed))
@@ -165,7 +165,7 @@ def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, change
         ("TLT0862_device", {"device": "cuda:31"}),
     ],
 )
-def test_what_there_is_not_is_said_before_anything_is_written(
+def test_missing_classes_and_devices_are_reported_before_anything_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: dict[str, Any]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -176,7 +176,7 @@ def test_what_there_is_not_is_said_before_anything_is_written(
 
 
 @pytest.mark.parametrize(("name", "device"), [("TLT0862_one_device", "cuda:0"), ("TLT0862_devices", "cuda")])
-def test_processes_of_torchrun_take_a_device_each(
+def test_each_process_of_torchrun_needs_its_own_device(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, device: str
 ) -> None:
     for variable, value in (("WORLD_SIZE", 128), ("LOCAL_WORLD_SIZE", 64), ("RANK", 0), ("LOCAL_RANK", 0)):
@@ -188,7 +188,7 @@ def test_processes_of_torchrun_take_a_device_each(
     assert not (tmp_path / "run").exists()
 
 
-def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) -> None:
+def test_a_diverging_training_ends_before_its_checkpoint_is_overwritten(folder: Path) -> None:
     run = run_in(folder / "diverged", classes__runner="tests.runtime.training.runs:Diverging")
     with pytest.raises(TltlError) as caught:
         list(train(run))
@@ -196,7 +196,7 @@ def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) 
     assert checkpoint_of(run).iteration == 1
 
 
-def test_an_environment_that_gives_no_numbers_ends_the_training(folder: Path) -> None:
+def test_nan_in_an_observation_ends_the_training(folder: Path) -> None:
     run = run_in(folder / "failing", classes__runner="tests.runtime.training.runs:Failing")
     with pytest.raises(TltlError) as caught:
         list(train(run))
@@ -206,7 +206,7 @@ def test_an_environment_that_gives_no_numbers_ends_the_training(folder: Path) ->
     assert checkpoint_of(run).iteration == 1
 
 
-def test_a_policy_whose_weights_are_too_large_is_refused(folder: Path) -> None:
+def test_a_policy_with_too_large_weights_is_rejected(folder: Path) -> None:
     run = run_in(folder / "large", classes__runner="tests.runtime.training.runs:Growing")
     with pytest.raises(TltlError) as caught:
         list(train(run))
@@ -215,7 +215,7 @@ def test_a_policy_whose_weights_are_too_large_is_refused(folder: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
-def test_a_failure_to_write_leaves_the_older_checkpoint(copy: Run) -> None:
+def test_a_failed_write_keeps_the_older_checkpoint(copy: Run) -> None:
     import resource
 
     path = copy.folder / CHECKPOINT

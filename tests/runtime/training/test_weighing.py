@@ -1,4 +1,4 @@
-"""What weighs how much, by how often the spec is met."""
+"""The weights of the losses and of the penalty depend on the pass rate."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltlc.core.record import replace
     ("met", "entropy", "severity", "sharpness"),
     [(0.0, 0.01, 0.0, 1.0), (0.5, 0.005, 0.0, 1.0), (0.75, 0.0025, 0.5, 2.0), (1.0, 0.0, 1.0, 3.0)],
 )
-def test_the_entropy_fades_and_the_rest_rises_from_a_half_on(
+def test_the_entropy_weight_falls_and_the_other_weights_rise_from_half_on(
     met: float, entropy: float, severity: float, sharpness: float
 ) -> None:
     ppo = replace(read_settings().ppo, sharpening=3.0)
@@ -46,5 +46,5 @@ def test_the_discounted_penalty_rises_to_the_undiscounted_one(tmp_path: Path) ->
         {"spec": "import stealth\nspec unlimited { level cover_and_hide\n reach sneaking }\n"},
     ],
 )
-def test_no_other_penalty_rises(tmp_path: Path, changes: dict[str, str]) -> None:
+def test_with_other_settings_the_penalty_does_not_rise(tmp_path: Path, changes: dict[str, str]) -> None:
     assert dearer(run_in(tmp_path / "other", **changes)) is None

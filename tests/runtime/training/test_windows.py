@@ -1,4 +1,4 @@
-"""When the spec counts as met, and which policy counts as the best."""
+"""The windows of episodes: when the spec counts as met, the score of a policy, and standstills."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ FAILURE = Finished(False, 0.6, 25, 2, violated=True)
 
 def _windows(episodes: list[bool]) -> Windows:
     windows = Windows(2, 3, 100)
-    windows.add(SUCCESS if each else FAILURE for each in episodes)
+    windows.add(SUCCESS if success else FAILURE for success in episodes)
     return windows
 
 
 @given(st.lists(st.booleans(), max_size=20))
-def test_the_spec_is_met_after_a_run_of_two_windows(episodes: list[bool]) -> None:
+def test_the_spec_is_met_after_two_windows_of_successes(episodes: list[bool]) -> None:
     assert _windows(episodes).met == (len(episodes) >= 6 and all(episodes[-6:]))
 
 
-def test_after_a_refusal_all_is_counted_anew() -> None:
+def test_after_a_refusal_counting_restarts() -> None:
     windows = _windows([True] * 6)
     windows.refuse()
     windows.add([SUCCESS] * 5)
@@ -44,7 +44,7 @@ def test_a_policy_is_scored_by_its_last_window(episodes: list[bool]) -> None:
         assert score[0] == pytest.approx(sum(episodes[-3:]) / 3)
 
 
-def test_rewards_are_told_with_the_undiscounted_penalty() -> None:
+def test_rewards_use_the_undiscounted_penalty() -> None:
     window = _windows([True, False]).window
     # 1 - 40/100, and 0.6 - 1.
     assert window.reward == pytest.approx((0.6 - 0.4) / 2)
@@ -53,16 +53,16 @@ def test_rewards_are_told_with_the_undiscounted_penalty() -> None:
     assert window.violated == {2: 0.5}
 
 
-def test_a_window_without_episodes_says_nothing() -> None:
+def test_a_window_without_episodes_has_zero_figures() -> None:
     window = _windows([]).window
     assert (window.count, window.pass_rate, window.reward, window.states, window.violated) == (0, 0.0, 0.0, {}, {})
 
 
 @given(st.lists(st.booleans(), max_size=12), st.lists(st.booleans(), max_size=12))
-def test_the_state_goes_on_where_it_was(before: list[bool], after: list[bool]) -> None:
+def test_loaded_windows_continue(before: list[bool], after: list[bool]) -> None:
     windows = Windows(2, 3, 100)
     windows.load(_windows(before).state(), _windows(before).unbroken)
-    windows.add(SUCCESS if each else FAILURE for each in after)
+    windows.add(SUCCESS if success else FAILURE for success in after)
     whole = _windows(before + after)
     assert (windows.state(), windows.unbroken) == (whole.state(), whole.unbroken)
 
@@ -71,7 +71,7 @@ def window_of(successes: int) -> Window:
     return Window(100, successes, 0.5, 0.1, 100.0, {}, {})
 
 
-def test_a_standstill_is_a_pass_rate_that_rises_no_more() -> None:
+def test_a_standstill_is_a_pass_rate_that_no_longer_rises() -> None:
     standstill = Standstill()
     assert not standstill.add(Window(2, 1, 0.5, 0.1, 100.0, {}, {}), 0)
     rates = [(0, 0), (150_000, 0), (200_000, 9), (250_000, 40), (300_000, 44), (340_000, 38)]
