@@ -1,4 +1,4 @@
-"""A policy that ends the process that plays, in the middle of its episode; processes that play can import it."""
+"""A policy that ends its process during an episode, in a module that worker processes can import."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from tltl_runtime.policies.policy import Policy
 
 
 class Deadly:
-    """A policy's stand-in whose choices call ``end``."""
+    """A stand-in for a policy whose choices call ``end``."""
 
     def __init__(self, policy: Policy, end: Callable[[], object]) -> None:
         self.card, self._end = policy.card, end
 
     def choose(self, *_: object) -> object:
-        """Choose nothing."""
+        """Call ``end`` instead of choosing."""
         return self._end()
 
 
 def killed() -> None:
-    """End this process, which has no time left to say anything."""
+    """Kill this process with SIGKILL."""
     os.kill(os.getpid(), signal.SIGKILL)

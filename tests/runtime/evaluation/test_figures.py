@@ -1,4 +1,4 @@
-"""The figures over episodes and the report for people, worked by hand."""
+"""The figures of episodes and the text report, against values computed by hand."""
 
 from __future__ import annotations
 
@@ -29,37 +29,37 @@ EPISODES = [
 ]
 
 
-def test_figures() -> None:
-    found = figures_of(EPISODES)
-    assert found.pass_rate == pytest.approx(0.6)
-    assert found.pass_interval == pytest.approx((0.3127, 0.8318), abs=1e-4)
-    assert found.progress.mean == pytest.approx(0.725)
-    assert found.reward.mean == pytest.approx((6 * 0.75 + 1.25 - 4) / 10)
-    assert found.steps.mean == pytest.approx(76.0)
-    assert found.steps.std == pytest.approx((960 * 9) ** 0.5 / 3)
-    assert found.episodes == 10
+def test_figures_are_computed() -> None:
+    figures = figures_of(EPISODES)
+    assert figures.pass_rate == pytest.approx(0.6)
+    assert figures.pass_interval == pytest.approx((0.3127, 0.8318), abs=1e-4)
+    assert figures.progress.mean == pytest.approx(0.725)
+    assert figures.reward.mean == pytest.approx((6 * 0.75 + 1.25 - 4) / 10)
+    assert figures.steps.mean == pytest.approx(76.0)
+    assert figures.steps.std == pytest.approx((960 * 9) ** 0.5 / 3)
+    assert figures.episodes == 10
 
 
-def test_where_failed_episodes_ended() -> None:
-    found = evaluation_of(EPISODES)
-    assert found.figures == figures_of(EPISODES)
-    assert found.ended == (
+def test_failed_episodes_are_grouped_by_state_and_end() -> None:
+    evaluation = evaluation_of(EPISODES)
+    assert evaluation.figures == figures_of(EPISODES)
+    assert evaluation.ended == (
         Ended(0, "Reach 0.", "violation", 2, 0.2, (2, 4)),
         Ended(0, "Reach 0.", "limit", 1, 0.1, (3,)),
         Ended(1, "Reach 1.", "limit", 1, 0.1, (1,)),
     )
-    assert found.episodes == tuple(EPISODES)
+    assert evaluation.episodes == tuple(EPISODES)
 
 
-def test_of_nothing() -> None:
+def test_no_episodes_have_no_figures() -> None:
     with pytest.raises(ValueError, match="0 of 0 is no share"):
         figures_of([])
 
 
-def test_text() -> None:
-    found = report_text({"sampled": evaluation_of(EPISODES), "arg-max": evaluation_of([PASSED])})
+def test_the_text_report() -> None:
+    text = report_text({"sampled": evaluation_of(EPISODES), "arg-max": evaluation_of([PASSED])})
     assert (
-        found
+        text
         == """\
                   sampled                 arg-max
 episodes          10                      1
@@ -79,6 +79,6 @@ sampled: 4 of 10 failed
     )
 
 
-def test_many_that_ended_alike_are_cut() -> None:
-    found = report_text({"sampled": evaluation_of([failed(index, 0, "limit", 0.1) for index in range(20)])})
-    assert "    episodes 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, …\n" in found
+def test_long_lists_of_episodes_are_truncated() -> None:
+    text = report_text({"sampled": evaluation_of([failed(index, 0, "limit", 0.1) for index in range(20)])})
+    assert "    episodes 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, …\n" in text

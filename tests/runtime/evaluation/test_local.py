@@ -1,4 +1,4 @@
-"""Workers of this machine, as a terminal's Ctrl-C meets them."""
+"""Worker processes on this machine: Ctrl-C during their start, and the fork server."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="needs groups of processes")
-def test_a_worker_that_begins_does_not_hear_of_ctrl_c(tmp_path: Path) -> None:
+def test_a_starting_worker_ignores_ctrl_c(tmp_path: Path) -> None:
     path = tmp_path / "main.py"
     path.write_text(_MAIN, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
@@ -60,7 +60,7 @@ def test_a_worker_that_begins_does_not_hear_of_ctrl_c(tmp_path: Path) -> None:
 
 
 class Origin:
-    """Tells which process its own is a copy of, how many threads that one has, and whether torch is loaded here."""
+    """Returns the parent's process id, the number of its threads, and whether torch is loaded."""
 
     def play(self, task: Task) -> Any:
         return os.getppid(), len([*Path(f"/proc/{os.getppid()}/task").iterdir()]), "torch" in sys.modules
@@ -70,12 +70,12 @@ class Origin:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are started otherwise")
-def test_workers_are_copies_of_one_process_that_has_loaded_torch_and_has_no_threads() -> None:
+def test_workers_are_forked_from_one_process_with_torch_and_one_thread() -> None:
     workers = [Process(cast("type[Plays]", Origin)) for _ in range(2)]
     try:
         one, other = (worker.play(Task(0)).result() for worker in workers)
     finally:
         for worker in workers:
             worker.close()
-    parent, *told = cast(Any, one)
-    assert one == other and parent != os.getpid() and told == [1, True]
+    parent, *state = cast(Any, one)
+    assert one == other and parent != os.getpid() and state == [1, True]

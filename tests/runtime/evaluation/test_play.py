@@ -1,4 +1,4 @@
-"""An episode of a policy: its seeds, its figures, and what failing costs."""
+"""An episode of a policy: its seeds, its figures, and the cost of failing."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def policy() -> Policy:
     return untrained()
 
 
-def test_seeds_are_those_of_numpy() -> None:
+def test_seeds_are_from_the_seed_sequence_of_numpy() -> None:
     (word,) = np.random.SeedSequence(3, spawn_key=(7, 0)).generate_state(1)
     assert episode_seed(3, 7) == int(word) >> 1
     seeds = {episode_seed(seed, index) for seed in range(20) for index in range(200)}
@@ -32,56 +32,56 @@ def test_seeds_are_those_of_numpy() -> None:
     assert all(0 <= seed < 2**31 for seed in seeds)
 
 
-def test_an_episode_does_not_depend_on_those_before_it(policy: Policy) -> None:
+def test_an_episode_does_not_depend_on_earlier_episodes(policy: Policy) -> None:
     env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
-    several = [play(policy, env, 3, index, sampled=True) for index in range(8)]
+    results = [play(policy, env, 3, index, sampled=True) for index in range(8)]
     env.close()
-    alone = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
-    again = play(policy, alone, 3, 7, sampled=True)
-    assert again == several[7]
-    assert len({each.progress for each in several}) == 8
-    assert play(policy, alone, 4, 7, sampled=True) != again
-    argmax = play(policy, alone, 3, 7, sampled=False)
+    single_env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
+    again = play(policy, single_env, 3, 7, sampled=True)
+    assert again == results[7]
+    assert len({result.progress for result in results}) == 8
+    assert play(policy, single_env, 4, 7, sampled=True) != again
+    argmax = play(policy, single_env, 3, 7, sampled=False)
     assert argmax.seed == again.seed
     assert argmax.progress != again.progress
-    alone.close()
+    single_env.close()
 
 
-def test_running_out_of_time(policy: Policy) -> None:
+def test_an_episode_that_runs_out_of_time(policy: Policy) -> None:
     env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
-    found = play(policy, env, 3, 0, sampled=True)
+    result = play(policy, env, 3, 0, sampled=True)
     env.close()
-    assert (found.success, found.end, found.verdict, found.steps) == (False, "limit", "pending", 20)
-    assert found.seconds == pytest.approx(3.0)
-    assert (found.state, found.unmet) == (0, 0)
-    assert found.label == "Reach near(exit), and keep alive throughout."
-    assert found.reward == pytest.approx(found.progress - 1.0)
+    assert (result.success, result.end, result.verdict, result.steps) == (False, "limit", "pending", 20)
+    assert result.seconds == pytest.approx(3.0)
+    assert (result.state, result.unmet) == (0, 0)
+    assert result.label == "Reach near(exit), and keep alive throughout."
+    assert result.reward == pytest.approx(result.progress - 1.0)
 
 
 def played(spec: str) -> Played:
     policy = untrained(spec)
     env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
-    found = play(policy, env, 3, 0, sampled=True)
+    result = play(policy, env, 3, 0, sampled=True)
     env.close()
-    return found
+    return result
 
 
-def test_a_violation_costs_what_was_left_and_tells_what_remained() -> None:
-    found = played(LATE)
-    assert (found.success, found.end, found.verdict, found.steps) == (False, "violation", "violated", 7)
-    assert found.reward == pytest.approx(found.progress - 1.0)
-    assert found.state != found.unmet == 0
-    assert found.label == "Reach seen, and keep before(1) throughout."
+def test_a_violation_costs_one_and_states_what_remained() -> None:
+    result = played(LATE)
+    assert (result.success, result.end, result.verdict, result.steps) == (False, "violation", "violated", 7)
+    assert result.reward == pytest.approx(result.progress - 1.0)
+    assert result.state != result.unmet == 0
+    assert result.label == "Reach seen, and keep before(1) throughout."
 
 
 def test_a_success_costs_its_steps() -> None:
-    found = played(AT_ONCE)
-    assert (found.success, found.end, found.progress, found.steps) == (True, "success", 1.0, 1)
-    assert found.reward == pytest.approx(1.0 - 1 / 50)
+    result = played(AT_ONCE)
+    assert (result.success, result.end, result.progress, result.steps) == (True, "success", 1.0, 1)
+    assert result.reward == pytest.approx(1.0 - 1 / 50)
 
 
 class Blinded(gymnasium.ObservationWrapper[Any, Any, Any]):
-    """Senses no number at all from the third decision on."""
+    """A wrapper whose observations contain NaN from the third decision on."""
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
         super().__init__(env)
@@ -94,23 +94,23 @@ class Blinded(gymnasium.ObservationWrapper[Any, Any, Any]):
 
 def refusal(policy: Policy, blinded: bool) -> tuple[str, str]:
     env: gymnasium.Env[Any, Any] = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
-    with pytest.raises(TltlError) as found:
+    with pytest.raises(TltlError) as caught:
         play(policy, Blinded(env) if blinded else env, 3, 5, sampled=False)
     env.close()
-    (diagnostic,) = found.value.diagnostics
+    (diagnostic,) = caught.value.diagnostics
     return diagnostic.code, diagnostic.title
 
 
-def test_an_observation_without_numbers(policy: Policy) -> None:
+def test_nan_in_an_observation_is_reported(policy: Policy) -> None:
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 3"
-    said = f"{where}: `entities` of the observation has values that are no finite numbers"
-    assert refusal(policy, blinded=True) == ("TLT0854", said)
+    title = f"{where}: `entities` of the observation has values that are no finite numbers"
+    assert refusal(policy, blinded=True) == ("TLT0854", title)
 
 
-def test_a_network_whose_sums_overflow() -> None:
+def test_a_network_that_overflows_is_reported() -> None:
     huge = untrained()
     for weights in huge.actor.parameters():
         weights.mul_(1e30)
     where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 1"
-    said = f"{where}: the policy's network gives values that are no finite numbers"
-    assert refusal(huge, blinded=False) == ("TLT0854", said)
+    title = f"{where}: the policy's network gives values that are no finite numbers"
+    assert refusal(huge, blinded=False) == ("TLT0854", title)

@@ -1,4 +1,4 @@
-"""The same episodes in this process, in others, and on a Ray cluster; what is said of a worker that is lost."""
+"""Episodes are the same in this process, in worker processes, and on a Ray cluster; lost workers are reported."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 EPISODES = 8
 
 CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n avoid sneaking }\n"
-"""A spec that some episodes of an untrained policy meet, and others do not."""
+"""A spec that an untrained policy meets in some episodes, but not in all."""
 
 POOLS = [2, pytest.param("ray", marks=needs_ray)]
 
@@ -49,14 +49,14 @@ def expected(policy: Policy) -> list[Played]:
 
 @pytest.fixture(scope="module")
 def ray_here() -> Iterator[None]:
-    """A cluster for the tests of this module that ask for one."""
+    """A Ray cluster for the tests of this module that need one."""
     with own_cluster():
         yield
 
 
 @pytest.fixture(autouse=True)
 def _ray_where_it_is_asked_for(request: pytest.FixtureRequest) -> None:
-    """Ray counts a core as free some time after its actor was killed: wait until all are."""
+    """Before each test with Ray, wait until all cores are free: Ray frees the core of a killed actor with a delay."""
     if "ray" not in (request.node.callspec.params.values() if hasattr(request.node, "callspec") else ()):
         return
     request.getfixturevalue("ray_here")
@@ -70,24 +70,24 @@ def all_cores_are_free() -> None:
 
 
 @pytest.mark.parametrize("workers", POOLS)
-def test_the_same_on_every_pool(policy: Policy, expected: list[Played], workers: Pool) -> None:
+def test_every_pool_plays_the_same_episodes(policy: Policy, expected: list[Played], workers: Pool) -> None:
     assert list(evaluate(policy, episodes=EPISODES, seed=3, workers=workers)) == expected
 
 
-def test_the_same_whatever_the_number_of_episodes(policy: Policy, expected: list[Played]) -> None:
-    alone = results(set_up(policy, None, None, None, 3), [Task(7)])
-    assert [each.played for each in alone] == [expected[7]]
+def test_an_episode_does_not_depend_on_the_number_of_episodes(policy: Policy, expected: list[Played]) -> None:
+    single_results = results(set_up(policy, None, None, None, 3), [Task(7)])
+    assert [result.played for result in single_results] == [expected[7]]
 
 
-def test_recordings_where_they_are_wanted(policy: Policy, expected: list[Played]) -> None:
+def test_recordings_are_made_as_requested(policy: Policy, expected: list[Played]) -> None:
     tasks = [Task(0), Task(1)]
-    for recorded, there in (("all", True), ("failures", True), ("none", False)):
+    for recorded, expect_recording in (("all", True), ("failures", True), ("none", False)):
         for result in results(set_up(policy, None, None, None, 3, recorded), tasks):  # type: ignore[arg-type]
             assert result.played == expected[result.task.index]
             assert result.trajectory is not None
             assert result.trajectory.points.shape == (21, 2)
-            assert bool(result.recording) is there
-            if there:
+            assert bool(result.recording) is expect_recording
+            if expect_recording:
                 episode = from_bytes(result.recording, "it")
                 chosen = "sampled" if result.task.sampled else "arg-max"
                 assert episode.seed == result.played.seed
@@ -95,12 +95,14 @@ def test_recordings_where_they_are_wanted(policy: Policy, expected: list[Played]
 
 
 @pytest.mark.parametrize("recorded", get_args(Recorded))
-def test_failures_are_told_from_episodes_that_met_the_spec(recorded: Recorded) -> None:
-    found = list(results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [Task(each) for each in range(6)]))
-    failed = [not each.played.success for each in found]
+def test_only_failures_are_recorded_if_requested(recorded: Recorded) -> None:
+    played_results = list(
+        results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [Task(index) for index in range(6)])
+    )
+    failed = [not result.played.success for result in played_results]
     assert set(failed) == {True, False}
     wanted = {"none": [False] * 6, "failures": failed, "all": [True] * 6}
-    assert [bool(each.recording) for each in found] == wanted[recorded]
+    assert [bool(result.recording) for result in played_results] == wanted[recorded]
 
 
 def out_of_the_level() -> None:
@@ -110,24 +112,24 @@ def out_of_the_level() -> None:
 @pytest.mark.parametrize("workers", POOLS)
 def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, killed), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
-    with pytest.raises(TltlError) as found, closing(results(setup, [Task(6)], workers)) as each:
-        next(each)
-    (diagnostic,) = found.value.diagnostics
+    with pytest.raises(TltlError) as caught, closing(results(setup, [Task(6)], workers)) as playing:
+        next(playing)
+    (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TLT0850"
     assert f"episode 6 of seed 3, sampled (seed {episode_seed(3, 6)} of the level): " in diagnostic.title
     assert diagnostic.help == "`tltlc evaluate` plays that one alone: `--seed 3 --first 6 --episodes 1 --workers 1`"
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
-def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Pool) -> None:
+def test_an_error_of_the_game_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
-    with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as found:
+    with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as caught:
         list(results(setup, [Task(0)], workers))
-    assert found.value.body == "player"
+    assert caught.value.body == "player"
 
 
 class Ends:
-    """Somebody else than a policy's player, who ends the process."""
+    """A player without a policy that kills its process."""
 
     def play(self, task: Task) -> Result:
         killed()
@@ -137,19 +139,19 @@ class Ends:
         pass
 
 
-def test_whoever_plays_a_lost_worker_is_reported() -> None:
+def test_a_lost_worker_is_reported_for_any_player() -> None:
     with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode 0 of seed 3"):
         list(results_here(Ends, [Task(0)], 2, 3))
 
 
 @pytest.mark.parametrize("workers", [1, *POOLS])
-def test_what_keeps_a_worker_from_beginning_comes_as_it_is(policy: Policy, workers: Pool) -> None:
+def test_an_error_at_the_start_of_a_worker_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
     setup = Setup(policy, "nowhere", "v0", policy.card.fspa, 3, policy.card.params)
     with pytest.raises(TltlError, match="there is no level `nowhere`"):
         list(results(setup, [Task(0)], workers))
 
 
-def test_a_result_is_told_before_the_next_episode_begins(policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_result_is_yielded_before_the_next_episode_starts(policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
     began: list[Task] = []
     play = Player.play
     monkeypatch.setattr(Player, "play", lambda self, task: began.append(task) or play(self, task))
@@ -159,7 +161,7 @@ def test_a_result_is_told_before_the_next_episode_begins(policy: Policy, monkeyp
 
 
 class Prompt:
-    """A worker that is done at once; it is lost in episode 1, and has no end in episode 0."""
+    """A worker that is done at once; it is lost in episode 1, and never finishes episode 0."""
 
     def play(self, task: Task) -> Future[Result]:
         future: Future[Result] = Future()
@@ -173,15 +175,15 @@ class Prompt:
         pass
 
 
-def test_what_was_played_when_a_worker_is_lost_is_told_first() -> None:
+def test_finished_episodes_are_yielded_before_a_lost_worker_is_reported() -> None:
     tasks = [Task(index) for index in (2, 0, 3, 1)]
-    told: list[int] = []
+    played: list[int] = []
     with pytest.raises(TltlError, match="episode 1 of seed 5"):
-        told.extend(result.task.index for result in spread([Prompt(), Prompt(), Prompt()], tasks, 5))
-    assert told == [2, 3]
+        played.extend(result.task.index for result in spread([Prompt(), Prompt(), Prompt()], tasks, 5))
+    assert played == [2, 3]
 
 
-def test_a_process_that_ended_between_two_episodes_is_lost_all_the_same(policy: Policy) -> None:
+def test_a_process_that_ended_between_episodes_is_reported_as_lost(policy: Policy) -> None:
     worker = Process(partial(Player, set_up(policy, None, None, None, 3)))
     try:
         assert worker.play(Task(0)).result().task == Task(0)
@@ -197,7 +199,7 @@ def test_a_process_that_ended_between_two_episodes_is_lost_all_the_same(policy: 
 
 @pytest.fixture
 def busy(ray_here: None) -> Iterator[Any]:
-    """An actor that has all cores of the cluster."""
+    """An actor that occupies all cores of the cluster."""
     import ray
 
     actor = ray.remote(num_cpus=CORES)(Busy).remote()
@@ -207,18 +209,18 @@ def busy(ray_here: None) -> Iterator[Any]:
 
 
 class Busy:
-    """Is there, and does nothing."""
+    """An actor that does nothing."""
 
 
 @needs_ray
-def test_a_cluster_without_a_free_core_is_waited_for_and_then_told(
+def test_a_cluster_without_free_cores_is_reported_after_waiting(
     policy: Policy, busy: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     setup = set_up(policy, None, None, None, 3)
     monkeypatch.setattr(ray_pool, "PATIENCE_S", 1.0)
-    with pytest.raises(TltlError) as found, ray_pool.ray_workers(setup, 2, lambda left: None):
+    with pytest.raises(TltlError) as caught, ray_pool.ray_workers(setup, 2, lambda left: None):
         pass
-    (diagnostic,) = found.value.diagnostics
+    (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TLT0852"
     assert re.fullmatch(r"no worker started within 1 s on the Ray cluster, which has \d+ cores?", diagnostic.title)
     assert diagnostic.help is not None
@@ -226,33 +228,33 @@ def test_a_cluster_without_a_free_core_is_waited_for_and_then_told(
 
 
 @needs_ray
-def test_a_core_that_becomes_free_meanwhile_is_taken(
+def test_a_core_that_becomes_free_is_used(
     policy: Policy, busy: Any, expected: list[Played], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import ray
 
     def waiting(left: float) -> None:
-        told.append(left)
+        remaining.append(left)
         ray.kill(busy)
 
-    told: list[float] = []
+    remaining: list[float] = []
     monkeypatch.setattr("tltl_runtime.vector.cluster._TOLD_EVERY_S", 0.5)
     played = results(set_up(policy, None, None, None, 3), [Task(0)], "ray", waiting)
-    assert [each.played for each in played] == [expected[0]]
-    assert 0 < told[0] <= ray_pool.PATIENCE_S == HANG_S
+    assert [result.played for result in played] == [expected[0]]
+    assert 0 < remaining[0] <= ray_pool.PATIENCE_S == HANG_S
 
 
-def test_errors_can_be_sent() -> None:
+def test_errors_can_be_pickled() -> None:
     error = TltlError([Diagnostic("TLT0850", "lost", help="look for it")])
     assert pickle.loads(pickle.dumps(error)).diagnostics == error.diagnostics
 
 
-def test_no_workers(policy: Policy) -> None:
+def test_a_negative_number_of_workers_is_rejected(policy: Policy) -> None:
     with pytest.raises(ValueError, match="no -1 workers"):
         list(evaluate(policy, episodes=1, seed=0, workers=-1))
 
 
-def test_a_spec_without_a_limit_is_refused() -> None:
+def test_a_spec_without_a_limit_is_rejected() -> None:
     endless = untrained("import stealth\nspec endless { reach seen }")
     with pytest.raises(TltlError, match="TLT0851: `endless` has no limit"):
         list(evaluate(endless, episodes=1, seed=0))

@@ -1,4 +1,4 @@
-"""A policy that was not trained: its weights are as they were drawn, but its choices are no toss of a coin."""
+"""An untrained policy: its weights are random, but scaled up so that its choices are not uniform."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ spec soon { limit 20 steps
   keep alive
 }
 """
-"""A plan that is over before anybody is bored."""
+"""A spec with a short limit."""
 
 
 def untrained(spec: str | None = SOON, level: str = "cover_and_hide", variant: str = "v0", seed: int = 0) -> Policy:
@@ -50,7 +50,7 @@ def card_of(env: TltlEnv) -> Card:
         reward=RewardOptions(),
         sensors=level.sensors,
         shapes=tuple((key, space.shape) for key, space in env.observation_space.spaces.items()),  # type: ignore[attr-defined]
-        branches=tuple(int(each) for each in env.action_space.nvec),  # type: ignore[attr-defined]
+        branches=tuple(int(count) for count in env.action_space.nvec),  # type: ignore[attr-defined]
         network=Network(hidden=(32,), channels=(4,)),
         versions={},
         training={},

@@ -1,4 +1,4 @@
-"""Policies that nobody trained: real cards of real levels, weights as they are drawn."""
+"""Untrained policies: real cards of real levels, with random weights."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def card_of(
     level: str = "cover_and_hide", variant: str = "v0", sensors: SensorChoice | None = None, network: Network = SMALL
 ) -> Card:
     env = make_env(level, variant, sensors=sensors)
-    there = env.get_wrapper_attr("level")
+    loaded_level = env.get_wrapper_attr("level")
     card = Card(
-        level=there.name,
-        variant=there.variant,
-        level_hash=level_hash(there),
+        level=loaded_level.name,
+        variant=loaded_level.variant,
+        level_hash=level_hash(loaded_level),
         fspa=env.task.fspa,
         params={},
         reward=RewardOptions(),
@@ -43,7 +43,7 @@ def card_of(
 
 
 def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
-    """A policy whose choices are not all nearly alike, as those of a new actor are."""
+    """A policy with clear preferences; the choices of a new actor are nearly uniform."""
     torch.manual_seed(seed)
     actor = new_actor(card)
     with torch.no_grad():
@@ -53,7 +53,7 @@ def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
 
 
 def observation_of(card: Card, rng: np.random.Generator, batch: tuple[int, ...] = ()) -> dict[str, NDArray[Any]]:
-    """Numbers such as an observation has; truth in maps."""
+    """A random observation: values in [-1, 1], and zeros and ones in maps."""
     return {
         key: (
             rng.integers(0, 2, (*batch, *shape), dtype=np.uint8)

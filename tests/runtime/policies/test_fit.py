@@ -1,4 +1,4 @@
-"""A policy plays what it was trained for, and what is alike; anything else is refused with the reason."""
+"""A policy plays levels and specs that fit its training; others are rejected with the reason."""
 
 from __future__ import annotations
 
@@ -52,16 +52,16 @@ def refused(card: Card, level: str = "cover_and_hide", fspa: Fspa | None = None)
 
 
 @pytest.mark.parametrize("variant", ["v0", "v1", "v2"])
-def test_any_variant_of_its_level_will_do(card: Card, variant: str) -> None:
+def test_any_variant_of_the_level_fits(card: Card, variant: str) -> None:
     check_policy(card, load_level("cover_and_hide", variant), card.fspa)
 
 
-def test_another_level_with_the_same_senses_will_do(card: Card) -> None:
-    some = replace(card, sensors=replace(card.sensors, entities=("exit",), variables=("health",)))
-    check_policy(some, load_level("navigation"), card.fspa)
+def test_another_level_with_the_same_sensors_fits(card: Card) -> None:
+    fitting_card = replace(card, sensors=replace(card.sensors, entities=("exit",), variables=("health",)))
+    check_policy(fitting_card, load_level("navigation"), card.fspa)
 
 
-def test_names_labels_and_documentation_of_a_spec_do_not_count(card: Card) -> None:
+def test_the_name_and_the_documentation_of_a_spec_do_not_count(card: Card) -> None:
     same = spec("spec cover_and_hide", "/// Something else.\nspec quite_another")
     assert spec_hash(same) == spec_hash(card.fspa)
     check_policy(card, load_level("cover_and_hide"), same)
@@ -78,7 +78,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_another_spec_is_refused_with_what_differs(card: Card, name: str) -> None:
+def test_another_spec_is_rejected_with_the_difference(card: Card, name: str) -> None:
     change, said = CHANGES[name]
     other = spec(*change)
     assert spec_hash(other) != spec_hash(card.fspa)
@@ -92,7 +92,7 @@ def test_other_values_of_params_are_another_spec() -> None:
     assert "the param `far` is 0.3, and was 0.2" in refused(card, fspa=other)
 
 
-def test_level_hashes_tell_what_is_in_a_level_and_nothing_else() -> None:
+def test_a_level_hash_depends_only_on_the_content_of_the_level() -> None:
     hashes = {level_hash(load_level(name, variant)) for name in ("navigation", "branching") for variant in ("v0", "v1")}
     assert len(hashes) == 4
     level = load_level("navigation")
@@ -101,7 +101,7 @@ def test_level_hashes_tell_what_is_in_a_level_and_nothing_else() -> None:
     assert level_hash(replace(level, start=replace(level.start, yaw=0.25))) != level_hash(level)
 
 
-def test_the_hash_of_a_spec_stays_the_same_in_other_processes_and_versions() -> None:
+def test_the_hash_of_a_spec_is_stable() -> None:
     assert spec_hash(spec()) == "9b68b2523d10bae1c3ab5338a1df4e1aed753b69b00d454206ddac5c903e4cd6"
 
 
@@ -117,8 +117,8 @@ MESSAGES: dict[str, Callable[[Card], Any]] = {
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_message(card: Card, name: str) -> None:
-    found, expected = MESSAGES[name](card), GOLDEN / f"{name}.txt"
+def test_the_message_is_as_expected(card: Card, name: str) -> None:
+    message, expected = MESSAGES[name](card), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
-        expected.write_text(found, encoding="utf-8")
-    assert found == expected.read_text(encoding="utf-8")
+        expected.write_text(message, encoding="utf-8")
+    assert message == expected.read_text(encoding="utf-8")

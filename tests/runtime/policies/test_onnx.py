@@ -1,4 +1,4 @@
-"""An exported policy, run by onnxruntime, is the policy, and says what its numbers are."""
+"""An exported policy, run by onnxruntime, equals the policy, and describes its inputs and outputs."""
 
 from __future__ import annotations
 
@@ -35,24 +35,24 @@ def check_alike(policy: Policy, model: bytes, seeds: int) -> None:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     session = onnxruntime.InferenceSession(model, options)
-    assert [each.name for each in session.get_inputs()] == [key for key, _ in policy.card.shapes]
+    assert [model_input.name for model_input in session.get_inputs()] == [key for key, _ in policy.card.shapes]
     for seed in range(seeds):
         for size in (1, 7):
-            seen = observation_of(policy.card, np.random.default_rng(seed), (size,))
-            logits, action = session.run(None, {key: each.astype(np.float32) for key, each in seen.items()})
+            observation = observation_of(policy.card, np.random.default_rng(seed), (size,))
+            logits, action = session.run(None, {key: values.astype(np.float32) for key, values in observation.items()})
             assert (logits.dtype, action.dtype, action.shape) == (np.float32, np.int64, (size, 5))
             for row in range(size):
-                one = {key: each[row] for key, each in seen.items()}
-                np.testing.assert_allclose(logits[row], policy.logits(one), rtol=2e-6, atol=1e-5)
-                assert action[row].tolist() == policy.choose(one).tolist()
+                row_observation = {key: values[row] for key, values in observation.items()}
+                np.testing.assert_allclose(logits[row], policy.logits(row_observation), rtol=2e-6, atol=1e-5)
+                assert action[row].tolist() == policy.choose(row_observation).tolist()
 
 
-def test_it_plays_as_the_policy_does(policy: Policy, model: bytes) -> None:
+def test_the_model_plays_as_the_policy(policy: Policy, model: bytes) -> None:
     check_alike(policy, model, 100)
 
 
 @pytest.mark.parametrize("level", sorted(shipped_policies()))
-def test_a_trained_policy_plays_there_as_it_does_here(level: str) -> None:
+def test_the_model_of_a_trained_policy_plays_as_the_policy(level: str) -> None:
     policy = read_policy(shipped_policies()[level])
     check_alike(policy, to_onnx(policy), 10)
 
@@ -62,22 +62,22 @@ def test_a_trained_policy_plays_there_as_it_does_here(level: str) -> None:
     [(Network((16,), "mish"), {"map": None}), (Network((8, 8, 8), "selu", (3,), kernel=5, stride=1), {})],
     ids=["no_map", "map"],
 )
-def test_networks_of_all_kinds_go_through(network: Network, map_: dict[str, None]) -> None:
+def test_other_kinds_of_networks_are_exported(network: Network, map_: dict[str, None]) -> None:
     policy = policy_of(card_of("navigation", sensors=map_, network=network))
     check_alike(policy, to_onnx(policy), 5)
 
 
-def test_it_says_what_its_numbers_are(policy: Policy, model: bytes) -> None:
-    read = onnx.load_from_string(model)
-    onnx.checker.check_model(read, full_check=True)
-    texts = {each.key: each.value for each in read.metadata_props}
+def test_the_metadata_describe_inputs_and_outputs(policy: Policy, model: bytes) -> None:
+    onnx_model = onnx.load_from_string(model)
+    onnx.checker.check_model(onnx_model, full_check=True)
+    texts = {entry.key: entry.value for entry in onnx_model.metadata_props}
     inputs, actions = json.loads(texts["inputs"]), json.loads(texts["actions"])
     shapes = dict(policy.card.shapes)
     for key, names in inputs.items():
         assert len(names) == shapes[key][0]
     assert list(inputs) == list(shapes)
     assert inputs["entities"][:4] == ["s1.x", "s1.y", "s1.z", "s2.x"]
-    assert [len(each["choices"]) for each in actions] == list(policy.card.branches)
+    assert [len(action["choices"]) for action in actions] == list(policy.card.branches)
     label = policy.card.fspa.states[-1].label
     assert json.loads(texts["states"])[-1] == {"label": label.ascii, "english": label.english}
     fspa = read_artefact(SourceFile("card", json.dumps(json.loads(texts["card"])["artefact"])))
@@ -85,6 +85,6 @@ def test_it_says_what_its_numbers_are(policy: Policy, model: bytes) -> None:
     assert texts["spec_hash"] == spec_hash(fspa)
 
 
-def test_equal_policies_give_equal_models_that_do_not_say_where_they_were_made(policy: Policy, model: bytes) -> None:
+def test_equal_policies_give_equal_models_without_paths(policy: Policy, model: bytes) -> None:
     assert to_onnx(policy) == model
     assert b".py" not in model and b"/lib/" not in model

@@ -1,4 +1,4 @@
-"""Policies come back from their files as they were, and whatever else a file holds is answered in plain words."""
+"""Policy files: policies are read as they were written, and other content is rejected with a clear message."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _policy() -> Policy:
     activation=st.sampled_from(("elu", "relu", "tanh")),
     seed=st.integers(0, 2**30),
 )
-def test_a_policy_comes_back_and_plays_alike(
+def test_a_policy_is_read_unchanged_and_plays_the_same(
     level: str, map_: dict[str, None], hidden: list[int], activation: Any, seed: int
 ) -> None:
     policy = policy_of(card_of(level, sensors=map_, network=Network(tuple(hidden), activation)), seed)
@@ -52,11 +52,11 @@ def test_a_policy_comes_back_and_plays_alike(
     assert to_bytes(again) == data
     rng = np.random.default_rng(seed)
     for _ in range(5):
-        seen = observation_of(policy.card, rng)
-        assert again.logits(seen).tobytes() == policy.logits(seen).tobytes()
+        observation = observation_of(policy.card, rng)
+        assert again.logits(observation).tobytes() == policy.logits(observation).tobytes()
 
 
-def test_no_file_is_written_that_is_too_large_to_be_read(
+def test_a_policy_that_is_too_large_to_be_read_is_not_written(
     policy: Policy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, card = tmp_path / "policy.safetensors", policy.card
@@ -72,28 +72,28 @@ def test_no_file_is_written_that_is_too_large_to_be_read(
     check_size(card.network, card.fspa, card.sensors)
 
 
-def test_the_weights_are_those_of_the_moment_rounded_to_half_precision(policy: Policy) -> None:
+def test_a_policy_copies_its_weights_in_half_precision(policy: Policy) -> None:
     actor = new_actor(policy.card)
     made = Policy(policy.card, actor.state_dict())
     before = to_bytes(made)
     with torch.no_grad():
-        for each in actor.parameters():
-            each.add_(1.0)
+        for weight in actor.parameters():
+            weight.add_(1.0)
     assert to_bytes(made) == before
-    for name, each in new_actor(policy.card).state_dict().items():
+    for name, weight in new_actor(policy.card).state_dict().items():
         kept = made.actor.state_dict()[name]
-        assert kept.dtype == each.dtype == torch.float32
+        assert kept.dtype == weight.dtype == torch.float32
         assert torch.equal(kept, kept.half().float())
 
 
-def test_making_and_reading_policies_draws_no_random_numbers(policy: Policy) -> None:
+def test_making_and_reading_policies_uses_no_random_numbers(policy: Policy) -> None:
     state = torch.get_rng_state()
     from_bytes(to_bytes(Policy(policy.card, policy.weights())), "it")
     assert torch.equal(torch.get_rng_state(), state)
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e6])
-def test_weights_that_no_file_holds_make_no_policy(policy: Policy, value: float) -> None:
+def test_weights_outside_half_precision_are_rejected(policy: Policy, value: float) -> None:
     actor = new_actor(policy.card)
     with torch.no_grad():
         actor.mlp[0].bias[3] = value
@@ -101,16 +101,16 @@ def test_weights_that_no_file_holds_make_no_policy(policy: Policy, value: float)
         Policy(policy.card, actor.state_dict())
 
 
-def test_weights_of_another_network_make_no_policy(policy: Policy) -> None:
+def test_weights_of_another_network_are_rejected(policy: Policy) -> None:
     other = replace(policy.card, network=Network(hidden=(7,)))
     with pytest.raises(ValueError, match="of another network"):
         Policy(other, policy.weights())
 
 
-def test_a_file_is_written_whole(tmp_path: Path, policy: Policy) -> None:
+def test_a_file_is_written_without_temporary_files(tmp_path: Path, policy: Policy) -> None:
     path = tmp_path / "bot.safetensors"
     write_policy(path, policy)
-    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
     assert read_policy(path).card == policy.card
     with pytest.raises(TltlError, match="TLT0005"):
         write_policy(tmp_path / "nowhere" / "bot.safetensors", policy)
@@ -118,7 +118,7 @@ def test_a_file_is_written_whole(tmp_path: Path, policy: Policy) -> None:
         read_policy(tmp_path / "none.safetensors")
 
 
-def test_safetensors_alone_reads_it(tmp_path: Path, policy: Policy) -> None:
+def test_safetensors_alone_reads_a_policy_file(tmp_path: Path, policy: Policy) -> None:
     write_policy(tmp_path / "bot.safetensors", policy)
     with safe_open(tmp_path / "bot.safetensors", framework="np") as file:
         card = json.loads(file.metadata()["card"])
@@ -129,12 +129,12 @@ def test_safetensors_alone_reads_it(tmp_path: Path, policy: Policy) -> None:
     assert card["artefact"]["spec"]["name"] == "branching"
 
 
-def test_a_record_that_is_not_json_is_refused_at_once(policy: Policy) -> None:
+def test_a_record_that_is_not_json_is_rejected(policy: Policy) -> None:
     with pytest.raises(ValueError, match="JSON"):
         to_bytes(Policy(replace(policy.card, training={"loss": float("nan")}), policy.weights()))
 
 
-# --- files that nobody vouches for ------------------------------------------------------------------
+# --- untrusted files --------------------------------------------------------------------------------
 
 Change = Callable[[dict[str, torch.Tensor], dict[str, Any]], Any]
 
@@ -148,8 +148,8 @@ def edited(policy: Policy, change: Change) -> bytes:
 
 
 def header_of(data: bytes) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])
-    return found
+    header: dict[str, Any] = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])
+    return header
 
 
 def with_header(header: bytes, rest: bytes = b"") -> bytes:
@@ -172,7 +172,7 @@ def network(**fields: Any) -> Change:
 
 
 def widen(card: dict[str, Any], extent: int) -> None:
-    """A map of another extent, everywhere alike."""
+    """Change the extent of the map consistently in sensors and shapes."""
     card["sensors"]["map"]["extent"] = extent
     shapes = dict(card["shapes"])
     shapes["map"][1:] = [extent, extent]
@@ -239,7 +239,7 @@ BIAS = "actor.mlp.0.bias"
         (tensor(BIAS, spoilt(float("-inf"))), f"TLT0842.*`{BIAS}` has values"),
     ],
 )
-def test_an_edited_file_is_refused_with_the_reason(policy: Policy, change: Change, said: str) -> None:
+def test_an_edited_file_is_rejected_with_the_reason(policy: Policy, change: Change, said: str) -> None:
     assert re.search(said, refused(edited(policy, change)), re.DOTALL)
 
 
@@ -258,11 +258,11 @@ def test_an_edited_file_is_refused_with_the_reason(policy: Policy, change: Chang
         b"\0" * (MAX_BYTES + 1),
     ],
 )
-def test_what_is_no_policy_is_refused(data: bytes) -> None:
+def test_data_that_is_no_policy_is_rejected(data: bytes) -> None:
     assert "TLT0840" in refused(data)
 
 
-def test_a_torn_file_is_refused_wherever_it_ends(policy: Policy) -> None:
+def test_a_truncated_file_is_rejected(policy: Policy) -> None:
     data = to_bytes(policy)
     for end in (*range(60), *random.Random(1).sample(range(len(data)), 60), len(data) - 1):
         assert "TLT0840" in refused(data[:end])
@@ -270,7 +270,7 @@ def test_a_torn_file_is_refused_wherever_it_ends(policy: Policy) -> None:
 
 
 @pytest.mark.parametrize("offsets", [[0, 2], [-1, 3], [10**30, 10**30 + 2], "x", None])
-def test_tensors_that_overlap_or_lie_outside_are_refused(policy: Policy, offsets: Any) -> None:
+def test_overlapping_or_outside_tensors_are_rejected(policy: Policy, offsets: Any) -> None:
     data = to_bytes(policy)
     header = header_of(data)
     header[BIAS]["data_offsets"] = offsets
@@ -282,7 +282,7 @@ def test_tensors_that_overlap_or_lie_outside_are_refused(policy: Policy, offsets
     max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
 )
 @given(data=st.data())
-def test_a_changed_byte_is_refused_or_gives_another_policy(policy: Policy, data: st.DataObject) -> None:
+def test_a_changed_byte_is_rejected_or_gives_a_valid_policy(policy: Policy, data: st.DataObject) -> None:
     written = bytearray(to_bytes(policy))
     length = 8 + int.from_bytes(written[:8], "little")
     place = data.draw(st.one_of(st.integers(0, length - 1), st.integers(0, len(written) - 1)))
@@ -306,8 +306,8 @@ MESSAGES: dict[str, Callable[[Policy], str]] = {
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_message(policy: Policy, name: str) -> None:
-    found, expected = MESSAGES[name](policy), GOLDEN / f"{name}.txt"
+def test_the_message_is_as_expected(policy: Policy, name: str) -> None:
+    message, expected = MESSAGES[name](policy), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
-        expected.write_text(found, encoding="utf-8")
-    assert found == expected.read_text(encoding="utf-8")
+        expected.write_text(message, encoding="utf-8")
+    assert message == expected.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""docs/policy-file.md describes the files that are written, and its programs run."""
+"""docs/policy-file.md describes the written files, and its programs run."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_every_key_of_a_card_is_there(folder: Path) -> None:
+def test_the_page_lists_every_key_of_a_card(folder: Path) -> None:
     with safe_open(folder / "bot.safetensors", framework="np") as file:
         assert list(file.metadata()) == ["card"]
         assert set(json.loads(file.metadata()["card"])) == keys("| key of `card` |")
 
 
-def test_every_text_of_a_model_is_there(folder: Path) -> None:
+def test_the_page_lists_the_metadata_of_a_model(folder: Path) -> None:
     onnxruntime = pytest.importorskip("onnxruntime")
     meta = onnxruntime.InferenceSession(folder / "bot.onnx").get_modelmeta()
     assert set(meta.custom_metadata_map) == keys("| metadata |")
@@ -47,7 +47,7 @@ def test_every_text_of_a_model_is_there(folder: Path) -> None:
 @pytest.mark.parametrize(
     "program", [block for block in blocks(PAGE) if block.kind == "python"], ids=lambda block: f"line {block.line}"
 )
-def test_its_programs_run(
+def test_the_programs_on_the_page_run(
     program: Block, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if "onnxruntime" in program.text:

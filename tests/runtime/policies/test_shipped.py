@@ -1,4 +1,4 @@
-"""The policies that come with the package play the levels that they are named for, with the specs made for these."""
+"""The shipped policies play the levels that they are named after, with the specs of the levels."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 RECORD = Path(__file__).parents[3] / "docs" / "training.md"
 
 
-def test_they_are_found_by_the_names_of_levels() -> None:
+def test_shipped_policies_are_found_by_the_names_of_levels() -> None:
     assert set(shipped_policies()) == set(level_names())
     assert all(shipped_policy(name) == path for name, path in shipped_policies().items())
     assert shipped_policy("../shipped/navigation") is None
@@ -26,7 +26,7 @@ def test_they_are_found_by_the_names_of_levels() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(shipped_policies()))
-def test_a_shipped_policy_fits_its_level_as_it_is_now(name: str) -> None:
+def test_a_shipped_policy_fits_its_current_level(name: str) -> None:
     path = shipped_policies()[name]
     policy = read_policy(path)
     level = load_level(name)
