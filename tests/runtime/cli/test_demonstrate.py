@@ -41,12 +41,12 @@ def test_equal_episodes_are_rewritten_and_other_files_are_kept(tltlc, tmp_path: 
 
 
 def test_other_pictures_are_not_overwritten(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    mine = tmp_path / "cover_and_hide-v0-0.png"
-    mine.write_text("mine")
+    other_picture = tmp_path / "cover_and_hide-v0-0.png"
+    other_picture.write_text("mine")
     tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path))
-    assert mine.read_text() == "mine"
+    assert other_picture.read_text() == "mine"
     stem = "cover_and_hide-v0-0-2"
-    assert {path.name for path in tmp_path.iterdir()} == {mine.name, f"{stem}.png", f"{stem}.episode.npz"}
+    assert {path.name for path in tmp_path.iterdir()} == {other_picture.name, f"{stem}.png", f"{stem}.episode.npz"}
 
 
 def test_a_failed_episode_gives_status_1(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

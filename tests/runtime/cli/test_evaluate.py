@@ -90,13 +90,13 @@ def test_the_json_report(tltlc: Run, policy: Path) -> None:  # noqa: F811
 
 
 def test_the_report_does_not_overwrite_an_input(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
-    mine = tmp_path / "mine.safetensors"
-    shutil.copy(policy, mine)
-    result = tltlc("evaluate", mine, "--episodes", "1", "--json", mine)
+    copied_policy = tmp_path / "mine.safetensors"
+    shutil.copy(policy, copied_policy)
+    result = tltlc("evaluate", copied_policy, "--episodes", "1", "--json", copied_policy)
     assert result.status == 2
-    assert f"`{mine}` would be written over: it is an input" in result.err
+    assert f"`{copied_policy}` would be written over: it is an input" in result.err
     assert "played" not in result.err
-    assert mine.read_bytes() == policy.read_bytes()
+    assert copied_policy.read_bytes() == policy.read_bytes()
 
 
 def test_a_policy_deleted_during_the_evaluation_is_still_identified(
@@ -105,10 +105,10 @@ def test_a_policy_deleted_during_the_evaluation_is_still_identified(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    mine, play = tmp_path / "mine.safetensors", Player.play
-    shutil.copy(policy, mine)
-    monkeypatch.setattr(Player, "play", lambda self, task: mine.unlink(missing_ok=True) or play(self, task))
-    result = tltlc("evaluate", mine, "--episodes", "1", "--json", "-")
+    copied_policy, play = tmp_path / "mine.safetensors", Player.play
+    shutil.copy(policy, copied_policy)
+    monkeypatch.setattr(Player, "play", lambda self, task: copied_policy.unlink(missing_ok=True) or play(self, task))
+    result = tltlc("evaluate", copied_policy, "--episodes", "1", "--json", "-")
     assert result.status == 0, result.err
     assert json.loads(result.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()
 
@@ -243,9 +243,9 @@ def test_the_folder_of_a_training_names_the_file_of_its_level(
     monkeypatch.chdir(folder)
     result = tltlc("evaluate", folder, "--episodes", "1", "--json", "-")
     assert (json.loads(result.out)["level"], result.status) == ("vault", 0)
-    alone = tltlc("evaluate", "policy.safetensors", "--episodes", "1")
-    assert (alone.status, alone.out) == (2, "")
-    assert alone.err == (
+    without_folder = tltlc("evaluate", "policy.safetensors", "--episodes", "1")
+    assert (without_folder.status, without_folder.out) == (2, "")
+    assert without_folder.err == (
         "error[TLT0800]: there is no level `vault`: the policy was trained on a level of your own\n"
         "  help: name its file: `tltlc evaluate policy.safetensors --level vault.toml`\n"
     )

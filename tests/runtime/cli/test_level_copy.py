@@ -16,9 +16,9 @@ from tltl_runtime.stealth.recordings.file import read_episode
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_copy_is_complete(tltlc, inside: Path, name: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    made: Outcome = tltlc("new", "mine", "--level", name)
-    assert made.status == 0
-    assert made.err.endswith(f"Next: tltlc check --level mine/{name}.toml\n")
+    created: Outcome = tltlc("new", "mine", "--level", name)
+    assert created.status == 0
+    assert created.err.endswith(f"Next: tltlc check --level mine/{name}.toml\n")
     level = load_level(f"mine/{name}.toml")
     assert level.spec == f"mine/{name}.tltl:{'unseen' if name == 'vault' else name}"
     assert all((Path("mine") / file).is_file() for file, _ in level.files)

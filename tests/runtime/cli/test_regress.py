@@ -209,9 +209,9 @@ def test_changed_runs_only_the_cases_that_depend_on_the_files(tltlc: Run, game: 
     ]
     report = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert (report["left_out"], report["complete"], len(report["cases"])) == (NAMES[:2], True, 1)
-    both = tltlc("regress", "game.toml", *ONE, "--changed", "soon", "--changed", "guard_alert.toml", "easy")
-    assert verdicts(both.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
-    assert "left out" not in both.err
+    all_cases = tltlc("regress", "game.toml", *ONE, "--changed", "soon", "--changed", "guard_alert.toml", "easy")
+    assert verdicts(all_cases.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    assert "left out" not in all_cases.err
 
 
 @pytest.mark.parametrize("words", [[], ["README.md", "src/game.py"]])
@@ -277,12 +277,12 @@ def test_each_report_can_be_written_to_standard_output(
 
 
 def test_only_one_report_goes_to_standard_output(tltlc: Run, game: Path) -> None:  # noqa: F811
-    both = "both need standard output: write"
+    reason = "both need standard output: write"
     for words, message in {
-        ("--json", "-", "--html", "-"): f"`--json -` and `--html -` {both} the page to a file",
-        ("--junit", "/dev/stdout", "--html", "-"): f"`--junit /dev/stdout` and `--html -` {both} the page to a file",
-        ("--github", "--junit", "-"): f"--github and `--junit -` {both} the XML to a file",
-        ("--github", "--json", "-"): f"--github and `--json -` {both} the JSON to a file",
+        ("--json", "-", "--html", "-"): f"`--json -` and `--html -` {reason} the page to a file",
+        ("--junit", "/dev/stdout", "--html", "-"): f"`--junit /dev/stdout` and `--html -` {reason} the page to a file",
+        ("--github", "--junit", "-"): f"--github and `--junit -` {reason} the XML to a file",
+        ("--github", "--json", "-"): f"--github and `--json -` {reason} the JSON to a file",
     }.items():
         result = tltlc("regress", "game.toml", *words)
         assert (result.status, result.out) == (2, "") and message in result.err

@@ -75,5 +75,5 @@ def test_the_page_of_the_shipped_suite_explains_its_findings(tmp_path: Path, sui
     assert "<h1>Regression report: shipped</h1>" in text
     assert "Its variants v1 and v2 were changed on purpose" in text
     assert '"suite": "suite.toml"' in json_text(shipped), "the file's name"
-    own = page(Outcome(suite, tmp_path, (), True))
-    assert "<h1>Regression report: game</h1>" in own and "on purpose" not in own
+    other_text = page(Outcome(suite, tmp_path, (), True))
+    assert "<h1>Regression report: game</h1>" in other_text and "on purpose" not in other_text

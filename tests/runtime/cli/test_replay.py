@@ -204,7 +204,7 @@ def test_frames_show_the_view_and_the_strip(episode: Episode) -> None:
     assert (again == other)[-STRIP:].all()
 
 
-def test_a_small_film_shows_how_it_ended(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_a_small_film_shows_the_end(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     last = episode.snapshots[-1].time
     before, after = frames(replace(episode, end="violation"), [last - 0.01, last], "plan", (320, 240))
     assert (before[-STRIP:] != after[-STRIP:]).any()

@@ -109,20 +109,20 @@ def _training(slug: str) -> None:
         (folder / name).touch()
 
 
-def _edited(*_: object) -> Retrained:
+def _level_edited(*_: object) -> Retrained:
     raise TltlError([Diagnostic("TLT0905", "`room.toml` changed while `edited` was played")])
 
 
-def _left(*_: object) -> Retrained:
+def _left_the_level(*_: object) -> Retrained:
     raise WorldError(load_level("navigation"), 3, "player", "it left")
 
 
-def _told(*_: object) -> Retrained:
+def _no_way(*_: object) -> Retrained:
     trained = Trained("minutes", 100, 1.0, 10, False, None)
     return Retrained("no_way", "no way found", trained, figures_of(several(0, 25)), (0.0, 0.2), None, "policy", None)
 
 
-def _lost(*_: object) -> Retrained:
+def _worker_lost(*_: object) -> Retrained:
     raise TltlError([Diagnostic("TLT0850", "a worker was lost")])
 
 
@@ -141,7 +141,7 @@ def test_an_error_in_one_training_does_not_stop_the_others(
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _write_three_cases(monkeypatch, _edited, _left, _told)
+    _write_three_cases(monkeypatch, _level_edited, _left_the_level, _no_way)
     result = tltlc(*RETRAIN, "--json", "report.json")
     assert result.status == 1
     lines = result.err.splitlines()
@@ -159,7 +159,7 @@ def test_a_lost_worker_ends_the_run(
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _write_three_cases(monkeypatch, _lost, _told)
+    _write_three_cases(monkeypatch, _worker_lost, _no_way)
     result = tltlc(*RETRAIN)
     assert "error[TLT0850]: a worker was lost" in result.err and "trained anew" not in result.out
 
@@ -169,7 +169,7 @@ def test_fresh_moves_older_trainings_aside(
     game: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    _write_three_cases(monkeypatch, _lost)
+    _write_three_cases(monkeypatch, _worker_lost)
     for slug in ("edited", "told"):
         _training(slug)
     result = tltlc(*RETRAIN, "--fresh")

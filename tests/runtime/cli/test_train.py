@@ -101,11 +101,11 @@ def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Pa
     result = tltlc("train", EXAMPLE, "--config", "small.toml", "--seed", "3")
     folder = Path("training/cover_and_hide-v0-cover_and_hide-3")
     assert result.status == 1, result.err
-    first, files, evaluate, on = result.out.splitlines()
+    first, files, evaluation, resumed = result.out.splitlines()
     assert re.fullmatch(r"ended by the limit of steps after 128 steps, \d+ s: no episode has ended", first)
     assert files == f"{folder}: policy.safetensors, record.json, curve.png"
-    assert evaluate == f"to evaluate it: tltlc evaluate {folder}"
-    assert on == f"to go on, with a higher limit: tltlc train --resume {folder} --steps N"
+    assert evaluation == f"to evaluate it: tltlc evaluate {folder}"
+    assert resumed == f"to go on, with a higher limit: tltlc train --resume {folder} --steps N"
     assert result.err.splitlines()[-1].startswith("iteration 2: 128 steps in ")
 
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128]
@@ -117,8 +117,8 @@ def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Pa
     assert card.training == record
     assert (card.level, card.variant, card.level_hash) == ("cover_and_hide", "v0", record["level_hash"])
 
-    on = tltlc("train", "--resume", str(folder), "--steps", "192")
-    assert on.status == 1, on.err
+    resumed = tltlc("train", "--resume", str(folder), "--steps", "192")
+    assert resumed.status == 1, resumed.err
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192]
     assert json.loads((folder / "record.json").read_text())["iterations"] == 3
 
@@ -126,12 +126,12 @@ def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Pa
 @pytest.mark.usefixtures("run")
 def test_a_training_killed_at_its_limit_is_finished_when_it_resumes(tltlc: TltlcFunction) -> None:  # noqa: F811
     folder = Path("run")
-    before, begun = (folder / "checkpoint.pt").read_bytes(), (folder / "run.json").read_bytes()
+    before, description = (folder / "checkpoint.pt").read_bytes(), (folder / "run.json").read_bytes()
     tltlc("train", "--resume", "run", "--steps", "256")
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192, 256]
     # The same files as if it had been killed after its second iteration, in which it reached its limit.
     (folder / "checkpoint.pt").write_bytes(before)
-    (folder / "run.json").write_bytes(begun)
+    (folder / "run.json").write_bytes(description)
     (folder / "record.json").unlink()
     result = tltlc("train", "--resume", "run")
     assert result.status == 1
@@ -173,8 +173,10 @@ def test_without_a_checkpoint_a_training_starts_again(tltlc: TltlcFunction) -> N
 
 
 def test_differing_sensors_are_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    begun = ("--no-map", "--entities", "s1,exit", "--variables", "health")
-    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--steps", "64", "--out", "it", *begun).status == 1
+    options_at_start = ("--no-map", "--entities", "s1,exit", "--variables", "health")
+    assert (
+        tltlc("train", EXAMPLE, "--config", "small.toml", "--steps", "64", "--out", "it", *options_at_start).status == 1
+    )
     options = ("--map", "cell=1,types=wall,low", "--entities", "s1", "--variables", "distance(exit)")
     rejected = tltlc("train", "--resume", "it", *options)
     assert re.findall(r"^error\[TLT0870\]: the training in `it` senses as (.*)$", rejected.err, re.MULTILINE) == [
@@ -352,12 +354,12 @@ def test_invalid_options_are_rejected(
 
 
 def test_a_settings_file_changes_only_the_settings_it_contains(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    begun = ("--config", "small.toml", "--out", "it", "--steps", "64", "--workers", "2", "--minutes", "60")
-    assert tltlc("train", EXAMPLE, *begun).status == 1
+    options = ("--config", "small.toml", "--out", "it", "--steps", "64", "--workers", "2", "--minutes", "60")
+    assert tltlc("train", EXAMPLE, *options).status == 1
     settings = json.loads(Path("it/run.json").read_text())["settings"]
     Path("more.toml").write_text("checkpoint_s = 5\n[stop]\nsteps = 128\n")
-    on = tltlc("train", "--resume", "it", "--config", "more.toml")
-    assert on.status == 1, on.err
+    resumed = tltlc("train", "--resume", "it", "--config", "more.toml")
+    assert resumed.status == 1, resumed.err
     settings["checkpoint_s"], settings["stop"]["steps"] = 5.0, 128
     assert json.loads(Path("it/run.json").read_text())["settings"] == settings
 
@@ -391,9 +393,9 @@ def test_the_effective_settings_are_printed(tltlc: TltlcFunction, here: Path) ->
     result = tltlc("train", "--print-config", "--config", "small.toml", "--minutes", "0.5", "--device", "cuda")
     assert result.status == 0, result.err
     Path("all.toml").write_text(result.out)
-    wanted = read_settings(here / "small.toml")
-    wanted = replace(wanted, device="cuda", stop=replace(wanted.stop, minutes=0.5))
-    assert read_settings(here / "all.toml") == wanted
+    expected = read_settings(here / "small.toml")
+    expected = replace(expected, device="cuda", stop=replace(expected.stop, minutes=0.5))
+    assert read_settings(here / "all.toml") == expected
     assert "envs = 4                # environments, of each process of torchrun" in result.out.splitlines()
     assert len(result.out.splitlines()) == len(default_text().splitlines())
 
@@ -409,8 +411,8 @@ def test_a_training_ended_by_a_signal_resumes(tltlc: TltlcFunction, here: Path, 
     assert process.returncode == status
     assert err.splitlines()[-1] == "stopped; to go on: tltlc train --resume run"
     done = len(read_metrics(here / "run" / METRICS))
-    on = tltlc("train", "--resume", "run", "--steps", str(64 * (done + 1)))
-    assert on.status == 1, on.err
+    resumed = tltlc("train", "--resume", "run", "--steps", str(64 * (done + 1)))
+    assert resumed.status == 1, resumed.err
     assert [line["iteration"] for line in read_metrics(here / "run" / METRICS)] == list(range(1, done + 2))
 
 

@@ -128,10 +128,10 @@ def test_the_level_of_the_policy_may_be_missing_if_another_is_named(tltlc: Tltlc
     Path("own.tltl").write_text(SOON.replace("level cover_and_hide", "level plan"))
     spec = ("own.tltl", "--config", "small.toml")
     assert tltlc("train", *spec, "--out", "first").status == 0
-    alone = ("--from", "first/policy.safetensors")
-    started = tltlc("train", *spec, *alone, "--out", "second")
+    from_file = ("--from", "first/policy.safetensors")
+    started = tltlc("train", *spec, *from_file, "--out", "second")
     assert started.status == 0, started.err
-    assert "error[TLT0800]: there is no level `plan`" in tltlc("train", *alone).err
+    assert "error[TLT0800]: there is no level `plan`" in tltlc("train", *from_file).err
     Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
     assert tltlc("train", *spec, "--from", "first", "--out", "third", "--steps", "64").status == 1
     Path("third/checkpoint.pt").unlink()
@@ -142,12 +142,12 @@ def test_the_level_of_the_policy_may_be_missing_if_another_is_named(tltlc: Tltlc
 
 
 def test_settings_that_agree_with_the_network_are_accepted(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    own = read_policy("old.safetensors").card.network
-    assert own.hidden != (512, 512)
-    Path("same.toml").write_text(f'[network]\nactivation = "{own.activation}"\n')
+    network = read_policy("old.safetensors").card.network
+    assert network.hidden != (512, 512)
+    Path("same.toml").write_text(f'[network]\nactivation = "{network.activation}"\n')
     result = tltlc("train", "--from", "old.safetensors", "--config", "same.toml", "--print-config")
     assert result.status == 0, result.err
-    assert f"hidden = {list(own.hidden)}" in result.out
+    assert f"hidden = {list(network.hidden)}" in result.out
 
 
 def test_the_initial_policy_is_not_announced_again_on_resume(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811

@@ -33,8 +33,8 @@ def test_the_line_of_an_iteration(stop: Stop) -> None:
         "reward 0.65, 2,048 steps/s, at most 29 min 13 s left"
     )
     assert line(replace(late, stop="met"), stop).endswith("2,048 steps/s")
-    over = replace(late, stop="met", iteration=replace(late.iteration, steps=0, collect_s=0.0, learn_s=0.0))
-    assert line(over, stop).endswith("reward 0.65")
+    without_times = replace(late, stop="met", iteration=replace(late.iteration, steps=0, collect_s=0.0, learn_s=0.0))
+    assert line(without_times, stop).endswith("reward 0.65")
 
 
 @pytest.mark.parametrize(

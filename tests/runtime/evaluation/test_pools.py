@@ -101,8 +101,8 @@ def test_only_failures_are_recorded_if_requested(recorded: Recorded) -> None:
     )
     failed = [not result.played.success for result in played_results]
     assert set(failed) == {True, False}
-    wanted = {"none": [False] * 6, "failures": failed, "all": [True] * 6}
-    assert [bool(result.recording) for result in played_results] == wanted[recorded]
+    expected_recordings = {"none": [False] * 6, "failures": failed, "all": [True] * 6}
+    assert [bool(result.recording) for result in played_results] == expected_recordings[recorded]
 
 
 def out_of_the_level() -> None:

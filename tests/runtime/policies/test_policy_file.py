@@ -74,14 +74,14 @@ def test_a_policy_that_is_too_large_to_be_read_is_not_written(
 
 def test_a_policy_copies_its_weights_in_half_precision(policy: Policy) -> None:
     actor = new_actor(policy.card)
-    made = Policy(policy.card, actor.state_dict())
-    before = to_bytes(made)
+    new_policy = Policy(policy.card, actor.state_dict())
+    before = to_bytes(new_policy)
     with torch.no_grad():
         for weight in actor.parameters():
             weight.add_(1.0)
-    assert to_bytes(made) == before
+    assert to_bytes(new_policy) == before
     for name, weight in new_actor(policy.card).state_dict().items():
-        kept = made.actor.state_dict()[name]
+        kept = new_policy.actor.state_dict()[name]
         assert kept.dtype == weight.dtype == torch.float32
         assert torch.equal(kept, kept.half().float())
 
@@ -288,10 +288,10 @@ def test_a_changed_byte_is_rejected_or_gives_a_valid_policy(policy: Policy, data
     place = data.draw(st.one_of(st.integers(0, length - 1), st.integers(0, len(written) - 1)))
     written[place] ^= data.draw(st.integers(1, 255))
     try:
-        made = from_bytes(bytes(written), "it")
+        read = from_bytes(bytes(written), "it")
     except TltlError:
         return
-    assert np.isfinite(made.logits(observation_of(made.card, np.random.default_rng(0)))).all()
+    assert np.isfinite(read.logits(observation_of(read.card, np.random.default_rng(0)))).all()
 
 
 # --- messages ---------------------------------------------------------------------------------------

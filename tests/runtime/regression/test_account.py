@@ -86,11 +86,11 @@ def test_the_closest_approach_is_the_least_distance_to_the_target() -> None:
 
 def test_findings_compare_failures_with_the_baseline() -> None:
     now, before = samples.cover_and_hide_failed(), samples.cover_and_hide_met()
-    accounts, used = (
+    accounts, baseline_accounts = (
         [samples.account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
     )
-    stage, *ends = findings(now[0].level, now[0].fspa, accounts, used)
+    stage, *ends = findings(now[0].level, now[0].fspa, accounts, baseline_accounts)
     assert stage.text.endswith("before: in 2 of 2 episodes") and stage.episodes
     assert ends
     assert all("`guard`" in end.text and "before: in 0 of 2 episodes" in end.text for end in ends)
-    assert findings(before[0].level, before[0].fspa, used, used)[0].text.endswith("as before")
+    assert findings(before[0].level, before[0].fspa, baseline_accounts, baseline_accounts)[0].text.endswith("as before")

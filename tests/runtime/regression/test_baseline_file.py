@@ -122,25 +122,27 @@ def test_a_file_that_is_no_baseline_is_rejected(tmp_path: Path, text: str) -> No
 
 def test_a_reference_is_found_although_the_level_has_changed() -> None:
     references = (reference(variant="v1"), reference(several(2)))
-    wanted = replace(PLAYED, level_hash="0" * 64, files=(), versions={})
-    assert reference_of(references, wanted, SUITE) == references[1]
+    identity = replace(PLAYED, level_hash="0" * 64, files=(), versions={})
+    assert reference_of(references, identity, SUITE) == references[1]
 
 
 def test_levels_with_the_same_name_are_told_apart() -> None:
-    known = tuple(reference(several(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new")))
-    for each in known:
-        assert reference_of(known, replace(PLAYED, place=each.played.place), SUITE) == each
+    references = tuple(
+        reference(several(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new"))
+    )
+    for each in references:
+        assert reference_of(references, replace(PLAYED, place=each.played.place), SUITE) == each
     # A shipped level has no place, and is told apart from user levels, too.
     shipped = reference(several(3), place="")
-    for each in ((shipped, *known), (*known, shipped)):
+    for each in ((shipped, *references), (*references, shipped)):
         assert [reference_of(each, replace(PLAYED, place=place), SUITE) for place in ("old/room.toml", "")] == [
-            known[0],
+            references[0],
             shipped,
         ]
         with pytest.raises(TltlError, match="no figures of `other/room"):
             reference_of(each, replace(PLAYED, place="other/room.toml"), SUITE)
     with pytest.raises(TltlError, match="no figures of `other/room"):
-        reference_of(known, replace(PLAYED, place="other/room.toml"), SUITE)
+        reference_of(references, replace(PLAYED, place="other/room.toml"), SUITE)
 
 
 @pytest.mark.parametrize(

@@ -29,13 +29,13 @@ def most(error: float) -> int:
 def ever_outside(rate: float, error: float, seed: int, interval: object = rate_interval) -> int:
     """The number of sequences in which the rate is ever outside its interval."""
     met = np.random.default_rng(seed).random((SEQUENCES, EPISODES)) < rate
-    known: dict[tuple[int, int], bool] = {}
+    outside: dict[tuple[int, int], bool] = {}
 
     def is_outside(passed: int, failed: int) -> bool:
-        if (passed, failed) not in known:
+        if (passed, failed) not in outside:
             low, high = interval(passed, failed, error)  # type: ignore[operator]
-            known[passed, failed] = not low <= rate <= high
-        return known[passed, failed]
+            outside[passed, failed] = not low <= rate <= high
+        return outside[passed, failed]
 
     counts = met.cumsum(axis=1)
     return sum(

@@ -251,8 +251,8 @@ def test_the_libraries_of_a_project_count(suite: Suite) -> None:
 def test_a_shipped_case_depends_on_all_files_of_its_level() -> None:
     suite = read_suite(SHIPPED)
     for case in suite.cases:
-        known = dependencies(suite, case)
+        paths = dependencies(suite, case)
         for name, _ in load_level(case.level, case.variant).files:
-            assert (LEVELS / name).resolve() in known
-        assert shipped_policy(case.level) in known
+            assert (LEVELS / name).resolve() in paths
+        assert shipped_policy(case.level) in paths
     assert concerned(suite, "guard_thorough") == [5, 8]

@@ -339,8 +339,8 @@ def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fsp
     near = Nearest("visible", -1.0, MIDDLE, wanted=False)
     now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert "; the limit is that `visible` holds; " in sentences(level, fspa, now)[1]
-    open_ = [replace(account, nearest=Nearest("open", -1.0, MIDDLE)) for account in now]
-    assert "; the limit is `open`; " in sentences(level, fspa, open_)[1]
+    with_open = [replace(account, nearest=Nearest("open", -1.0, MIDDLE)) for account in now]
+    assert "; the limit is `open`; " in sentences(level, fspa, with_open)[1]
 
 
 def test_the_order_of_killers_does_not_count(level: Level, fspa: Fspa) -> None:
@@ -379,7 +379,7 @@ def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None
 
 def test_findings_refer_to_existing_episodes(level: Level, fspa: Fspa) -> None:
     now = [made(index, index % 3 > 0, states=states_after(fspa, index % 4)) for index in range(30)]
-    known = {account.index for account in now}
+    indices = {account.index for account in now}
     for finding in findings(level, fspa, now, successes(fspa)):
-        assert set(finding.episodes) <= known
+        assert set(finding.episodes) <= indices
         assert list(finding.episodes) == sorted(set(finding.episodes))

@@ -56,8 +56,8 @@ def test_a_command_names_the_changed_file(suite: Suite) -> None:
     assert annotated(suite, report)[1] == "game/game.toml", "nothing has changed"
     changed = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64)))
     assert annotated(suite, replace(report, played=changed))[1] == "game/levels/assets/guard.toml"
-    both = replace(PLAYED, files=(("room.toml", "0" * 64), ("assets/guard.toml", "0" * 64)))
-    assert annotated(suite, replace(report, played=both))[1] == "game/levels/assets/guard.toml"
+    both_changed = replace(PLAYED, files=(("room.toml", "0" * 64), ("assets/guard.toml", "0" * 64)))
+    assert annotated(suite, replace(report, played=both_changed))[1] == "game/levels/assets/guard.toml"
 
 
 def test_an_unreadable_file_is_not_named(suite: Suite) -> None:

@@ -51,8 +51,8 @@ SUITE: Suite = suite(case("room:v0"), case("room:v1"), case("room:v2"), path=Pat
 
 def check(element: ET.Element) -> None:
     """Check an element and its children against the schema."""
-    known, needed, children = RULES[element.tag]
-    assert needed <= set(element.attrib) <= known, element.tag
+    allowed, required, children = RULES[element.tag]
+    assert required <= set(element.attrib) <= allowed, element.tag
     assert {child.tag for child in element} <= children
     if element.tag not in TEXTS:
         assert not (element.text or "").strip()

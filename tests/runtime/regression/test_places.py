@@ -94,7 +94,7 @@ def test_a_solid_behind_another_one_is_not_in_the_way(level: Level) -> None:
     low = (pillar.box.high[0], pillar.box.low[1], 0.0)
     behind = replace(pillar, name="behind", box=Box(low, (low[0] + 1.0, pillar.box.high[1], 3.0)))
     thin = replace(pillar, box=Box((low[0] - 0.2, low[1], 0.0), pillar.box.high))
-    both = replace(level, solids=(*(solid for solid in level.solids if solid is not pillar), thin, behind))
+    with_both = replace(level, solids=(*(solid for solid in level.solids if solid is not pillar), thin, behind))
     before = (low[0] - 0.5, 5.0, 0.0)
-    assert in_the_way(both, ends(before)) == ["pillar"]
-    assert in_the_way(replace(both, solids=both.solids[-1:]), ends(before)) == ["behind"]
+    assert in_the_way(with_both, ends(before)) == ["pillar"]
+    assert in_the_way(replace(with_both, solids=with_both.solids[-1:]), ends(before)) == ["behind"]

@@ -92,15 +92,15 @@ def test_an_unreachable_entity_is_reported() -> None:
         "nobody reaches `s2` in `navigation:v2`, so nobody can do what `navigation` asks: "
         "the way ends at `corridor_block_2`, which is 2.2 m high"
     )
-    open_ = load_level("navigation", "v1")
-    assert list(obstacles(open_, task.fspa)) == []
+    open_level = load_level("navigation", "v1")
+    assert list(obstacles(open_level, task.fspa)) == []
 
 
 def test_changed_files_are_listed() -> None:
     now = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64), ("overlays/x.toml", "1")))
     assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlays/x.toml"]
-    gone = replace(PLAYED, files=PLAYED.files[:1])
-    assert list(edits(gone, PLAYED, [])) == ["changed since the baseline: assets/guard.toml"]
+    without_asset = replace(PLAYED, files=PLAYED.files[:1])
+    assert list(edits(without_asset, PLAYED, [])) == ["changed since the baseline: assets/guard.toml"]
     assert list(edits(PLAYED, PLAYED, [])) == []
 
 

@@ -92,8 +92,8 @@ def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
 def test_the_page_lists_the_properties() -> None:
     trained = Trained("met", 1, 1.0, 0, True, None)
     new = Retrained("learned", "", trained, figures_of(several(2)), (0.0, 1.0), None, "retrained/a/policy", None)
-    both = figures_of(several(2))
-    report = CaseReport("CASE", "a", "v0", "pass", (), figures=both, baseline=both, retrained=new)
+    figures = figures_of(several(2))
+    report = CaseReport("CASE", "a", "v0", "pass", (), figures=figures, baseline=figures, retrained=new)
     names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
     documented = set(re.findall(r"`(CASE\.\w+)`", PAGE))
     assert documented <= names

@@ -205,8 +205,8 @@ def test_an_error_in_the_level_is_not_blamed_on_the_training(game: Suite) -> Non
 
 def test_a_policy_in_the_folder_of_a_training_is_rejected(game: Suite) -> None:
     check_places(game, game.cases, Path("run"))
-    own = replace(game.cases[1], policy=Path("run/retrained/hopeless") / POLICY)
-    suite = replace(game, cases=(game.cases[0], own, game.cases[2]))
+    misplaced = replace(game.cases[1], policy=Path("run/retrained/hopeless") / POLICY)
+    suite = replace(game, cases=(game.cases[0], misplaced, game.cases[2]))
     with pytest.raises(TltlError, match="TLT0942: the policy of the case `room:v1` lies in `run/retrained/hopeless`"):
         check_places(suite, suite.cases, Path("run"))
     check_places(suite, suite.cases[:2], Path("run"))

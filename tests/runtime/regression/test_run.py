@@ -156,10 +156,10 @@ def test_names_in_reasons_are_part_of_the_cache_key(game: Path) -> None:
 def test_a_level_edited_between_cases_is_played_as_edited(game: Path) -> None:
     suite, before = read_suite(Path("game.toml")), Path("room.toml").read_text(encoding="utf-8")
 
-    run_ = running(suite, "new")
-    results = [next(run_)]
+    cases = running(suite, "new")
+    results = [next(cases)]
     edit("room.toml", "8.0, 8.0", "8.0, 7.5")
-    results += run_
+    results += cases
     assert [done.kept for done in results] == [False] * 3
     hashes = [done.report.played.level_hash for done in results if done.report.played]
     assert hashes[0] != hashes[1] and hashes[1:] == [
@@ -260,8 +260,8 @@ def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch)
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0850"
-    alone = "tltlc evaluate easy.safetensors --level room.toml:v0 --seed 3 --first"
-    assert re.fullmatch(rf"to play that one alone: {alone} [01] --episodes 1", diagnostic.help)
+    command = "tltlc evaluate easy.safetensors --level room.toml:v0 --seed 3 --first"
+    assert re.fullmatch(rf"to play that one alone: {command} [01] --episodes 1", diagnostic.help)
     assert not (Path("new") / CASES).exists()
 
 

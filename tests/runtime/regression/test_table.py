@@ -85,10 +85,10 @@ def test_a_cell_is_cached_until_the_policy_changes(tmp_path: Path, monkeypatch: 
 
 @pytest.mark.slow
 def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) -> None:
-    alone = measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
-    assert [episode.success for episode in alone] == [True] * 3
+    one_process = measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
+    assert [episode.success for episode in one_process] == [True] * 3
     (tmp_path / "several").mkdir()
-    assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
+    assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == one_process
 
 
 class Mortal(table_cells._ExpertPlayer):

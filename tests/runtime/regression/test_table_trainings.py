@@ -36,7 +36,9 @@ def training(folder: Path, model: Model = "ours", minutes: float = 60.0) -> Tabl
     return table_training(folder, "cover_and_hide", model, Limits(STEPS, minutes))
 
 
-def begun(cell_training: TableTraining, minutes: float, *, seconds: float | None = None, end: str = "minutes") -> None:
+def write_training(
+    cell_training: TableTraining, minutes: float, *, seconds: float | None = None, end: str = "minutes"
+) -> None:
     """Write the files of a training into its folder; it ended after ``seconds``, or is unfinished if None."""
     method = "imitation" if cell_training.imitates else "automaton"
     write_run(run_in(cell_training.folder, method=method, stop__minutes=minutes, stop__steps=STEPS))
@@ -134,7 +136,7 @@ def test_a_training_is_finished_if_it_met_its_spec_or_passed_the_limit(
     tmp_path: Path, limit: float, seconds: float | None, end: str, wanted: float, over: bool
 ) -> None:
     cell_training = training(tmp_path, minutes=wanted)
-    begun(cell_training, limit, seconds=seconds, end=end)
+    write_training(cell_training, limit, seconds=seconds, end=end)
     finished = trained(cell_training)
     assert (finished is not None) == over
     if finished:
@@ -159,7 +161,7 @@ def test_an_interrupted_training_resumes_to_the_greater_limit(
     tmp_path: Path, limit: float, wanted: float, goes_on_to: str
 ) -> None:
     cell_training = training(tmp_path, minutes=wanted)
-    begun(cell_training, limit)
+    write_training(cell_training, limit)
     assert train_arguments(cell_training) == [
         "--resume",
         str(cell_training.folder),
@@ -171,6 +173,6 @@ def test_an_interrupted_training_resumes_to_the_greater_limit(
 
 def test_the_share_of_cloned_steps_is_reported_for_imitation(tmp_path: Path) -> None:
     cell_training = training(tmp_path, "imitation")
-    begun(cell_training, 60.0, seconds=3601.0)
+    write_training(cell_training, 60.0, seconds=3601.0)
     finished = trained(cell_training)
     assert finished is not None and finished.cloned == 0.05

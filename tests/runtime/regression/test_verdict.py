@@ -92,9 +92,9 @@ def test_an_improvement_is_a_change() -> None:
 def noisy(mean: float, spread: float, seed: int, count: int = 200) -> list[Account]:
     """Episodes of which 2 % fail; the rewards of the others are normal with this mean and deviation."""
     rng = np.random.default_rng(seed)
-    met, drawn = rng.random(count) < 0.98, rng.normal(mean, spread, count)
+    met, rewards = rng.random(count) < 0.98, rng.normal(mean, spread, count)
     return [
-        made(index, bool(met[index]), reward=float(drawn[index].clip(-1, 1)) if met[index] else -0.3)
+        made(index, bool(met[index]), reward=float(rewards[index].clip(-1, 1)) if met[index] else -0.3)
         for index in range(count)
     ]
 

@@ -35,8 +35,10 @@ def test_the_path_has_few_points(episode: Episode) -> None:
 
 def test_each_point_has_the_state_of_its_time(episode: Episode) -> None:
     way = way_of(episode)
-    known = {round(shot.time, 2): int(state) for shot, state in zip(episode.snapshots, episode.states, strict=True)}
-    assert all(state == known[time] for *_, state, time in way)
+    states_by_time = {
+        round(shot.time, 2): int(state) for shot, state in zip(episode.snapshots, episode.states, strict=True)
+    }
+    assert all(state == states_by_time[time] for *_, state, time in way)
     for step in np.flatnonzero(np.diff(episode.states)) + 1:
         assert round(episode.snapshots[step].time, 2) in {time for *_, time in way}
 

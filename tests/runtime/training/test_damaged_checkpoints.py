@@ -30,7 +30,7 @@ spec get_tired { limit 3 steps  require eventually tired }
 """
 """With random actions some episodes meet the spec, and others fail."""
 MISSING: Final = object()
-OTHERS: Final[Mapping[str, Callable[[Any], object]]] = {
+REPLACEMENTS: Final[Mapping[str, Callable[[Any], object]]] = {
     "missing": lambda value: MISSING,
     "None": lambda value: None,
     "a number": lambda value: 3,
@@ -61,7 +61,7 @@ OTHERS: Final[Mapping[str, Callable[[Any], object]]] = {
 _OPTIMIZER: Final = "algorithm", "optimizer_state_dict"
 _GROUP: Final = *_OPTIMIZER, "param_groups", 0
 _NUMBERS: Final = "a number below 0", "a large number", "a huge number", "no number"
-CHOSEN: Final[Mapping[Path_, tuple[str, ...]]] = {
+CRASHING_CHANGES: Final[Mapping[Path_, tuple[str, ...]]] = {
     ("algorithm", "critic_state_dict"): ("missing", "None", "a number"),
     _OPTIMIZER: ("missing", "None", "a number", "an empty table", "one value more"),
     (*_OPTIMIZER, "param_groups"): ("None", "an empty list", "one value more"),
@@ -188,18 +188,18 @@ def check(made: tuple[Run, Content], chosen: list[tuple[Path_, str]], folder: Pa
     errors = []
     for number, (path, name) in enumerate(chosen):
         try:
-            goes_on(run, changed(content, path, OTHERS[name]), folder / str(number))
+            goes_on(run, changed(content, path, REPLACEMENTS[name]), folder / str(number))
         except Exception as error:
             errors.append(f"{'.'.join(map(str, path))}, {name}: {error!r:.200}")
     assert not errors, "\n".join(errors)
 
 
 def test_changes_that_once_crashed_are_rejected_or_harmless(made: tuple[Run, Content], tmp_path: Path) -> None:
-    check(made, [(path, name) for path, names in CHOSEN.items() for name in names], tmp_path)
+    check(made, [(path, name) for path, names in CRASHING_CHANGES.items() for name in names], tmp_path)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", REPLACEMENTS)
 def test_every_change_of_each_value_is_rejected_or_harmless(
     made: tuple[Run, Content], tmp_path: Path, name: str
 ) -> None:

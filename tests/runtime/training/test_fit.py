@@ -72,11 +72,11 @@ def _group(content: Content) -> dict[str, Any]:
 
 CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
     "critic of another shape": (
-        lambda it: _first(it["algorithm"]["critic_state_dict"], lambda each: each[:-1]),
+        lambda it: _first(it["algorithm"]["critic_state_dict"], lambda tensor: tensor[:-1]),
         "and the network needs",
     ),
     "critic of whole numbers": (
-        lambda it: _first(it["algorithm"]["critic_state_dict"], lambda each: each.long()),
+        lambda it: _first(it["algorithm"]["critic_state_dict"], lambda tensor: tensor.long()),
         "is no tensor of float32",
     ),
     "critic without a layer": (

@@ -58,10 +58,10 @@ def equal(one: Any, other: Any) -> bool:
 
 def algorithm_of(run: Run) -> Gail:
     """The algorithm of a training before its first step."""
-    own = peers()
+    processes = peers()
     played = environments(run)
     torch.manual_seed(0)
-    env, _ = prepared(run, own, "cpu", played, None, print, demonstrated(run, own, print), None)
+    env, _ = prepared(run, processes, "cpu", played, None, print, demonstrated(run, processes, print), None)
     algorithm = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
     played.close()
     assert isinstance(algorithm, Gail)

@@ -58,7 +58,7 @@ def test_the_critic_learns_first_and_then_the_actor(tmp_path: Path, policy: Path
         assert bool(differing(old, weights(run))) == (report.iteration.number == 3)
         assert report.iteration.losses["value"] > 0.0
     assert len(critics) == 3
-    assert all(differing(one, next_) for one, next_ in pairwise(critics))
+    assert all(differing(earlier, later) for earlier, later in pairwise(critics))
 
 
 def test_without_a_warm_up_the_actor_learns_at_once(tmp_path: Path, policy: Path) -> None:

@@ -134,9 +134,9 @@ def _together(folder: Path, *arguments: str) -> list[dict[str, Any]]:
 
 def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    begun = _together(folder, "rollout__steps=64", "stop__steps=1536")
+    started = _together(folder, "rollout__steps=64", "stop__steps=1536")
     resumed = _together(folder, "rollout__steps=64", "stop__steps=2048", "--resume")
-    reports = [line for line in begun + resumed if "number" in line]
+    reports = [line for line in started + resumed if "number" in line]
     # Steps are the sum of both processes: 2 processes, 4 environments, 64 decisions.
     assert [(line["number"], line["steps"], line["stop"]) for line in reports] == [
         (1, 512, None),
@@ -144,7 +144,7 @@ def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -
         (3, 1536, "steps"),
         (4, 2048, "steps"),
     ]
-    assert len({line["weights"] for line in begun + resumed if "weights" in line}) == 4
+    assert len({line["weights"] for line in started + resumed if "weights" in line}) == 4
     assert [line["iteration"] for line in read_metrics(folder / METRICS)] == [1, 2, 3, 4]
 
 
@@ -183,9 +183,9 @@ def test_processes_of_torchrun_imitate_their_own_ways_together(tmp_path: Path) -
     assert [line["steps"] for line in measured] == [128, 256, 384, 512]
     assert any("imitation" in line["losses"] for line in measured)
     assert 0 < replayed[0] < replayed[1]
-    begun, resumed = ways
-    assert begun[0].isdisjoint(begun[1])
-    for first, later in zip(begun, resumed, strict=True):
+    started, resumed = ways
+    assert started[0].isdisjoint(started[1])
+    for first, later in zip(started, resumed, strict=True):
         assert first
         assert first <= later
 

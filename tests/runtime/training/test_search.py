@@ -67,14 +67,14 @@ def test_a_given_player_plays_first(env: WorkerVectorEnv) -> None:
     ahead = []
     for way in ways:
         first, _ = single_env.reset(seed=way.seed)
-        seen = [first, *(single_env.step(action)[0] for action in way.actions[:-1])]
-        ahead.append(list(zip(seen, way.actions, strict=True)))
+        observations = [first, *(single_env.step(action)[0] for action in way.actions[:-1])]
+        ahead.append(list(zip(observations, way.actions, strict=True)))
     single_env.close()
 
     def follow(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
         """The next action of the way that has this observation next, else no action."""
         for way in filter(None, ahead):
-            if all(np.array_equal(seen, observation[name]) for name, seen in way[0][0].items()):
+            if all(np.array_equal(observed, observation[name]) for name, observed in way[0][0].items()):
                 return np.array(way.pop(0)[1])
         return np.zeros(5, np.int64)
 
@@ -219,18 +219,18 @@ def test_a_lost_worker_is_reported_with_the_seeds_of_its_episodes(
 
 def test_each_place_is_counted_once(env: WorkerVectorEnv) -> None:
     # After each way, the places of its seed are removed from the archive and can be found again.
-    seen: set[tuple[int, int]] = set()
+    visited: set[tuple[int, int]] = set()
     step = env.step
 
     def noting_step(actions: NDArray[np.int64]) -> tuple[Any, ...]:
         step_result = step(actions)
-        seen.update(zip(step_result[4]["state"].tolist(), step_result[4]["cell"].tolist(), strict=True))
+        visited.update(zip(step_result[4]["state"].tolist(), step_result[4]["cell"].tolist(), strict=True))
         return step_result
 
     env.step = noting_step  # type: ignore[method-assign]
     ways, reports = search(env, Exploration(ways=8, steps=20_000, parts=4, imitation=0))
     assert len(ways) == 8
-    assert len(seen) / 2 < reports[-1].places <= len(seen)
+    assert len(visited) / 2 < reports[-1].places <= len(visited)
 
 
 def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:
@@ -284,10 +284,10 @@ def test_a_fifth_of_the_decisions_is_in_episodes_from_the_start_of_the_level(len
     decisions = Counter[bool]()
     for index in range(6000):
         start = restarts.draw()
-        taken = 40 if start.part else length
-        restarts.ended(start, [*start.actions, *[[0] * 5] * taken], None)
+        decision_count = 40 if start.part else length
+        restarts.ended(start, [*start.actions, *[[0] * 5] * decision_count], None)
         if index >= 2000:
-            decisions[start.part is None] += taken
+            decisions[start.part is None] += decision_count
     assert 0.15 < decisions[True] / decisions.total() < 0.25
 
 
@@ -321,7 +321,7 @@ def test_the_shortest_ways_to_each_end_are_kept() -> None:
     restarts.ended(Start(77), [[1] * 5] * 50, 0)
     restarts.ended(Start(78), [[1] * 5] * 40, None)
     restarts.ended(Start(79), [[1] * 5] * 400, 3)
-    kept = {end: [way.seed for way in known] for end, known in restarts.ways.items()}
+    kept = {end: [way.seed for way in ways_to_end] for end, ways_to_end in restarts.ways.items()}
     assert kept == {0: [77, 0, 2, 4, 6, 8], 1: [1, 3, 5, 7, 9, 11], 3: [79]}
     assert [len(way.actions) for way in restarts.ways[0]] == [50, 99, 102, 104, 106, 108]
     assert {start.part[0] for start in (restarts.draw() for _ in range(200)) if start.part} == {0, 1, 3}

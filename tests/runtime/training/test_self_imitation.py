@@ -37,10 +37,10 @@ class Counting(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 def test_decisions_are_drawn_with_the_observations_before_them() -> None:
     lessons = Lessons(make, restarts_of([WAY], 4))
-    drawn = lessons.draw()
+    batch = lessons.draw()
     lessons.close()
-    assert drawn is not None
-    observations, actions = drawn
+    assert batch is not None
+    observations, actions = batch
     env = make()
     first, _ = env.reset(seed=WAY.seed)
     step_observations = [first, *(env.step(action)[0] for action in WAY.actions)]
@@ -86,11 +86,11 @@ def test_a_runner_loads_optimizer_moments_with_another_memory_layout() -> None:
     config = rsl_config(run.settings, env.shapes, env.branches)
     saved_runner, runner = (Runner(env, dict(config)) for _ in range(2))
     lessons = Lessons(make, restarts_of([WAY], 4))
-    drawn = lessons.draw()
+    batch = lessons.draw()
     lessons.close()
     played.close()
-    assert drawn is not None
-    imitate(saved_runner.alg, *drawn)
+    assert batch is not None
+    imitate(saved_runner.alg, *batch)
     saved = saved_runner.alg.save()
     for model in (runner.alg.actor, runner.alg.critic):
         model.to(memory_format=torch.contiguous_format)
@@ -115,9 +115,9 @@ def test_imitation_makes_the_actions_likelier() -> None:
     torch.manual_seed(0)
     runner = Runner(env, rsl_config(run.settings, env.shapes, env.branches))
     lessons = Lessons(make, restarts_of([WAY], 4))
-    drawn = lessons.draw()
-    assert drawn is not None
-    losses = [imitate(runner.alg, *drawn) for _ in range(200)]
+    batch = lessons.draw()
+    assert batch is not None
+    losses = [imitate(runner.alg, *batch) for _ in range(200)]
     lessons.close()
     played.close()
     assert losses[-1] < 0.7 * losses[0]

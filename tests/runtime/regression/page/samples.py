@@ -58,10 +58,10 @@ def branching_that_takes_its_time() -> Episode:
     env = RecordEpisode(make_env("branching", "v0"), "nobody")
     try:
         env.reset(seed=0)
-        over, step = False, 0
-        while not over:
+        done, step = False, 0
+        while not done:
             _, _, terminated, truncated, _ = env.step([1 + step // 3 % 2, 1 + step // 5 % 2, 0, 0, 0])
-            over, step = terminated or truncated, step + 1
+            done, step = terminated or truncated, step + 1
         return env.episode
     finally:
         env.close()
@@ -97,10 +97,10 @@ def reported(
 ) -> ReportedCase:
     """The report on episodes of one level; only the indices ``recorded`` have a recording (default: all)."""
     level, fspa = now[0].level, now[0].fspa
-    accounts, used = (
+    accounts, baseline_accounts = (
         [account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
     )
-    explanation = findings(level, fspa, accounts, used)
+    explanation = findings(level, fspa, accounts, baseline_accounts)
     passed = sum(account.success for account in accounts)
     report = CaseReport(
         name=name,
@@ -109,12 +109,14 @@ def reported(
         verdict=verdict,
         causes=(f"met in {passed} of {len(now)} episodes",),
         figures=figures_of(accounts),
-        baseline=figures_of(used),
+        baseline=figures_of(baseline_accounts),
         explanation=explanation,
         accounts=tuple(accounts),
     )
     indices = range(len(now)) if recorded is None else recorded
-    return ReportedCase(report, level, fspa, {index: now[index] for index in indices}, tuple(used), before[0].level)
+    return ReportedCase(
+        report, level, fspa, {index: now[index] for index in indices}, tuple(baseline_accounts), before[0].level
+    )
 
 
 @cache

@@ -41,9 +41,9 @@ def test_every_row_of_the_recording_is_in_the_data(episode: Episode) -> None:
         bodies.append((data["enemies"][row], [(shot.enemies[row], shot.yaws[row]) for shot in shots]))
         assert unrun(data["enemies"][row]["mode"]) == [shot.modes[row] for shot in shots]
         assert unrun(data["enemies"][row]["sees"]) == [shot.sees[row] for shot in shots]
-    for body, known in bodies:
+    for body, poses in bodies:
         xs, ys, yaws = (unstepped(body[name]) for name in ("x", "y", "yaw"))
-        for x, y, yaw, ((east, north, _), angle) in zip(xs, ys, yaws, known, strict=True):
+        for x, y, yaw, ((east, north, _), angle) in zip(xs, ys, yaws, poses, strict=True):
             assert x / 100 == pytest.approx(east - bounds.low[0], abs=0.00501)
             assert y / 100 == pytest.approx(bounds.high[1] - north, abs=0.00501)
             assert (yaw - degrees(angle) + 180) % 360 - 180 == pytest.approx(0, abs=0.51)
