@@ -1,4 +1,4 @@
-"""The runtime's tests need the extra `rl`: without it `test_extra.py` alone is collected, and skipped."""
+"""The tests of the runtime need the extra `rl`. Without it only `test_extra.py` is collected, and skipped."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NEEDED = ("gymnasium", "numpy", "pybullet", "torch")
 MISSING = [name for name in NEEDED if find_spec(name) is None]
 
 collect_ignore = [str(path) for path in Path(__file__).parent.rglob("*.py")] if MISSING else []
-"""All but ``test_extra.py``, which is skipped with the reason."""
+"""All files but ``test_extra.py``, which is skipped with the reason."""
 collect_ignore = [path for path in collect_ignore if not path.endswith(("test_extra.py", "conftest.py", "__init__.py"))]
 
 
@@ -23,14 +23,14 @@ def pytest_configure(config: pytest.Config) -> None:
         import torch
 
         torch.set_num_threads(1)
-        _know_the_fonts()
+        _find_fonts()
 
 
-def _know_the_fonts() -> None:
-    """Have matplotlib find the fonts of this machine before a test begins.
+def _find_fonts() -> None:
+    """Let matplotlib find the fonts of this machine before the first test.
 
-    The first process that draws does so, and says so on standard error where it takes long; of several at once some
-    may give up.
+    Otherwise the first process that draws does it, with a message on standard error if that takes long.
+    If several processes do it at once, some may fail.
     """
     with Path(gettempdir(), f"tltlc-tests-fonts-{os.getuid()}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

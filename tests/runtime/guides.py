@@ -1,4 +1,4 @@
-"""Running the programs of the guides."""
+"""Run the programs in the guides."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.waiting import HANG_S
 
 
 def check_program(program: Block, printed: Block, path: Path) -> None:
-    """A program of a guide, run from the file ``path``, prints what the next block of the guide says."""
+    """Run a program of a guide from the file ``path``, and check that it prints the next block of the guide."""
     path.write_text(program.text, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
     done = subprocess.run(

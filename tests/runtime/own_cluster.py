@@ -1,4 +1,4 @@
-"""A Ray cluster of a test's own, which has as many cores wherever the tests run."""
+"""A Ray cluster for tests, with the same number of cores on every machine."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not inst
 CORES: Final = 2
 
 _SYSTEM: Final = {
-    # On a busy machine a process needs long to start, and Ray would kill it and start another one.
+    # On a busy machine a process is slow to start. Ray would kill it and start another one.
     "worker_register_timeout_seconds": int(HANG_S),
     "health_check_timeout_ms": int(1000 * HANG_S),
     "health_check_failure_threshold": 1000,
-    # What other programs do with the memory must not end an actor.
+    # Ray must not kill an actor because other programs use much memory.
     "memory_monitor_refresh_ms": 0,
 }
 _LOCK: Final = Path(tempfile.gettempdir(), f"tltlc-tests-ray-{os.getuid()}.lock")
 _OBJECTS_BYTES: Final = 100 * 2**20
-"""Far more than a test needs, where Ray would take a third of the machine's memory."""
+"""Far more than a test needs. By default, Ray takes a third of the machine's memory."""
 
 
 @contextmanager
 def own_cluster() -> Iterator[None]:
-    """Connect this process to a new cluster of ``CORES`` cores, which nobody else uses, until the block ends.
+    """Connect this process to a new cluster of ``CORES`` cores, used by nothing else, until the block ends.
 
-    The runtime waits as long for a core of it as for anything else that comes for certain.
+    The time limits of the runtime are raised to ``HANG_S``.
     """
     import ray
 
@@ -65,23 +65,23 @@ def own_cluster() -> Iterator[None]:
 
 @contextmanager
 def start_alone() -> Iterator[None]:
-    """Start a cluster while no other test does, since Ray chooses free ports first and takes them later.
+    """Start a cluster while no other test starts one: Ray chooses free ports first and binds them later.
 
-    A start may last as long as it needs: by itself Ray gives up after 30 s, for one part of it whatever its options.
+    Ray limits one part of the start to 30 s, whatever its options. This raises the limit to ``HANG_S``.
     """
     from ray._private import services
 
-    node_of = services.get_node
+    get_node = services.get_node
 
-    def node_once_it_is_there(*which: Any) -> Any:
+    def wait_for_node(*arguments: Any) -> Any:
         def node() -> Any:
             with suppress(RuntimeError):
-                return node_of(*which)
+                return get_node(*arguments)
 
         return until(node, "the node of the cluster", 0.2)
 
     with pytest.MonkeyPatch.context() as patch, _LOCK.open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         patch.setenv("RAY_gcs_server_port_wait_time_s", str(int(HANG_S)))
-        patch.setattr(services, "get_node", node_once_it_is_there)
+        patch.setattr(services, "get_node", wait_for_node)
         yield

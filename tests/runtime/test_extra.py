@@ -1,4 +1,4 @@
-"""That the extra `rl` is there: where it is not, this one test is skipped in place of all of the runtime's."""
+"""The extra `rl` is installed. If it is not, this test is skipped, and no other test of the runtime is collected."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ from tests.runtime.conftest import MISSING, NEEDED
 
 
 @pytest.mark.skipif(bool(MISSING), reason=f"tests/runtime needs the extra `rl`; missing: {', '.join(MISSING)}")
-def test_what_the_runtime_needs_can_be_imported() -> None:
+def test_the_modules_that_the_runtime_needs_can_be_imported() -> None:
     assert [import_module(name).__name__ for name in NEEDED] == list(NEEDED)

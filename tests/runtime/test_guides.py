@@ -1,4 +1,4 @@
-"""The guides on the game and on batches: their programs print what they say, their table is that of the options."""
+"""The guides on the game and on batches: the programs print the output shown, and all options are listed."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ GAME = DOCS / "guides" / "stealth.md"
 
 
 @pytest.mark.parametrize("page", [GAME, DOCS / "guides" / "batch.md"], ids=lambda page: page.stem)
-def test_the_program_prints_what_it_says(page: Path, tmp_path: Path) -> None:
+def test_the_program_prints_the_output_shown(page: Path, tmp_path: Path) -> None:
     program, printed = blocks(page)
     check_program(program, printed, tmp_path / "program.py")
 
 
-def test_the_options_are_those() -> None:
-    said = re.findall(r"^\| `(\w+)` \|", GAME.read_text(encoding="utf-8"), re.MULTILINE)
-    taken = [*inspect.signature(make_env).parameters, *inspect.signature(GameEnv).parameters]
-    assert set(said) == set(taken) - {"level", "render"}
+def test_the_guide_lists_every_option() -> None:
+    documented = re.findall(r"^\| `(\w+)` \|", GAME.read_text(encoding="utf-8"), re.MULTILINE)
+    accepted = [*inspect.signature(make_env).parameters, *inspect.signature(GameEnv).parameters]
+    assert set(documented) == set(accepted) - {"level", "render"}
 
 
 def test_gymnasium_checks_the_game_with_its_spec() -> None:

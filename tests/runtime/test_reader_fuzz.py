@@ -1,4 +1,4 @@
-"""Whatever a file holds, its reader takes it or refuses it with a TltlError: readers of the runtime."""
+"""Readers of the runtime accept a damaged file or reject it with a TltlError, and raise nothing else."""
 
 from __future__ import annotations
 
@@ -154,12 +154,12 @@ def _arrays() -> dict[str, np.ndarray[Any, Any]]:
 
 
 def _read_recording(data: bytes) -> None:
-    """Read a recording and say all of it that `tltlc replay` says without playing it again."""
+    """Read a recording and produce all that `tltlc replay` prints without simulating it again."""
 
     def read() -> None:
         episode = episode_from_bytes(data, "it.episode.npz")
-        said = episode_summary(episode)
-        episode_summary_text(said)
+        summary = episode_summary(episode)
+        episode_summary_text(summary)
         trace_csv(episode)
         judged_with(episode, "it.csv")
         check_episode(episode)
@@ -169,7 +169,7 @@ def _read_recording(data: bytes) -> None:
 
 def _packed(arrays: dict[str, np.ndarray[Any, Any]]) -> bytes:
     data = BytesIO()
-    np.savez(data, **arrays)  # type: ignore[arg-type] # it takes any array
+    np.savez(data, **arrays)  # type: ignore[arg-type] # savez accepts any array
     return data.getvalue()
 
 
@@ -199,7 +199,7 @@ def test_arrays_in_recordings(seed: int) -> None:
 
 
 def _other_array(random: Random, array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """An array of another type or shape, or with another value."""
+    """Return an array of another type or shape, or with one value changed."""
     change = random.randrange(6)
     if change == 0:
         return array.astype(random.choice(("f8", "f4", "i8", "u1", "U5", "c16", "?")))
@@ -215,7 +215,7 @@ def _other_array(random: Random, array: np.ndarray[Any, Any]) -> np.ndarray[Any,
 
 @cache
 def _policy() -> tuple[dict[str, Any], str, dict[str, Any], bytes]:
-    """The header of a policy's file, the key of its card, the card, and what follows."""
+    """The header of a policy file, the key of its card, the card, and the rest of the file."""
     path = shipped_policy("cover_and_hide")
     assert path is not None
     data = path.read_bytes()
@@ -226,7 +226,7 @@ def _policy() -> tuple[dict[str, Any], str, dict[str, Any], bytes]:
 
 
 def _read_policy(header: bytes, rest: bytes) -> None:
-    """Read a policy and say all of it that `tltlc inspect` says."""
+    """Read a policy and produce all that `tltlc inspect` prints."""
     data = len(header).to_bytes(8, "little") + header + rest
     check(lambda: policy_summary_text(policy_summary(policy_from_bytes(data, "it.safetensors"))))
 
@@ -256,12 +256,12 @@ def test_cards_of_policies(seed: int) -> None:
 # --- trainings ------------------------------------------------------------------------------------
 
 
-def _say_training(made: dict[str, Any]) -> None:
-    """Say what `tltlc inspect` says of a training in a folder."""
+def _summarize_training(training: dict[str, Any]) -> None:
+    """Produce what `tltlc inspect` prints for a training in a folder."""
     path = shipped_policy("cover_and_hide")
     assert path is not None
-    said = policy_summary(_shipped(path))
-    policy_summary_text({**said, "training": made})
+    summary = policy_summary(_shipped(path))
+    policy_summary_text({**summary, "training": training})
 
 
 @cache
@@ -271,7 +271,7 @@ def _shipped(path: Path) -> Policy:
 
 @pytest.fixture(name="training", scope="module")
 def _training(folder: Path) -> Path:
-    """The folder of a training that has begun."""
+    """The folder of a training that has started."""
     write_run(run_in(folder / "training"))
     return folder / "training"
 
@@ -280,10 +280,10 @@ def _training(folder: Path) -> Path:
 @times(100)
 def test_runs(seed: int, folder: Path, training: Path) -> None:
     document = json.loads((training / RUN).read_text(encoding="utf-8"))
-    other = folder / "run"
-    other.mkdir(exist_ok=True)
-    (other / RUN).write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
-    check(lambda: identity(read_run(other)))
+    run_folder = folder / "run"
+    run_folder.mkdir(exist_ok=True)
+    (run_folder / RUN).write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
+    check(lambda: identity(read_run(run_folder)))
 
 
 @given(seed=SEEDS)
@@ -294,11 +294,11 @@ def test_metrics(seed: int, training: Path) -> None:
     path.write_bytes("\n".join(lines).encode("utf-8", "surrogatepass"))
 
     def read() -> None:
-        measured = read_metrics(path)
-        made = record_so_far(training)
-        # What is read of a line has the types that the record and its curve ask for.
-        assert all(isinstance(line["seconds"], (int, float)) and isinstance(line["losses"], dict) for line in measured)
-        _say_training(made)
+        rows = read_metrics(path)
+        record = record_so_far(training)
+        # The values of a row have the types that the record and its learning curve need.
+        assert all(isinstance(row["seconds"], (int, float)) and isinstance(row["losses"], dict) for row in rows)
+        _summarize_training(record)
         truncate(path, 5)
 
     try:
@@ -318,7 +318,7 @@ def test_records(seed: int, training: Path) -> None:
 
 @pytest.fixture(name="content", scope="module")
 def _content(folder: Path) -> tuple[bytes, dict[str, Any]]:
-    """A checkpoint as bytes, and what is in it."""
+    """A checkpoint as bytes, and its content."""
     path = folder / CHECKPOINT
     weights = {"weight": torch.zeros(3)}
     checkpoint = Checkpoint(
@@ -346,14 +346,14 @@ def _read_checkpoint(path: Path) -> None:
 
     def read() -> None:
         run = run_in(path.parent)
-        found = read_checkpoint(path)
-        assert found is not None
-        assert isinstance(found.weights, dict)
-        found.reason(run.settings.stop)
+        checkpoint = read_checkpoint(path)
+        assert checkpoint is not None
+        assert isinstance(checkpoint.weights, dict)
+        checkpoint.reason(run.settings.stop)
         windows = Windows(2, 4, 100)
-        windows.load(found.window, found.unbroken)
+        windows.load(checkpoint.window, checkpoint.unbroken)
         assert windows.window.count <= 8
-        _say_training(record_so_far(path.parent))
+        _summarize_training(record_so_far(path.parent))
 
     check(read)
     check(lambda: read_checkpoint(path, {"level": "1"}))
@@ -375,7 +375,7 @@ STRANGE: Final = (
 
 
 def _other_value(random: Random, value: Any) -> Any:
-    """A value with something strange in its depths."""
+    """Return the value with one nested value replaced by an unusual one, or removed."""
     if isinstance(value, dict) and value and random.random() < 0.85:
         changed, key = dict(value), random.choice(list(value))
         if random.random() < 0.15:
@@ -384,8 +384,10 @@ def _other_value(random: Random, value: Any) -> Any:
             changed[key] = _other_value(random, value[key])
         return changed
     if isinstance(value, (list, tuple)) and value and random.random() < 0.8:
-        place = random.randrange(len(value))
-        return type(value)(_other_value(random, each) if at == place else each for at, each in enumerate(value))
+        index = random.randrange(len(value))
+        return type(value)(
+            _other_value(random, item) if position == index else item for position, item in enumerate(value)
+        )
     return deepcopy(random.choice(STRANGE))
 
 
@@ -403,10 +405,14 @@ def test_values_in_checkpoints(seed: int, training: Path, content: tuple[bytes, 
 
 @cache
 def _baseline() -> dict[str, Any]:
-    """The shipped baseline, with few episodes."""
-    found: dict[str, Any] = json.loads((FOLDER / "regression" / "shipped" / "suite.baseline.json").read_text("utf-8"))
-    found["references"] = [{**each, "accounts": each["accounts"][:2]} for each in found["references"][:2]]
-    return found
+    """The shipped baseline, reduced to two references with two accounts each."""
+    baseline: dict[str, Any] = json.loads(
+        (FOLDER / "regression" / "shipped" / "suite.baseline.json").read_text("utf-8")
+    )
+    baseline["references"] = [
+        {**reference, "accounts": reference["accounts"][:2]} for reference in baseline["references"][:2]
+    ]
+    return baseline
 
 
 @given(seed=SEEDS)
@@ -419,7 +425,7 @@ def test_baselines(seed: int, folder: Path) -> None:
 
 @given(seed=SEEDS)
 @times(60)
-def test_what_runs_keep(seed: int, folder: Path) -> None:
+def test_cached_results(seed: int, folder: Path) -> None:
     path, account = folder / "kept.json", _baseline()["references"][0]["accounts"][0]
     document = {"identity": "it", "content": account}
     path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))

@@ -1,4 +1,4 @@
-"""The hash of the code."""
+"""The hash of all source modules."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltl_runtime.support import source_hash as sources
 
 @pytest.fixture(name="packages")
 def _packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two small packages in place of compiler and runtime."""
+    """Two small packages that stand in for compiler and runtime."""
     for name in ("one_here", "other_here"):
         (tmp_path / name / "inner").mkdir(parents=True)
         for module in ("__init__", "inner/__init__", "inner/rule"):
@@ -27,19 +27,19 @@ def hashed() -> str:
     return sources.sources_hash.__wrapped__()
 
 
-def test_any_change_of_a_module_counts(packages: Path) -> None:
-    found = {hashed()}
+def test_any_change_of_a_module_changes_the_hash(packages: Path) -> None:
+    hashes = {hashed()}
     rule = packages / "other_here" / "inner" / "rule.py"
     rule.write_bytes(rule.read_bytes().replace(b"3", b"4"))
-    found.add(hashed())
+    hashes.add(hashed())
     rule.rename(rule.with_name("law.py"))
-    found.add(hashed())
+    hashes.add(hashed())
     (packages / "one_here" / "new.py").write_bytes(b"")
-    found.add(hashed())
-    assert len(found) == 4
+    hashes.add(hashed())
+    assert len(hashes) == 4
 
 
-def test_what_is_no_code_does_not_count(packages: Path) -> None:
+def test_line_endings_and_compiled_files_do_not_change_the_hash(packages: Path) -> None:
     before = hashed()
     rule = packages / "one_here" / "inner" / "rule.py"
     rule.write_bytes(rule.read_bytes().replace(b"\n", b"\r\n"))
@@ -48,11 +48,11 @@ def test_what_is_no_code_does_not_count(packages: Path) -> None:
     assert hashed() == before
 
 
-def test_it_is_of_compiler_and_runtime(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_hash_covers_compiler_and_runtime(monkeypatch: pytest.MonkeyPatch) -> None:
     both = hashed()
     assert sources.sources_hash() == both
-    found = {both}
+    hashes = {both}
     for package in ("tltlc", "tltl_runtime"):
         monkeypatch.setattr(sources, "_PACKAGES", (package,))
-        found.add(hashed())
-    assert len(found) == 3
+        hashes.add(hashed())
+    assert len(hashes) == 3

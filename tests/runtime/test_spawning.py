@@ -1,4 +1,4 @@
-"""Processes that are started while interrupts are withheld."""
+"""Processes started while interrupts are blocked."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CHILD = "import sys; print('on', flush=True); sys.stdin.readline(); print('done
 
 
 @pytest.mark.parametrize("withheld", [True, False])
-def test_a_process_started_within_never_hears_of_ctrl_c(withheld: bool) -> None:
+def test_a_process_started_in_the_block_ignores_ctrl_c(withheld: bool) -> None:
     command = [sys.executable, "-c", _CHILD]
     with interrupts_withheld() if withheld else nullcontext():
         child = subprocess.Popen(command, stdin=-1, stdout=-1, stderr=-1, text=True)
@@ -30,9 +30,9 @@ def test_a_process_started_within_never_hears_of_ctrl_c(withheld: bool) -> None:
         assert (out == "done\n") == withheld
 
 
-def test_whoever_starts_it_hears_of_it_afterwards() -> None:
-    within = False
+def test_the_parent_gets_the_interrupt_after_the_block() -> None:
+    end_reached = False
     with pytest.raises(KeyboardInterrupt), interrupts_withheld():
         signal.raise_signal(signal.SIGINT)
-        within = True
-    assert within
+        end_reached = True
+    assert end_reached

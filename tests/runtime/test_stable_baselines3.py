@@ -1,4 +1,4 @@
-"""A learner that knows nothing of specs learns from an environment with one; its guide is run."""
+"""PPO of Stable-Baselines3 learns in an environment with a spec, and the guide's program runs as shown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.runtime.guides import check_program
 pytest.importorskip("stable_baselines3")
 
 
-def test_a_few_updates_move_every_weight_and_the_policy_acts() -> None:
+def test_a_few_updates_change_every_weight_and_actions_are_valid() -> None:
     from stable_baselines3 import PPO
     from stable_baselines3.common.env_util import make_vec_env
 
@@ -32,6 +32,6 @@ def test_a_few_updates_move_every_weight_and_the_policy_acts() -> None:
     envs.close()
 
 
-def test_the_guide_prints_what_it_says(tmp_path: Path) -> None:
+def test_the_program_prints_the_output_shown(tmp_path: Path) -> None:
     program, printed = blocks(DOCS / "guides" / "stable-baselines3.md")
     check_program(program, printed, tmp_path / "program.py")

@@ -1,4 +1,4 @@
-"""What a spec may be given as, and the params and rewards that a task carries."""
+"""The forms in which ``load_task`` accepts a spec, and the params and rewards of a task."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def codes(error: pytest.ExceptionInfo[tltlc.TltlError]) -> list[str]:
     return [diagnostic.code for diagnostic in error.value.diagnostics]
 
 
-def test_a_file_by_path_text_automaton_and_artefact(tmp_path: Path) -> None:
+def test_a_path_a_text_an_automaton_and_an_artefact_give_the_same_task(tmp_path: Path) -> None:
     path = EXAMPLES / "cover_and_hide.tltl"
     task = load_task(path)
     assert (task.fspa.name, task.params, task.reward) == ("cover_and_hide", {}, RewardOptions())
@@ -38,7 +38,7 @@ def test_a_file_by_path_text_automaton_and_artefact(tmp_path: Path) -> None:
     assert load_task(artefact) == load_task(f"{artefact}:cover_and_hide") == load_task(str(text)) == task
 
 
-def test_one_of_several(tmp_path: Path) -> None:
+def test_a_path_can_name_one_of_several_specs(tmp_path: Path) -> None:
     path = tmp_path / "with blanks.tltl"
     path.write_text(TWO, encoding="utf-8")
     assert load_task(f"{path}:show").fspa.name == "show"
@@ -50,7 +50,7 @@ def test_one_of_several(tmp_path: Path) -> None:
     assert (codes(error), error.value.diagnostics[0].help) == (["TLT0720"], "did you mean `show`?")
 
 
-def test_one_line_of_text() -> None:
+def test_a_text_of_one_line_is_a_spec() -> None:
     assert load_task("signal seen: bool spec hide = G !seen").fspa.name == "hide"
 
 
@@ -66,13 +66,13 @@ def test_one_line_of_text() -> None:
         ("{}", "TLT0601"),
     ],
 )
-def test_what_is_no_task(spec: str, code: str) -> None:
+def test_invalid_specs_are_rejected(spec: str, code: str) -> None:
     with pytest.raises(tltlc.TltlError) as error:
         load_task(spec)
     assert code in codes(error)
 
 
-def test_an_artefact_has_another_name_than_the_one_asked_for(tmp_path: Path) -> None:
+def test_an_artefact_of_another_name_is_rejected(tmp_path: Path) -> None:
     (text,) = emit("json", cover_and_hide()).values()
     path = tmp_path / "a.fspa.json"
     path.write_text(str(text), encoding="utf-8")
@@ -80,7 +80,7 @@ def test_an_artefact_has_another_name_than_the_one_asked_for(tmp_path: Path) -> 
         load_task(f"{path}:navigation")
 
 
-def test_an_automaton_over_infinite_traces(tmp_path: Path) -> None:
+def test_a_task_over_infinite_traces(tmp_path: Path) -> None:
     text = "signal a: bool\nspec s { semantics infinite limit 4 steps require G F a }"
     task = load_task(text)
     assert (task.fspa.semantics, task.fspa.judge) == ("infinite", "limit")
@@ -93,7 +93,7 @@ def test_an_automaton_over_infinite_traces(tmp_path: Path) -> None:
     assert monitor.success
 
 
-def test_a_file_has_the_libraries_of_its_project(tmp_path: Path) -> None:
+def test_a_file_can_import_the_libraries_of_its_project(tmp_path: Path) -> None:
     (tmp_path / "tltl.toml").write_text('libraries = ["mine"]\n', encoding="utf-8")
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "words.tltl").write_text("signal seen: bool\nlet hidden = !seen\n", encoding="utf-8")
@@ -101,12 +101,12 @@ def test_a_file_has_the_libraries_of_its_project(tmp_path: Path) -> None:
     assert len(load_task(tmp_path / "s.tltl").fspa.states) == 2
 
 
-def test_given_params_come_before_offered_ones() -> None:
-    half = {"distance(e)": 10.0}
+def test_given_params_override_offered_params() -> None:
+    sample = {"distance(e)": 10.0}
 
     def value(**options: dict[str, float]) -> float:
         monitor = load_task(NEAR, **options).monitor()  # type: ignore[arg-type]
-        monitor.step(half)
+        monitor.step(sample)
         return monitor.values[0]
 
     assert value() == value(params={"level_size": 20.0}) == value(offered={"unknown": 1.0})
@@ -123,7 +123,7 @@ def test_given_params_come_before_offered_ones() -> None:
         ({"offered": {"level_size": 1.0}}, "TLT0307"),
     ],
 )
-def test_params_that_do_not_fit(options: dict[str, dict[str, float]], code: str) -> None:
+def test_invalid_params_are_rejected(options: dict[str, dict[str, float]], code: str) -> None:
     with pytest.raises(tltlc.TltlError) as error:
         load_task(NEAR, **options)  # type: ignore[arg-type]
     assert codes(error) == [code]
@@ -134,7 +134,7 @@ def test_a_task_can_be_pickled() -> None:
     assert pickle.loads(pickle.dumps(task)) == task
 
 
-def test_the_import_loads_little() -> None:
+def test_the_import_loads_no_heavy_modules() -> None:
     heavy = "('torch', 'pybullet', 'matplotlib', 'imageio_ffmpeg', 'PIL', 'sympy')"
     program = (
         f"import sys, tltl_runtime; tltl_runtime.load_task; print([name for name in {heavy} if name in sys.modules])"
@@ -144,17 +144,17 @@ def test_the_import_loads_little() -> None:
 
 
 @pytest.mark.parametrize("spec", [(), [], {}, b"plan.tltl", 3, None, "", " "])
-def test_what_is_no_spec_is_not_read_as_a_path(spec: Any) -> None:
+def test_other_values_are_not_read_as_a_path(spec: Any) -> None:
     with pytest.raises(TypeError, match="a spec is a path, a text or an automaton, not"):
         load_task(spec)
 
 
-def test_of_the_automata_of_a_file_one_is_taken() -> None:
+def test_a_list_of_automata_is_rejected() -> None:
     with pytest.raises(TypeError, match=r"give one of them, e\.g\. the first, `\[0\]`"):
         load_task(tltlc.compile_text("signal a: bool\nspec s = F a"))  # type: ignore[arg-type]
 
 
-def test_params_and_reward_of_another_type_are_refused() -> None:
+def test_params_and_rewards_of_the_wrong_type_are_rejected() -> None:
     spec = "signal a: bool\nspec s = F a"
     with pytest.raises(TypeError, match="params map names to numbers"):
         load_task(spec, [("a", 1.0)])  # type: ignore[arg-type]

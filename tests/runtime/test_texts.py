@@ -1,4 +1,4 @@
-"""Numbers and lines for people."""
+"""Numbers and lines as printed for people."""
 
 from __future__ import annotations
 
@@ -27,29 +27,29 @@ def test_shares(value: float, said: str) -> None:
         (300, 300, "300 of 300 episodes"),
     ],
 )
-def test_of_how_many(count: int, total: int, said: str) -> None:
+def test_counts_of_a_total(count: int, total: int, said: str) -> None:
     assert counted(count, total, "episodes") == said
     assert counted(count, total) == said.replace(" episodes", "")
 
 
 @given(st.floats(0.0, 1.0), st.integers(1, 4))
-def test_the_ends_are_written_for_themselves_alone(value: float, places: int) -> None:
+def test_only_0_and_1_are_written_as_0_and_1(value: float, places: int) -> None:
     assert (float(share(value, places)) == 1.0) == (value == 1.0)
     assert (float(share(value, places)) == 0.0) == (value == 0.0)
     assert abs(float(share(value, places)) - value) <= 10.0**-places
 
 
-def test_there_is_no_minus_zero() -> None:
-    assert [number(each, 2) for each in (-0.0, -0.004, -0.006, 12.345)] == ["0.00", "0.00", "-0.01", "12.35"]
+def test_minus_zero_is_written_as_zero() -> None:
+    assert [number(value, 2) for value in (-0.0, -0.004, -0.006, 12.345)] == ["0.00", "0.00", "-0.01", "12.35"]
 
 
 @pytest.mark.parametrize(("most", "said"), [(4, "a, b, c"), (3, "a, b, c"), (2, "a, b and 1 more")])
-def test_a_list(most: int, said: str) -> None:
+def test_lists(most: int, said: str) -> None:
     assert listed("abc", most) == said
     assert listed([], most) == ""
 
 
-def test_a_column() -> None:
+def test_columns() -> None:
     assert column("  spec  ", "reach s1 and then the exit", width=30) == "  spec  reach s1 and then the\n        exit"
     assert column("  file  ", "a/" + 40 * "b" + "-c", width=30) == "  file  a/" + 40 * "b" + "-c"
     assert column("  map   ", "") == "  map   "

@@ -1,4 +1,4 @@
-"""The guide on vector environments: its programs are run, its messages are those."""
+"""The guide on vector environments: its programs and its error message are real."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from tltl_runtime.vector import WorkerError, make_vec
 PAGE = DOCS / "guides" / "vector.md"
 
 
-def test_its_programs_print_what_it_says(tmp_path: Path) -> None:
-    found = blocks(PAGE)
-    assert [block.kind for block in found] == ["python", "", "python", ""]
-    for program, printed in zip(found[::2], found[1::2], strict=True):
+def test_the_programs_print_the_output_shown(tmp_path: Path) -> None:
+    page_blocks = blocks(PAGE)
+    assert [block.kind for block in page_blocks] == ["python", "", "python", ""]
+    for program, printed in zip(page_blocks[::2], page_blocks[1::2], strict=True):
         check_program(program, printed, tmp_path / "program.py")
 
 
-def test_its_message_is_that() -> None:
+def test_the_guide_shows_the_real_error_message() -> None:
     envs = make_vec("cover_and_hide", "v0", num_envs=4, workers=2)
     envs.reset(seed=5)
     stay = np.zeros((4, 5), dtype=np.int64)
@@ -36,5 +36,5 @@ def test_its_message_is_that() -> None:
     until_gone([pid])
     with pytest.raises(WorkerError) as caught:
         envs.step(stay)
-    said = f"WorkerError: {caught.value}".replace("\n", "\n    ")
-    assert f"    {said}\n\n" in PAGE.read_text(encoding="utf-8")
+    message = f"WorkerError: {caught.value}".replace("\n", "\n    ")
+    assert f"    {message}\n\n" in PAGE.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Where pybullet is not installed: what plays the game says so plainly, and all else works."""
+"""Without pybullet, commands that play the game report that it is missing, and everything else works."""
 
 from __future__ import annotations
 
@@ -36,30 +36,30 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     "command", ["demonstrate navigation", "record navigation", "play navigation", "replay {} --check"]
 )
-def test_what_plays_says_what_it_lacks(command: str, recording: Path, tmp_path: Path) -> None:
+def test_commands_that_play_report_the_missing_package(command: str, recording: Path, tmp_path: Path) -> None:
     done = run(COMMAND, *command.format(recording).split(), cwd=tmp_path)
     assert done.returncode == 4
     assert "error[TLT0730]: the game needs `pybullet`, which is not installed" in done.stderr
 
 
 @pytest.mark.parametrize("output", ["", "run.png", "run.csv"])
-def test_recordings_are_read_and_drawn(output: str, recording: Path, tmp_path: Path) -> None:
+def test_recordings_can_be_read_and_drawn(output: str, recording: Path, tmp_path: Path) -> None:
     done = run(COMMAND, "replay", recording, *(["-o", output] if output else []), cwd=tmp_path)
     assert done.returncode == 0 and "TLT0730" not in done.stderr
     assert not output or (tmp_path / output).stat().st_size > 0
 
 
-def test_levels_are_checked() -> None:
+def test_levels_can_be_checked() -> None:
     done = run(COMMAND, "check", "--level", "navigation:v0")
     assert done.returncode == 0 and "nothing to report" in done.stderr
 
 
-def test_gymnasium_says_what_it_lacks() -> None:
+def test_gymnasium_reports_the_missing_package() -> None:
     done = run(PROGRAM + "import gymnasium, tltl_runtime; gymnasium.make('tltl/Navigation-v0')")
     assert done.stderr.splitlines()[-1].endswith("TLT0730: the game needs `pybullet`, which is not installed")
 
 
-def test_the_workers_take_other_environments() -> None:
+def test_workers_run_other_environments() -> None:
     program = """
 import gymnasium
 from tltl_runtime.vector import WorkerVectorEnv

@@ -1,4 +1,4 @@
-"""A spec around other environments: spaces, rewards, ends, errors, and many at once."""
+"""A spec around other environments: spaces, rewards, ends of episodes, errors, and vector environments."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Row = Mapping[str, float]
 
 
 class Played(gymnasium.Env[Any, int]):
-    """Plays a trace, a sample a step; ``ends`` says at which step the environment itself ends the episode, and how."""
+    """An environment that plays back a trace, one sample per step. ``ends`` is the step at which it ends, and how."""
 
     action_space = spaces.Discrete(2)
 
@@ -113,16 +113,16 @@ def test_gymnasium_finds_nothing_wrong(name: str, spec: str, signals: Any) -> No
     env = TltlEnv(gymnasium.make(name), spec, signals)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        # What it says of the environments themselves, and of wrappers as such.
+        # Warnings about the environments themselves, and about wrappers in general.
         warnings.filterwarnings("ignore", ".*(different from the unwrapped version|infinity|symmetric and normalized)")
-        # Drawing these needs pygame, and is none of the wrapper's business.
+        # Rendering needs pygame, and the wrapper does not change it.
         check_env(env, skip_render_check=True)
     assert env.spec is not None
-    again = gymnasium.make(env.spec)
-    assert again.observation_space == env.observation_space
+    copy = gymnasium.make(env.spec)
+    assert copy.observation_space == env.observation_space
 
 
-def test_the_papers_numbers() -> None:
+def test_the_numbers_of_the_paper() -> None:
     changes: list[dict[str, float]] = [
         {},
         {"distance(s1)": 10.5},
@@ -155,8 +155,8 @@ def test_the_papers_numbers() -> None:
     }
 
 
-def test_the_size_of_the_level_moves_equation_2() -> None:
-    """With b = 1 and B = 10, distance 5 gives -56/81."""
+def test_the_level_size_changes_equation_2() -> None:
+    """With b = 1 and B = 10, a distance of 5 gives -56/81."""
     near = [{**FAR, "distance(s1)": 5.0}]
     (step, *_) = episode(played(near, cover_and_hide(), params={"level_size": 10.0}), most=1)
     assert step[3]["atoms"]["near(s1)"] == pytest.approx(-56 / 81)
@@ -200,18 +200,18 @@ def test_the_limit_truncates() -> None:
 def test_over_infinite_traces_goals_are_judged_at_entry_or_at_the_limit() -> None:
     signals = "signal a: bool\nsignal p: bool\n"
     rows = [{"a": 0.0, "p": 1.0}, {"a": 1.0, "p": 1.0}, {"a": 0.0, "p": 1.0}]
-    for_good = episode(played(rows, f"{signals}spec s {{ semantics infinite limit 8 steps reach a keep p }}"))
-    assert (len(for_good), for_good[-1][1:3], for_good[-1][3]["success"]) == (2, (True, False), True)
-    assert total(for_good) == pytest.approx(1 - 2 / 8)
-    again = f"{signals}spec s {{ semantics infinite limit 8 steps require G F a keep p }}"
-    steps = episode(played(rows, again))
+    steps_of_reach = episode(played(rows, f"{signals}spec s {{ semantics infinite limit 8 steps reach a keep p }}"))
+    assert (len(steps_of_reach), steps_of_reach[-1][1:3], steps_of_reach[-1][3]["success"]) == (2, (True, False), True)
+    assert total(steps_of_reach) == pytest.approx(1 - 2 / 8)
+    recurring = f"{signals}spec s {{ semantics infinite limit 8 steps require G F a keep p }}"
+    steps = episode(played(rows, recurring))
     assert (len(steps), steps[-1][3]["verdict"], steps[-1][3]["success"]) == (8, "holding", True)
     assert total(steps) == pytest.approx(0)
-    steps = episode(played([*rows, {"a": 0.0, "p": 0.0}], again))
+    steps = episode(played([*rows, {"a": 0.0, "p": 0.0}], recurring))
     assert (len(steps), steps[-1][1:3], steps[-1][3]["success"]) == (4, (True, False), False)
     assert total(steps) == pytest.approx(3 / 8 - 1)
-    late = f"{signals}spec s {{ semantics infinite limit 8 steps reach a require G F !a }}"
-    steps = episode(played(rows[:1], late))
+    late_spec = f"{signals}spec s {{ semantics infinite limit 8 steps reach a require G F !a }}"
+    steps = episode(played(rows[:1], late_spec))
     assert (len(steps), steps[-1][3]["verdict"], steps[-1][3]["success"]) == (8, "pending", False)
 
 
@@ -239,7 +239,7 @@ def test_every_failed_episode_totals_progress_minus_one(rows: list[Row], ends: A
 
 
 @pytest.mark.parametrize("how", ["terminated", "truncated"])
-def test_the_environments_own_end_judges_what_has_no_limit(how: str) -> None:
+def test_the_end_of_the_environment_judges_a_spec_without_a_limit(how: str) -> None:
     survive = "signal seen: bool\nspec hide = G !seen\n"
     steps = episode(played([{"seen": 0.0}], survive, (3, how)))
     assert (len(steps), steps[-1][3]["success"], total(steps)) == (3, True, 1.0)
@@ -249,14 +249,14 @@ def test_the_environments_own_end_judges_what_has_no_limit(how: str) -> None:
     assert limited[-1][1:3] == (how == "terminated", how == "truncated")
 
 
-def test_the_robustness_of_a_trace_that_the_environment_ends() -> None:
+def test_the_sparse_reward_of_a_trace_that_the_environment_ends() -> None:
     options = RewardOptions(mode="sparse")
     spec = "signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s = F p\n"
     steps = episode(played([{"x": -0.5}, {"x": -0.25}], spec, (2, "terminated"), reward=options))
     assert [reward for reward, *_ in steps] == [0.0, -0.25]
 
 
-def test_the_papers_termination() -> None:
+def test_the_termination_of_the_paper() -> None:
     spec = "signal a: bool\nsignal p: bool\nspec s { limit 10 steps reach a keep p }\n"
     rows = [{"a": 1.0, "p": 1.0}, {"a": 0.0, "p": 0.0}]
     steps = episode(played(rows, spec, reward=RewardOptions(termination="paper")))
@@ -275,25 +275,25 @@ def test_spaces() -> None:
         TltlEnv(env, cover_and_hide(), current)
 
 
-def test_observations_are_the_callers_own() -> None:
+def test_changing_an_observation_changes_no_later_one() -> None:
     env = played([FAR], cover_and_hide())
     observation, _ = env.reset()
     observation["automaton"][:] = 7
     assert env.reset()[0]["automaton"].max() == 1
 
 
-def test_a_missing_signal_is_named_at_once() -> None:
+def test_a_missing_signal_is_reported_at_the_reset() -> None:
     row = {("distance(exid)" if name == "distance(exit)" else name): value for name, value in FAR.items()}
     with pytest.raises(MonitorError) as error:
         played([row], cover_and_hide()).reset()
-    (said,) = error.value.diagnostics
-    assert said.code == "TLT0611"
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0611"
     given = "`distance(s1)`, `distance(s2)`, `distance(exid)`, `health`"
-    assert said.title == f"after the reset: no value for `distance(exit)`; `signals` gave {given}"
-    assert said.help == "is `distance(exid)` what the spec calls `distance(exit)`?"
+    assert diagnostic.title == f"after the reset: no value for `distance(exit)`; `signals` gave {given}"
+    assert diagnostic.help == "is `distance(exid)` what the spec calls `distance(exit)`?"
 
 
-def test_a_signal_that_goes_missing_leaves_the_automaton_as_it_was() -> None:
+def test_a_signal_that_goes_missing_does_not_change_the_automaton() -> None:
     env = played([FAR, {}], cover_and_hide())
     env.reset()
     env.step(0)
@@ -305,7 +305,7 @@ def test_a_signal_that_goes_missing_leaves_the_automaton_as_it_was() -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None, [1.0], 10**400])
-def test_a_signal_without_a_finite_number(value: Any) -> None:
+def test_a_signal_must_be_a_finite_number(value: Any) -> None:
     with pytest.raises(MonitorError, match="TLT0612: after the reset: the signal `health` is "):
         played([{**FAR, "health": value}], cover_and_hide()).reset()
     if isinstance(value, float):
@@ -316,12 +316,12 @@ def test_a_signal_without_a_finite_number(value: Any) -> None:
             env.step(0)
 
 
-def test_signals_that_are_no_mapping() -> None:
+def test_signals_must_be_a_mapping() -> None:
     with pytest.raises(TypeError, match=r"after the reset: `signals` must return a mapping .* not \[1\.0\]"):
         played([[1.0]], cover_and_hide()).reset()  # type: ignore[list-item]
 
 
-def test_a_clamped_signal_is_remarked_on_once() -> None:
+def test_a_clamped_signal_causes_one_warning() -> None:
     env = played([{**FAR, "health": 2.0}], cover_and_hide())
     env.reset()
     with pytest.warns(UserWarning, match="TLT0615: step 1: the signal `health` is 2"):
@@ -343,34 +343,34 @@ def test_signals_may_be_a_method_of_a_running_game() -> None:
     assert env.reset()[1]["verdict"] == "pending"
 
 
-def test_the_clock_must_be_the_environments() -> None:
+def test_the_clock_must_match_the_environment() -> None:
     class Clocked(Played):
         tltl_clock_s = 0.15
 
     with pytest.raises(TltlError) as error:
         TltlEnv(Clocked([FAR]), cover_and_hide(), current)
-    (said,) = error.value.diagnostics
-    assert said.code == "TLT0617"
-    assert said.title == "`cover_and_hide` is sampled every 0.05 s, and a step of the environment takes 0.15 s"
-    assert said.help == "write `clock 0.15 s` in the specification"
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0617"
+    assert diagnostic.title == "`cover_and_hide` is sampled every 0.05 s, and a step of the environment takes 0.15 s"
+    assert diagnostic.help == "write `clock 0.15 s` in the specification"
     for clock in (0.15, None):
         TltlEnv(Clocked([FAR]), replace(cover_and_hide(), clock_s=clock), current)
 
 
 @pytest.mark.parametrize("vector", [SyncVectorEnv, partial(AsyncVectorEnv, context="spawn")], ids=["here", "workers"])
-def test_many_at_once(vector: Any) -> None:
+def test_vector_environments_give_the_same_steps(vector: Any) -> None:
     makers = [make_mountain_car] * 2
     envs = vector(makers, autoreset_mode=AutoresetMode.SAME_STEP)
-    single = [make_mountain_car() for _ in makers]
+    single_envs = [make_mountain_car() for _ in makers]
     try:
         observations, _ = envs.reset(seed=[1, 2])
-        alone = [env.reset(seed=seed)[0] for env, seed in zip(single, (1, 2), strict=True)]
+        single_observations = [env.reset(seed=seed)[0] for env, seed in zip(single_envs, (1, 2), strict=True)]
         for _ in range(60):
-            actions = [2 if observation["observation"][1] >= 0 else 0 for observation in alone]
+            actions = [2 if observation["observation"][1] >= 0 else 0 for observation in single_observations]
             observations, rewards, _, _, infos = envs.step(np.array(actions))
-            stepped = [env.step(action) for env, action in zip(single, actions, strict=True)]
-            alone = [step[0] for step in stepped]
-            for index, (observation, reward, *_, info) in enumerate(stepped):
+            single_steps = [env.step(action) for env, action in zip(single_envs, actions, strict=True)]
+            single_observations = [step[0] for step in single_steps]
+            for index, (observation, reward, *_, info) in enumerate(single_steps):
                 for key, value in observation.items():
                     assert np.array_equal(observations[key][index], value)
                 assert rewards[index] == reward
@@ -382,18 +382,18 @@ def test_many_at_once(vector: Any) -> None:
 
 def test_the_constructors_arguments_are_pickled_with_the_env_spec() -> None:
     spec = make_mountain_car().spec
-    again = gymnasium.make(pickle.loads(pickle.dumps(spec)))
-    assert isinstance(again, TltlEnv)
-    assert again.task == make_mountain_car().task
+    copy = gymnasium.make(pickle.loads(pickle.dumps(spec)))
+    assert isinstance(copy, TltlEnv)
+    assert copy.task == make_mountain_car().task
 
 
-def test_a_signal_is_one_number() -> None:
+def test_a_signal_must_be_one_number() -> None:
     with pytest.raises(MonitorError, match="TLT0612: after the reset: the signal `health` is an array, not a number"):
         played([{**FAR, "health": np.ones(1)}], cover_and_hide()).reset()  # type: ignore[dict-item]
     played([{**FAR, "health": np.float32(1)}], cover_and_hide()).reset()
 
 
-def test_signals_are_a_function_or_the_environments_own() -> None:
+def test_signals_are_a_function_or_a_method_of_the_environment() -> None:
     with pytest.raises(TypeError, match=r"`signals` is a function of the environment, not .*health"):
         TltlEnv(Played([FAR]), cover_and_hide(), {"health": 1.0})  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="give `signals`, a function of the environment"):
@@ -406,7 +406,7 @@ def test_signals_are_a_function_or_the_environments_own() -> None:
     assert TltlEnv(Own([FAR]), cover_and_hide()).reset()[1]["state"] == 0
 
 
-def test_the_environments_own_reward_is_in_the_info() -> None:
+def test_the_reward_of_the_environment_is_in_the_info() -> None:
     env = TltlEnv(gymnasium.make("CartPole-v1"), BALANCE, lambda env: {"angle": env.unwrapped.state[2]})  # type: ignore[attr-defined]
     assert env.reset(seed=1)[1]["env_reward"] == 0.0
     assert env.step(0)[4]["env_reward"] == 1.0

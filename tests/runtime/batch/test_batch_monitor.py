@@ -1,4 +1,4 @@
-"""N automata as tensors are N scalar monitors."""
+"""``BatchMonitor`` gives the same results as one scalar ``Monitor`` per environment."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def tensor(rows: Any) -> torch.Tensor:
 
 
 def assert_equal(batch: BatchStep, steps: list[Step], successes: list[bool], fspa: Fspa, exact: bool = True) -> None:
-    """Each field of the batch against those of the scalar monitors."""
+    """Compare every field of a batch step with the steps of the scalar monitors."""
     tolerance = 0.0 if exact else 1e-12
     names = [atom.name for atom in fspa.atoms]
     assert batch.state.tolist() == [step.state for step in steps]
@@ -57,7 +57,7 @@ def assert_equal(batch: BatchStep, steps: list[Step], successes: list[bool], fsp
 
 @settings(max_examples=150, deadline=None)
 @given(st.data(), automata(), options, st.booleans())
-def test_a_batch_is_as_many_scalar_monitors(
+def test_a_batch_equals_scalar_monitors(
     data: st.DataObject, fspa: Fspa, reward: RewardOptions, by_primes: bool
 ) -> None:
     count = data.draw(st.integers(1, 3))
@@ -78,20 +78,20 @@ def test_a_batch_is_as_many_scalar_monitors(
                     monitors[index].reset()
                     ended[index] = None
         samples = [trace[number % len(trace)] for trace in traces]
-        found = batch.step_atoms(tensor(samples).reshape(count, len(fspa.atoms)))
+        batch_step = batch.step_atoms(tensor(samples).reshape(count, len(fspa.atoms)))
         steps = [monitor.step_atoms(sample) for monitor, sample in zip(monitors, samples, strict=True)]
         for index, step in enumerate(steps):
             if step.done and ended[index] is None:
                 ended[index] = step.accepting
         exact = reward.terminal_penalty == "undiscounted" or reward.gamma == 1.0
-        assert_equal(found, steps, [bool(success) for success in ended], fspa, exact)
+        assert_equal(batch_step, steps, [bool(success) for success in ended], fspa, exact)
         assert batch.one_hot().argmax(1).tolist() == [step.state for step in steps]
 
 
-def test_signals_in_either_form_with_predicates() -> None:
+def test_a_tensor_and_a_mapping_of_signals_give_the_same_steps() -> None:
     fspa, rng = cover_and_hide(), random.Random(3)
     for reward in (RewardOptions(), RewardOptions(mode="sparse"), RewardOptions(mode="potential", gamma=0.99)):
-        one, other = BatchMonitor(fspa, 5, reward=reward), BatchMonitor(fspa, 5, reward=reward)
+        tensor_batch, mapping_batch = BatchMonitor(fspa, 5, reward=reward), BatchMonitor(fspa, 5, reward=reward)
         monitors = [Monitor(fspa, reward=reward) for _ in range(5)]
         ended: list[bool | None] = [None] * 5
         for _ in range(60):
@@ -104,41 +104,47 @@ def test_signals_in_either_form_with_predicates() -> None:
                 }
                 for row in [rng.randrange(6) for _ in range(5)]
             ]
-            rows = tensor([[sample[name] for name in one.signal_names] for sample in samples])
+            rows = tensor([[sample[name] for name in tensor_batch.signal_names] for sample in samples])
             near = (rows[:, :3] < 1.0).sum(1)
             rows[:, :3] += 1.0 * (near > 1)[:, None]
-            samples = [dict(zip(one.signal_names, row, strict=True)) for row in rows.tolist()]
-            found = one.step(rows)
-            same = other.step({name: rows[:, index] for index, name in enumerate(one.signal_names)})
+            samples = [dict(zip(tensor_batch.signal_names, row, strict=True)) for row in rows.tolist()]
+            tensor_step = tensor_batch.step(rows)
+            mapping_step = mapping_batch.step(
+                {name: rows[:, index] for index, name in enumerate(tensor_batch.signal_names)}
+            )
             steps = [monitor.step(sample) for monitor, sample in zip(monitors, samples, strict=True)]
             for index, step in enumerate(steps):
                 if step.done and ended[index] is None:
                     ended[index] = step.accepting
-            assert_equal(found, steps, [bool(success) for success in ended], fspa)
-            assert found.reward.tolist() == same.reward.tolist()
+            assert_equal(tensor_step, steps, [bool(success) for success in ended], fspa)
+            assert tensor_step.reward.tolist() == mapping_step.reward.tolist()
         assert len({monitor.state for monitor in monitors}) > 1 or all(monitor.done for monitor in monitors)
 
 
 @pytest.mark.parametrize("name", PAPER_SPECS)
-def test_the_recorded_traces_of_the_paper_s_specs(name: str) -> None:
-    """Four environments, each from another sample of the trace on."""
+def test_recorded_traces_of_the_specs_of_the_paper(name: str) -> None:
+    """Run four environments, each of which starts at a different sample of the trace."""
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     samples = trace(name)
     batch, monitors = BatchMonitor(fspa, 4), [Monitor(fspa) for _ in range(4)]
     ended: list[bool | None] = [None] * 4
     for number in range(len(samples)):
         rows = [samples[(number + 41 * index) % len(samples)] for index in range(4)]
-        found = batch.step(tensor([[row[signal] for signal in batch.signal_names] for row in rows]))
+        batch_step = batch.step(tensor([[row[signal] for signal in batch.signal_names] for row in rows]))
         steps = [monitor.step(row) for monitor, row in zip(monitors, rows, strict=True)]
         for index, step in enumerate(steps):
             if step.done and ended[index] is None:
                 ended[index] = step.accepting
-        assert_equal(found, steps, [bool(success) for success in ended], fspa)
-    assert found.success[0]
+        assert_equal(batch_step, steps, [bool(success) for success in ended], fspa)
+    assert batch_step.success[0]
 
 
-def test_worked_numbers() -> None:
-    """Eq. 2 with b = 1, B = 20 at (b + B) / 2 is -0.75; on the way to the exit that is progress 2/3 + 0.25/3 = 0.75."""
+def test_numbers_computed_by_hand() -> None:
+    """Check a distance halfway between b = 1 and B = 20.
+
+    By equation 2 a distance of (b + B) / 2 gives -0.75. On the last edge, to the exit, the progress is
+    then 2/3 + 0.25/3 = 0.75.
+    """
     batch = BatchMonitor(cover_and_hide(), 2)
 
     def step(**near: float) -> BatchStep:
@@ -161,32 +167,32 @@ def test_eq_2_at_distance_5() -> None:
     fspa = cover_and_hide()
     batch = BatchMonitor(fspa, 3, params={"level_size": 10.0})
     rows = {name: tensor([value] * 3) for name, value in FAR.items()}
-    found = batch.step({**rows, "distance(s1)": tensor([5.0, 5.5, 10.0])})
-    assert found.values[0].tolist() == pytest.approx([-56 / 81, -0.75, -1.0], abs=1e-15)
+    step = batch.step({**rows, "distance(s1)": tensor([5.0, 5.5, 10.0])})
+    assert step.values[0].tolist() == pytest.approx([-56 / 81, -0.75, -1.0], abs=1e-15)
 
 
-def test_a_step_is_not_changed_by_what_follows() -> None:
+def test_later_steps_do_not_change_a_step() -> None:
     batch = BatchMonitor(cover_and_hide(), 2)
     rows = {name: tensor([value] * 2) for name, value in FAR.items()}
     first = batch.step({**rows, "distance(s1)": tensor([0.5, 20.0])})
-    seen = [getattr(first, name).clone() for name in ("state", "done", "success", "progress", "reward", "values")]
+    before = [getattr(first, name).clone() for name in ("state", "done", "success", "progress", "reward", "values")]
     batch.reset(torch.tensor([True, False]))
     batch.step({**rows, "health": tensor([0.0, 0.0])})
-    now = [getattr(first, name) for name in ("state", "done", "success", "progress", "reward", "values")]
-    assert all(torch.equal(one, other) for one, other in zip(seen, now, strict=True))
+    after = [getattr(first, name) for name in ("state", "done", "success", "progress", "reward", "values")]
+    assert all(torch.equal(old, new) for old, new in zip(before, after, strict=True))
 
 
 def test_float32() -> None:
     batch = BatchMonitor(cover_and_hide(), 2, dtype=torch.float32)
-    found = batch.step({**{name: tensor([value] * 2) for name, value in FAR.items()}, "health": tensor([1.0, 0.0])})
-    assert (found.reward.dtype, found.state.tolist()) == (torch.float32, [0, 2])
+    step = batch.step({**{name: tensor([value] * 2) for name, value in FAR.items()}, "health": tensor([1.0, 0.0])})
+    assert (step.reward.dtype, step.state.tolist()) == (torch.float32, [0, 2])
 
 
 # --- samples --------------------------------------------------------------------------------------
 
 
-def refused(batch: BatchMonitor, signals: dict[str, torch.Tensor]) -> tuple[str, str]:
-    """The code and title of the error; nothing moves."""
+def error_of_step(batch: BatchMonitor, signals: dict[str, torch.Tensor]) -> tuple[str, str]:
+    """Return the code and title of the error that a step raises, which must not change the monitor."""
     before = (batch.state.tolist(), batch.steps.tolist())
     with pytest.raises(MonitorError) as caught:
         batch.step(signals)
@@ -201,23 +207,23 @@ def test_errors_name_signal_and_environments() -> None:
     rows = {name: tensor([value] * 8) for name, value in FAR.items()}
     health = tensor([1.0, float("nan"), 1.0, float("inf"), 1.0, 1.0, 1.0, 1.0])
     title = "environments 1 and 3: the signal `health` is nan, not a finite number"
-    assert refused(batch, {**rows, "health": health}) == ("TLT0612", title)
-    every = tensor([float("-inf")] * 8)
+    assert error_of_step(batch, {**rows, "health": health}) == ("TLT0612", title)
+    infinite = tensor([float("-inf")] * 8)
     title = "environments 0, 1, 2, 3, 4 and 3 more: the signal `distance(s1)` is -inf, not a finite number"
-    assert refused(batch, {**rows, "distance(s1)": every}) == ("TLT0612", title)
+    assert error_of_step(batch, {**rows, "distance(s1)": infinite}) == ("TLT0612", title)
     del rows["health"]
-    assert refused(batch, rows) == ("TLT0611", "no value for `health`")
+    assert error_of_step(batch, rows) == ("TLT0611", "no value for `health`")
     with pytest.raises(ValueError, match="shape"):
         batch.step(torch.zeros(8, 3))
     with pytest.raises(ValueError, match="health"):
         batch.step({**rows, "health": torch.ones(7)})
 
 
-def test_exclusive_atoms_that_hold_at_once() -> None:
+def test_exclusive_atoms_cannot_hold_at_once() -> None:
     batch = BatchMonitor(cover_and_hide(), 2)
     rows = {name: tensor([value] * 2) for name, value in FAR.items()}
     both = {**rows, "distance(s1)": tensor([20.0, 0.5]), "distance(exit)": tensor([0.0, 0.25])}
-    code, title = refused(batch, both)
+    code, title = error_of_step(batch, both)
     assert code == "TLT0614"
     assert title.startswith("environment 1: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), ")
 
@@ -226,24 +232,24 @@ def test_values_out_of_range_are_clamped_and_counted() -> None:
     batch, monitor = BatchMonitor(cover_and_hide(), 3), Monitor(cover_and_hide())
     rows = {name: tensor([value] * 3) for name, value in FAR.items()}
     for _ in range(2):
-        found = batch.step({**rows, "health": tensor([1.5, 1.0, 100.0]), "distance(s1)": tensor([20.0, 20.0, -3.0])})
+        step = batch.step({**rows, "health": tensor([1.5, 1.0, 100.0]), "distance(s1)": tensor([20.0, 20.0, -3.0])})
     assert batch.clamped == {"health": 4, "distance(s1)": 2}
-    assert found.values[:, 2].tolist() == [1.0, -1.0, -1.0, 1.0]
+    assert step.values[:, 2].tolist() == [1.0, -1.0, -1.0, 1.0]
     monitor.step({**FAR, "health": 100.0, "distance(s1)": -3.0})
-    assert list(monitor.values) == found.values[:, 2].tolist()
+    assert list(monitor.values) == step.values[:, 2].tolist()
 
 
-def test_truth_values() -> None:
+def test_a_boolean_signal_must_be_true_or_false() -> None:
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     fspa = replace(fspa, signals=(spec.Signal("p", "bool", None, None),))
     batch = BatchMonitor(fspa, 2)
     assert batch.step({"p": torch.tensor([True, False])}).success.tolist() == [True, False]
     for wrong in (0.5, 2.0):
         text = f"environment 1: the signal `p` is {wrong:g}, not true or false"
-        assert refused(batch, {"p": tensor([1.0, wrong])}) == ("TLT0612", text)
+        assert error_of_step(batch, {"p": tensor([1.0, wrong])}) == ("TLT0612", text)
 
 
-def test_arrays_and_lists_are_as_good_as_tensors() -> None:
+def test_arrays_and_lists_work_like_tensors() -> None:
     (fspa,) = compile_text("signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s { limit 9 steps reach p then !p }")
     monitor = BatchMonitor(fspa, 2)
     rows = [[0.5], [-0.25]]
@@ -261,7 +267,7 @@ def test_arrays_and_lists_are_as_good_as_tensors() -> None:
         monitor.step([0.5, 0.5])
 
 
-def test_what_is_no_automaton_or_no_reward_is_refused() -> None:
+def test_arguments_of_the_wrong_type_are_rejected() -> None:
     with pytest.raises(TypeError, match=r"an automaton is needed, not 'plan\.tltl'"):
         BatchMonitor("plan.tltl", 3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="RewardOptions"):
@@ -276,42 +282,42 @@ FIELDS = ("state", "done", "success", "truncated", "progress", "reward", "verdic
 
 @pytest.fixture(params=[False, True], ids=["by letters", "by primes"])
 def by_primes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Transitions by a table of letters, and without one."""
+    """Run the test with a lookup table of letters, and with prime implicants instead."""
     if request.param:
         monkeypatch.setattr(batch_guards, "_LETTER_ATOMS", -1)
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.usefixtures("by_primes")
-def test_good_samples_are_judged_the_same_unchecked(mode: Any) -> None:
+def test_valid_samples_give_the_same_results_unchecked(mode: Any) -> None:
     fspa, reward = cover_and_hide(), RewardOptions(mode=mode)
-    checked, unchecked = (BatchMonitor(fspa, 64, reward=reward, checked=each) for each in (True, False))
+    checked, unchecked = (BatchMonitor(fspa, 64, reward=reward, checked=is_checked) for is_checked in (True, False))
     health = checked.signal_names.index("health")
-    places = torch.tensor([column for column in range(4) if column != health])
-    generator, seen = torch.Generator().manual_seed(1), set[int]()
+    distance_columns = torch.tensor([column for column in range(4) if column != health])
+    generator, seen_states = torch.Generator().manual_seed(1), set[int]()
     for _ in range(40):
         rows = 1.0 + 19.0 * torch.rand(64, 4, generator=generator, dtype=torch.float64)
-        rows[torch.arange(64), places[torch.randint(3, (64,), generator=generator)]] -= 1.0
+        rows[torch.arange(64), distance_columns[torch.randint(3, (64,), generator=generator)]] -= 1.0
         rows[:, health] = 1.0
-        one, other = checked.step(rows), unchecked.step(rows)
+        checked_step, unchecked_step = checked.step(rows), unchecked.step(rows)
         for field in FIELDS:
-            assert torch.equal(getattr(one, field), getattr(other, field)), field
-        seen |= set(one.state.tolist())
+            assert torch.equal(getattr(checked_step, field), getattr(unchecked_step, field)), field
+        seen_states |= set(checked_step.state.tolist())
         for monitor in (checked, unchecked):
-            monitor.reset(one.done)
-    assert len(seen) == len(fspa.states) - 1
+            monitor.reset(checked_step.done)
+    assert len(seen_states) == len(fspa.states) - 1
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.usefixtures("by_primes")
-def test_an_unchecked_step_reads_nothing_back(mode: Any) -> None:
-    """Tensors on the device "meta" have no values: to look at one is an error."""
+def test_an_unchecked_step_does_not_read_values(mode: Any) -> None:
+    """Tensors on the device "meta" have no values, so reading one raises an error."""
     monitor = BatchMonitor(cover_and_hide(), 4096, reward=RewardOptions(mode=mode), device="meta", checked=False)
     for signals in (torch.empty(4096, 4, device="meta"), {name: torch.empty(4096, device="meta") for name in FAR}):
         step = monitor.step(signals)
         monitor.reset(step.done)
-        found = [getattr(step, field) for field in FIELDS] + [monitor.one_hot(), monitor.state, monitor.progress]
-        assert {each.device.type for each in found} == {"meta"}
+        results = [getattr(step, field) for field in FIELDS] + [monitor.one_hot(), monitor.state, monitor.progress]
+        assert {result.device.type for result in results} == {"meta"}
     with pytest.raises((NotImplementedError, RuntimeError)):
         BatchMonitor(cover_and_hide(), 4096, device="meta").step(signals)
 
@@ -333,7 +339,7 @@ def test_an_unchecked_step_does_not_wait_for_a_gpu(mode: Any) -> None:
 
 
 @pytest.mark.usefixtures("by_primes")
-def test_what_is_unusable_spoils_its_own_environment_alone_when_unchecked() -> None:
+def test_an_invalid_sample_affects_only_its_own_environment_when_unchecked() -> None:
     batch = BatchMonitor(cover_and_hide(), 4, checked=False)
     near = tensor([20.0, 20.0, 20.0, 0.0])
     rows = {name: tensor([value] * 4) for name, value in FAR.items()}
@@ -346,7 +352,7 @@ def test_what_is_unusable_spoils_its_own_environment_alone_when_unchecked() -> N
     assert batch.clamped == {}
 
 
-def test_the_limit_truncates_and_nothing_else_does() -> None:
+def test_only_the_limit_truncates() -> None:
     text = "signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s { limit 2 steps reach p keep x > -0.5 }"
     (fspa,) = compile_text(text)
     batch = BatchMonitor(fspa, 3)

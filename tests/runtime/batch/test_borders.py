@@ -1,4 +1,4 @@
-"""Comparisons over columns decide as exact ones do, whatever the size of the numbers and the format."""
+"""Comparisons in a batch are exact, whatever the size and format of the numbers."""
 
 from __future__ import annotations
 
@@ -32,13 +32,14 @@ THREE_NARROW = st.tuples(NARROW, NARROW, NARROW).map(sorted).filter(lambda ends:
 
 
 def automaton(expression: Expression, **ranges: tuple[float, float]) -> Fspa:
-    """Accepts after a sample at which the atom holds."""
+    """Return an automaton that accepts after a sample at which the atom holds."""
     signals = tuple(spec.Signal(name, "number", *ends) for name, ends in ranges.items())
     plain = build(spec_from_formula(f.always(f.eventually(f.atom("a")))))
     return replace(plain, signals=signals, atoms=(spec.Atom("a", expression),))
 
 
 def truths(fspa: Fspa, samples: Sequence[Sequence[float]], dtype: torch.dtype, checked: bool = True) -> list[bool]:
+    """Whether the atom holds at each sample; check the type and range of the values."""
     monitor = BatchMonitor(fspa, len(samples), dtype=dtype, checked=checked)
     step = monitor.step(torch.tensor(samples, dtype=torch.float64))
     assert step.values.dtype == dtype
@@ -53,17 +54,17 @@ def test_a_threshold_in_float64(ends: Sequence[float], x: float) -> None:
     side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
     samples = [[number] for number in (*around(threshold, low, high), min(max(x, low), high))]
     if threshold < high:
-        found = truths(automaton(robustness(side, fixed), x=(low, high)), samples, torch.float64)
-        assert found == [Fraction(number) > Fraction(threshold) for (number,) in samples]
+        results = truths(automaton(robustness(side, fixed), x=(low, high)), samples, torch.float64)
+        assert results == [Fraction(number) > Fraction(threshold) for (number,) in samples]
     if low < threshold:
-        found = truths(automaton(robustness(fixed, side), x=(low, high)), samples, torch.float64, checked=False)
-        assert found == [Fraction(number) < Fraction(threshold) for (number,) in samples]
+        results = truths(automaton(robustness(fixed, side), x=(low, high)), samples, torch.float64, checked=False)
+        assert results == [Fraction(number) < Fraction(threshold) for (number,) in samples]
 
 
 @settings(max_examples=300, deadline=None)
 @given(THREE_NARROW)
 def test_numbers_of_32_bits_in_float32(ends: Sequence[float]) -> None:
-    """Thresholds and samples are numbers of that format: nothing is rounded before the comparison."""
+    """Thresholds and samples are float32 numbers, so nothing is rounded before the comparison."""
     low, threshold, high = ends
     if not threshold < high:
         return
@@ -71,22 +72,22 @@ def test_numbers_of_32_bits_in_float32(ends: Sequence[float]) -> None:
     single = np.float32(threshold)
     numbers = (single, np.nextafter(single, np.float32(inf)), np.nextafter(single, np.float32(-inf)), low, high, 0.0)
     samples = [[float(number)] for number in numbers if low <= number <= high]
-    found = truths(automaton(expression, x=(low, high)), samples, torch.float32)
-    assert found == [number > threshold for (number,) in samples]
+    results = truths(automaton(expression, x=(low, high)), samples, torch.float32)
+    assert results == [number > threshold for (number,) in samples]
 
 
 @pytest.mark.parametrize("dtype", FORMATS)
 @pytest.mark.parametrize("checked", [True, False])
 @pytest.mark.parametrize("border", EXTREMES, ids=lambda border: border.comparison(1))
 def test_extreme_ranges(border: Border, dtype: torch.dtype, checked: bool) -> None:
-    """A number that is too large or too small for the format: all is computed in float64."""
+    """If a number is too large or too small for the format, everything is computed in float64."""
     (fspa,) = compile_text(f"{border.declaration(1)} spec s = always eventually {border.comparison(1)}")
     numbers = [end for signal in fspa.signals for end in (signal.low, signal.high) if end is not None]
     samples = [list(values) for values in border.values()]
     if dtype == torch.float32 and fits([*numbers, border.threshold or 0.0], dtype):
         samples = [list(map(float, np.float32(sample))) for sample in samples]
-    found = BatchMonitor(fspa, len(samples), dtype=dtype, checked=checked).step(np.array(samples))
-    assert found.accepting.tolist() == [border.holds(*values) for values in samples]
+    step = BatchMonitor(fspa, len(samples), dtype=dtype, checked=checked).step(np.array(samples))
+    assert step.accepting.tolist() == [border.holds(*values) for values in samples]
 
 
 def test_a_small_number_scaled_by_a_large_range_in_float32() -> None:
@@ -99,8 +100,8 @@ def test_a_small_number_scaled_by_a_large_range_in_float32() -> None:
 
 def test_a_value_keeps_its_sign_in_a_smaller_format() -> None:
     values = torch.tensor([1e-60, -1e-60, 0.0, -0.0, 0.5, float("nan")], dtype=torch.float64)
-    found = narrowed(values, torch.float32)
-    assert found.dtype == torch.float32
-    assert (found > 0.0).tolist() == (values > 0.0).tolist()
-    assert (found < 0.0).tolist() == (values < 0.0).tolist()
-    assert bool(found[5].isnan())
+    smaller = narrowed(values, torch.float32)
+    assert smaller.dtype == torch.float32
+    assert (smaller > 0.0).tolist() == (values > 0.0).tolist()
+    assert (smaller < 0.0).tolist() == (values < 0.0).tolist()
+    assert bool(smaller[5].isnan())

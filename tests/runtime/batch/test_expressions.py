@@ -1,4 +1,4 @@
-"""Expressions over columns compute what they compute over numbers, and fail where those raise an error."""
+"""Expressions over columns give the values of the scalar evaluator, and fail where it raises an error."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ def program(expression: Expression, params: dict[str, float] | None = None) -> P
 
 
 def exact(node: Any) -> Any:
-    """The expression with other operations for those that torch rounds otherwise: a comparison may turn on a bit."""
+    """Replace the operations that torch rounds differently.
+
+    A comparison can depend on a single bit.
+    """
     if isinstance(node, When):
         cases = tuple((exact(condition), exact(value)) for condition, value in node.cases)
         return When(cases, exact(node.otherwise))
@@ -48,7 +51,7 @@ def exact(node: Any) -> Any:
 
 @settings(max_examples=400, deadline=None)
 @given(expressions(), st.lists(st.tuples(numbers, numbers), min_size=1, max_size=4), st.tuples(numbers, numbers))
-def test_columns_are_as_many_samples(
+def test_columns_give_the_values_of_single_samples(
     expression: Expression, samples: list[tuple[float, float]], given_params: tuple[float, float]
 ) -> None:
     expression = exact(expression)
@@ -62,8 +65,8 @@ def test_columns_are_as_many_samples(
             assert failed
             continue
         assert not failed
-        found = float(values[index])
-        assert found == expected or (math.isnan(found) and math.isnan(expected))
+        value = float(values[index])
+        assert value == expected or (math.isnan(value) and math.isnan(expected))
 
 
 @pytest.mark.parametrize(
@@ -80,7 +83,7 @@ def test_columns_are_as_many_samples(
         Op("tanh", (Op("exp", (Op("sqrt", (Op("abs", (x,)),)),)),)),
     ],
 )
-def test_what_torch_rounds_otherwise(expression: Expression) -> None:
+def test_operations_that_torch_rounds_differently_are_close(expression: Expression) -> None:
     xs = (0.0, 0.1, 1.0, -2.0, 3.7, 710.0, 4577665636348541.0, 1e300)
     samples = [(a, b) for a in xs for b in (0.0, 0.5, -1.0, 7.5)]
     (values,), (failures,) = program(expression).run(torch.tensor(samples, dtype=torch.float64).t())
