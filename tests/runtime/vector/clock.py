@@ -1,4 +1,4 @@
-"""A clock that lets the runtime's patience end when everything has come that will come, however long that takes."""
+"""A clock for tests of timeouts: it jumps ahead once a condition holds, however long that takes."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from tests.waiting import HANG_S
 
 
 class Clock:
-    """Stands in for the module ``time``; it jumps by more than ``HANG_S`` seconds once ``is_over()`` is true.
+    """Stands in for the module ``time``; jumps ahead by ``2 * HANG_S`` seconds once ``is_over()`` is true.
 
-    Give the runtime a patience of ``HANG_S``: then what is slow is waited for, and what never comes is given up.
+    Give the runtime a timeout of ``HANG_S``. It then waits for what is slow, and gives up what never comes.
     """
 
     def __init__(self, is_over: Callable[[], bool]) -> None:
@@ -19,7 +19,7 @@ class Clock:
         self._jump = 0.0
 
     def monotonic(self) -> float:
-        """Seconds."""
+        """Return the time in seconds, including the jump."""
         if not self._jump and self._is_over():
             self._jump = 2 * HANG_S
         return time.monotonic() + self._jump

@@ -1,4 +1,4 @@
-"""Environments that misbehave when an action tells them to; they stand in a module that workers can import."""
+"""Environments that fail when an action tells them to, in a module that workers can import."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GO, EXIT, RAISE, HANG, HOLD = range(5)
 
 
 class Fragile(gymnasium.Env[Any, Any]):
-    """Counts its steps; an episode has seven."""
+    """Counts its steps; an episode has seven of them."""
 
     observation_space = spaces.Dict(
         {
@@ -59,7 +59,7 @@ class Fragile(gymnasium.Env[Any, Any]):
 
 
 class Held(Fragile):
-    """Told to hold, it makes a file ``held-PID`` in a folder and ends its step once a file ``released`` is there."""
+    """On HOLD, creates a file ``held-PID`` in a folder, and ends its step once a file ``released`` exists."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
@@ -73,7 +73,7 @@ class Held(Fragile):
 
 
 class Preparing(Fragile):
-    """Has something to do ahead of time."""
+    """Has work that it can do before the next reset."""
 
     left = 3
 
@@ -83,7 +83,7 @@ class Preparing(Fragile):
 
 
 class Ending(Fragile):
-    """Ends its process after its first step, as soon as that is answered."""
+    """Ends its process after its first step, once that step is answered."""
 
     count = 0
 
@@ -94,7 +94,7 @@ class Ending(Fragile):
 
 
 class Unmade(gymnasium.Env[Any, Any]):
-    """Is made in the first process and in no other."""
+    """Can be created only in the process with the id ``here``."""
 
     observation_space = Fragile.observation_space
     action_space = Fragile.action_space
@@ -105,7 +105,7 @@ class Unmade(gymnasium.Env[Any, Any]):
 
 
 def leaves_its_level() -> TltlEnv:
-    """A game whose bounds end a metre from the start."""
+    """Return a game whose bounds end a metre from the start."""
     env = make_env("navigation")
     world = env.unwrapped.game.world  # type: ignore[attr-defined]
     (x, y, _), bounds = world.level.start.position, world.level.bounds

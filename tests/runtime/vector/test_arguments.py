@@ -1,4 +1,4 @@
-"""What a vector environment takes and refuses: masks of resets, actions, spaces, attributes, and scripts unguarded."""
+"""The arguments of vector environments: reset masks, actions, spaces, attributes, and scripts without a main guard."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _carts() -> Iterator[WorkerVectorEnv]:
     env.close()
 
 
-def test_a_mask_chooses_what_is_reset(carts: WorkerVectorEnv) -> None:
+def test_a_mask_selects_the_environments_to_reset(carts: WorkerVectorEnv) -> None:
     sync = SyncVectorEnv(CART, autoreset_mode=AutoresetMode.NEXT_STEP)
     mask = np.array([False, True, False])
     with pytest.raises(ResetNeeded, match="reset all environments first"):
@@ -52,19 +52,19 @@ def test_a_mask_chooses_what_is_reset(carts: WorkerVectorEnv) -> None:
     ours, theirs = (env.reset(seed=3, options={"reset_mask": mask, "low": -0.01})[0] for env in (carts, sync))
     assert np.array_equal(ours, theirs) and np.abs(ours[1, 0]) <= 0.05 and np.abs(ours[0, 1]) > 0.5
     for _ in range(30):
-        for one, other in zip(carts.step(np.ones(3, int))[:4], sync.step(np.ones(3, int))[:4], strict=True):
-            assert np.array_equal(one, other)
+        for our_part, their_part in zip(carts.step(np.ones(3, int))[:4], sync.step(np.ones(3, int))[:4], strict=True):
+            assert np.array_equal(our_part, their_part)
     sync.close()
 
 
 @pytest.mark.parametrize("mask", [[True], np.array([1, 0, 0]), np.zeros(3, dtype=bool), None])
-def test_a_mask_that_is_none_is_refused(carts: WorkerVectorEnv, mask: Any) -> None:
+def test_invalid_masks_are_rejected(carts: WorkerVectorEnv, mask: Any) -> None:
     carts.reset(seed=1)
     with pytest.raises(ValueError, match=r"options\['reset_mask'\] is an array of 3 bools, one of them True"):
         carts.reset(options={"reset_mask": mask})
 
 
-def test_actions_are_checked_before_any_is_taken(carts: WorkerVectorEnv) -> None:
+def test_all_actions_are_checked_before_a_step(carts: WorkerVectorEnv) -> None:
     before, _ = carts.reset(seed=1)
     with pytest.raises(ValueError, match=r"the action of env 2 is 2, which is not in Discrete\(2\)"):
         carts.step([0, 1, 2])
@@ -89,23 +89,23 @@ MULTI = spaces.MultiDiscrete([3, 2])
         (spaces.Dict(move=MULTI), {"move": [[0, 0], [0, 2]]}, r"env 1 is \[0, 2\]"),
     ],
 )
-def test_what_is_in_no_space_is_named(space: spaces.Space[Any], batch: Any, said: str) -> None:
+def test_an_action_outside_its_space_is_named(space: spaces.Space[Any], batch: Any, said: str) -> None:
     with pytest.raises(ValueError, match=said):
         check_batch(space, batch, 2)
 
 
 @pytest.mark.parametrize("space", [MULTI, spaces.Discrete(2, start=5), spaces.MultiBinary(2), spaces.Box(-1, 1, (2,))])
-def test_what_is_in_a_space_passes(space: spaces.Space[Any]) -> None:
+def test_actions_in_their_space_are_accepted(space: spaces.Space[Any]) -> None:
     check_batch(space, [space.sample(), space.sample()], 2)
     check_batch(spaces.Dict(one=space), {"one": np.array([space.sample(), space.sample()])}, 2)
 
 
-def test_environments_of_other_spaces_are_refused() -> None:
+def test_environments_with_different_spaces_are_rejected() -> None:
     with pytest.raises(WorkerError, match="the observation_space of env 1 is another than that of env 0"):
         WorkerVectorEnv([CART[0], partial(gymnasium.make, "MountainCar-v0")], 2)
 
 
-def test_attributes_are_read_and_set(carts: WorkerVectorEnv) -> None:
+def test_attributes_can_be_read_and_set(carts: WorkerVectorEnv) -> None:
     carts.set_attr("masspole", 0.2)
     assert carts.get_attr("masspole") == (0.2,) * 3
     carts.set_attr("masspole", [0.1, 0.2, 0.3])
@@ -114,7 +114,7 @@ def test_attributes_are_read_and_set(carts: WorkerVectorEnv) -> None:
         carts.set_attr("masspole", [0.1, 0.2])
 
 
-def test_arguments_of_another_kind_are_refused() -> None:
+def test_arguments_of_the_wrong_type_are_rejected() -> None:
     with pytest.raises(TypeError, match="workers is a whole number or 'ray', not '2'"):
         WorkerVectorEnv(CART, "2")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="functions are needed that make environments"):
@@ -124,7 +124,7 @@ def test_arguments_of_another_kind_are_refused() -> None:
 
 
 @pytest.mark.parametrize("how", ["file", "stdin"])
-def test_a_script_without_its_guard_is_told(how: str, tmp_path: Path) -> None:
+def test_a_script_without_a_main_guard_gets_a_hint(how: str, tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED, encoding="utf-8")
     arguments = [str(script)] if how == "file" else []

@@ -1,4 +1,4 @@
-"""Workers that are lost are reported, the run stops or goes on, and nothing is left behind."""
+"""Lost workers are reported, the run stops or continues, and no process or memory remains."""
 
 from __future__ import annotations
 
@@ -35,17 +35,18 @@ def kill(pid: int | None) -> None:
     until_gone([pid])
 
 
-def patience_ends_with(env: WorkerVectorEnv, silent: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have the time of a silent worker be over as soon as nobody else is waited for."""
-    asked: set[int] = env._workers._asked  # type: ignore[assignment]
-    monkeypatch.setattr("tltl_runtime.vector.workers.time", Clock(lambda: asked == {silent}))
+def time_out_with(env: WorkerVectorEnv, silent: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a silent worker time out as soon as it is the only one that has not answered."""
+    pending: set[int] = env._workers._asked  # type: ignore[assignment]
+    monkeypatch.setattr("tltl_runtime.vector.workers.time", Clock(lambda: pending == {silent}))
 
 
-def lost(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
+def error_of_loss(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
+    """Take steps until a worker is lost; check that the environment is closed and all workers are gone."""
     pids = [pid for pid in env.worker_pids if pid]
     with pytest.raises(WorkerError) as caught:
-        for each in actions:
-            env.step(np.array(each))
+        for batch in actions:
+            env.step(np.array(batch))
     assert env.closed
     until_gone(pids)
     with pytest.raises(ClosedEnvironmentError):
@@ -53,8 +54,8 @@ def lost(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
     return caught.value
 
 
-def test_one_that_exits() -> None:
-    error = lost(fragile(1), *[[GO, GO]] * 9, [GO, EXIT])
+def test_a_worker_that_exits() -> None:
+    error = error_of_loss(fragile(1), *[[GO, GO]] * 9, [GO, EXIT])
     assert str(error).splitlines() == [
         "worker 0 ended with exit status 3; it had",
         "  env 0: Fragile, seed 40, episode 2, step 3",
@@ -63,16 +64,16 @@ def test_one_that_exits() -> None:
     assert (error.loss.status, error.playing[1].seed, error.playing[1].step) == (3, 41, 3)
 
 
-def test_one_that_is_killed_between_two_steps() -> None:
+def test_a_worker_that_is_killed_between_two_steps() -> None:
     env = fragile(2)
     kill(env.worker_pids[1])
-    error = lost(env, [GO, GO])
+    error = error_of_loss(env, [GO, GO])
     assert str(error).splitlines()[:1] == ["worker 1 was killed by SIGKILL; it had"]
     assert [each.env for each in error.playing] == [1]
 
 
-def test_one_that_raises() -> None:
-    error = lost(fragile(2, names=["left", "right"]), [GO, GO], [RAISE, GO])
+def test_a_worker_that_raises() -> None:
+    error = error_of_loss(fragile(2, names=["left", "right"]), [GO, GO], [RAISE, GO])
     lines = str(error).splitlines()
     assert lines[:3] == [
         "worker 0 ended with an exception; it had",
@@ -82,47 +83,47 @@ def test_one_that_raises() -> None:
     assert lines[-1] == "RuntimeError: the bridge is out"
 
 
-def test_one_that_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_that_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
     env = fragile(2)
-    patience_ends_with(env, 1, monkeypatch)
-    error = lost(env, [GO, HANG])
-    silent = f"worker 1 was silent for {HANG_S:g} s, and was killed; it had\n  env 1: Fragile, seed 41"
-    assert str(error).startswith(silent)
+    time_out_with(env, 1, monkeypatch)
+    error = error_of_loss(env, [GO, HANG])
+    message = f"worker 1 was silent for {HANG_S:g} s, and was killed; it had\n  env 1: Fragile, seed 41"
+    assert str(error).startswith(message)
 
 
-def test_one_that_answers_and_ends_does_not_keep_the_silent_from_being_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_worker_is_reported_though_another_answers_and_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     env = WorkerVectorEnv([Fragile, Ending], 2, timeout=HANG_S)
     env.reset(seed=40)
-    asked: set[int] = env._workers._asked  # type: ignore[assignment]
-    ending = [pid for pid in env.worker_pids[1:] if pid]
+    pending: set[int] = env._workers._asked  # type: ignore[assignment]
+    ending_pids = [pid for pid in env.worker_pids[1:] if pid]
 
     def is_over() -> bool:
-        if asked != {0}:
+        if pending != {0}:
             return False
-        until_gone(ending)
+        until_gone(ending_pids)
         return True
 
     monkeypatch.setattr("tltl_runtime.vector.workers.time", Clock(is_over))
-    error = lost(env, [HANG, GO])
+    error = error_of_loss(env, [HANG, GO])
     assert str(error).startswith(f"worker 0 was silent for {HANG_S:g} s, and was killed")
 
 
-def test_a_body_that_leaves_its_level() -> None:
+def test_a_player_that_leaves_its_level() -> None:
     env = WorkerVectorEnv([leaves_its_level], names=["navigation v0"])
     env.reset(seed=3)
-    error = lost(env, *[[[1, 1, 0, 0, 0]]] * 20)
+    error = error_of_loss(env, *[[[1, 1, 0, 0, 0]]] * 20)
     assert "env 0: navigation v0, seed 3, episode 1, step " in str(error)
     assert "WorldError: level navigation v0, step " in str(error)
 
 
-def test_an_environment_that_cannot_be_made() -> None:
+def test_an_environment_that_cannot_be_created() -> None:
     with pytest.raises(WorkerError, match="no room for another") as caught:
         WorkerVectorEnv([partial(Unmade, os.getpid())])
     assert "env 0: Unmade, not reset yet" in str(caught.value)
 
 
-def test_another_takes_its_place(caplog: pytest.LogCaptureFixture) -> None:
-    """The other workers' environments are not disturbed."""
+def test_a_lost_worker_is_replaced(caplog: pytest.LogCaptureFixture) -> None:
+    """The environments of the other workers are not affected."""
     plain, env = fragile(2, 4), fragile(2, 4, on_death="replace")
     actions = np.zeros(4, dtype=np.int64)
     for step in range(1, 20):
@@ -139,7 +140,7 @@ def test_another_takes_its_place(caplog: pytest.LogCaptureFixture) -> None:
             assert list(rewards[2:]) == [0.0, 0.0] and list(observations["count"][2:]) == [0, 0]
             assert [final["count"] for final in infos["final_obs"][2:]] == [2, 2]
             seeds = env.call("seeds")[2:]
-            assert f"another begins with seeds {[each[0] for each in seeds]}" in caplog.text
+            assert f"another begins with seeds {[env_seeds[0] for env_seeds in seeds]}" in caplog.text
             assert "worker 1 was killed by SIGKILL; it had\n  env 2: Fragile, seed 42, episode 2, step 2" in caplog.text
         else:
             assert "lost" not in infos
@@ -148,16 +149,16 @@ def test_another_takes_its_place(caplog: pytest.LogCaptureFixture) -> None:
     env.close()
 
 
-def test_one_that_is_lost_again_at_once_stops_the_run() -> None:
+def test_a_worker_that_is_lost_again_at_once_stops_the_run() -> None:
     env = fragile(1, 1, on_death="replace")
     assert list(env.step(np.array([EXIT]))[3]) == [True]
-    assert "exit status 3" in str(lost(env, [EXIT]))
+    assert "exit status 3" in str(error_of_loss(env, [EXIT]))
     env = WorkerVectorEnv([partial(Fragile, dies_in_reset=True)], on_death="replace")
     with pytest.raises(WorkerError, match="exit status 5"):
         env.reset(seed=1)
 
 
-def test_after_a_step_was_interrupted_only_a_reset_is_of_use(tmp_path: Path) -> None:
+def test_an_interrupted_step_must_be_followed_by_a_reset(tmp_path: Path) -> None:
     env = WorkerVectorEnv([partial(Held, tmp_path)], 1, timeout=HANG_S)
     env.reset(seed=40)
 
@@ -207,13 +208,13 @@ if __name__ == "__main__":
 
 
 @pytest.mark.parametrize("how", ["exit", "forget", "interrupt", "kill"])
-def test_no_process_and_no_memory_is_left(how: str, tmp_path: Path) -> None:
+def test_no_process_and_no_shared_memory_remains(how: str, tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(SCRIPT, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
-    what = how if how in ("exit", "forget") else "step"
+    mode = how if how in ("exit", "forget") else "step"
     child = subprocess.Popen(
-        [sys.executable, str(script), what, str(tmp_path)],
+        [sys.executable, str(script), mode, str(tmp_path)],
         env=environment,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -227,7 +228,7 @@ def test_no_process_and_no_memory_is_left(how: str, tmp_path: Path) -> None:
     if how == "forget":
         assert child.stdout.readline() == "forgotten\n"
         until_gone(pids)
-    if what == "step":
+    if mode == "step":
         until(lambda: len(list(tmp_path.glob("held-*"))) == 2, "workers that are in a step")
     if how == "interrupt":
         os.killpg(child.pid, signal.SIGINT)
@@ -238,5 +239,5 @@ def test_no_process_and_no_memory_is_left(how: str, tmp_path: Path) -> None:
     until_gone(pids)
     assert child.returncode == {"interrupt": -signal.SIGINT, "kill": -signal.SIGKILL}.get(how, 0), errors
     assert ("KeyboardInterrupt" in errors) is (how == "interrupt") and "leaked" not in errors
-    # As Python names what processes share.
+    # Python gives shared memory these names.
     assert [path for pid in (child.pid, *pids) for path in Path("/dev/shm").glob(f"pym-{pid}-*")] == []

@@ -1,4 +1,4 @@
-"""Actors of a Ray cluster give what worker processes give, bit for bit, and are missed alike."""
+"""Actors of a Ray cluster give the same steps as worker processes, bit for bit, and are replaced like them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def ray_here() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def _all_cores_are_free(ray_here: None) -> None:
-    """Ray counts a core as free some time after its actor was killed."""
+    """Wait until all cores are free: Ray frees a core some time after its actor was killed."""
     import ray
 
     until(lambda: ray.available_resources().get("CPU", 0) == CORES, "cores that are all free")
@@ -44,27 +44,27 @@ def test_processes_of_torchrun_share_the_cores(monkeypatch: pytest.MonkeyPatch) 
         assert list(env.step(np.full(2 * CORES, GO))[1]) == [1.0] * (2 * CORES)
 
 
-def test_the_same_as_local_workers() -> None:
-    found = played(make_vec("cover_and_hide", "v2", COUNT, "ray", spec=SPEC))
-    expected = played(make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC))
-    for ours, theirs in zip(found, expected, strict=True):
+def test_ray_gives_the_same_steps_as_local_workers() -> None:
+    rows = played(make_vec("cover_and_hide", "v2", COUNT, "ray", spec=SPEC))
+    expected_rows = played(make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC))
+    for ours, theirs in zip(rows, expected_rows, strict=True):
         assert all(map(same, ours, theirs))
 
 
-def test_one_that_raises() -> None:
+def test_an_actor_that_raises() -> None:
     env = WorkerVectorEnv([Fragile] * 2, "ray", timeout=HANG_S)
     env.reset(seed=[4, 8])
     env.step(np.array([GO, GO]))
-    with pytest.raises(WorkerError) as found:
+    with pytest.raises(WorkerError) as error:
         env.step(np.array([GO, RAISE]))
-    assert "the bridge is out" in str(found.value)
-    assert "seed 8, episode 1, step 1" in str(found.value)
+    assert "the bridge is out" in str(error.value)
+    assert "seed 8, episode 1, step 1" in str(error.value)
 
 
-def test_another_takes_the_place_of_one_that_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lost_actor_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     env = WorkerVectorEnv([Fragile] * 2, "ray", on_death="replace", timeout=HANG_S)
-    asked: dict[Any, int] = env._workers._asked  # type: ignore[assignment]
-    clock = Clock(lambda: set(asked.values()) == {1})
+    pending: dict[Any, int] = env._workers._asked  # type: ignore[assignment]
+    clock = Clock(lambda: set(pending.values()) == {1})
     env.reset(seed=[4, 8])
     for action in (EXIT, HANG):
         if action == HANG:
@@ -77,7 +77,7 @@ def test_another_takes_the_place_of_one_that_ended(monkeypatch: pytest.MonkeyPat
     env.close()
 
 
-def test_a_cluster_without_a_free_core_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_without_a_free_core_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     import ray
 
     monkeypatch.setattr("tltl_runtime.vector.ray_workers.TO_START_S", 2.0)
@@ -88,34 +88,34 @@ def test_a_cluster_without_a_free_core_is_told(monkeypatch: pytest.MonkeyPatch) 
     ray.kill(busy)
 
 
-def test_an_actor_that_is_slow_to_start_on_a_free_core_is_not_said_to_lack_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ray does not tell one from the other."""
+def test_the_message_for_a_slow_actor_does_not_say_that_no_core_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ray does not distinguish an actor that is slow to start from one that waits for a core."""
     import ray
 
     monkeypatch.setattr("tltl_runtime.vector.ray_workers.TO_START_S", 2.0)
     monkeypatch.setattr("tltl_runtime.vector.cluster.time", Clock(lambda: True))
-    monkeypatch.setattr(ray, "wait", lambda asked, **_: ([], asked))
-    with pytest.raises(TltlError) as found:
+    monkeypatch.setattr(ray, "wait", lambda actors, **_: ([], actors))
+    with pytest.raises(TltlError) as error:
         WorkerVectorEnv([Fragile], "ray", timeout=2.0)
-    (diagnostic,) = found.value.diagnostics
+    (diagnostic,) = error.value.diagnostics
     assert diagnostic.title == f"no worker started within 2 s on the Ray cluster, which has {CORES} cores"
     assert "whether others use the cores" in str(diagnostic.help)
 
 
-def test_environments_are_shared_out_over_the_cores_that_are_really_free(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environments_are_spread_over_the_actors_that_start(monkeypatch: pytest.MonkeyPatch) -> None:
     import ray
 
-    there, wait = [], ray.wait
+    started, wait = [], ray.wait
 
-    def noted(*arguments: Any, **options: Any) -> Any:
-        there[:], left = wait(*arguments, **options)
-        return list(there), left
+    def recorded_wait(*arguments: Any, **options: Any) -> Any:
+        started[:], waiting = wait(*arguments, **options)
+        return list(started), waiting
 
-    monkeypatch.setattr(ray, "wait", noted)
+    monkeypatch.setattr(ray, "wait", recorded_wait)
     monkeypatch.setattr("tltl_runtime.vector.ray_workers.free_cores", lambda _: CORES + 1)
     with monkeypatch.context() as patch:
-        # Nobody waits any longer for the one for which there is no core.
-        patch.setattr("tltl_runtime.vector.cluster.time", Clock(lambda: len(there) == CORES))
+        # The wait for the actor without a core ends once all others have started.
+        patch.setattr("tltl_runtime.vector.cluster.time", Clock(lambda: len(started) == CORES))
         env = WorkerVectorEnv([Fragile] * (2 * CORES + 2), "ray", timeout=HANG_S)
     with closing(env):
         assert len(env.worker_pids) == CORES
@@ -123,7 +123,7 @@ def test_environments_are_shared_out_over_the_cores_that_are_really_free(monkeyp
         assert list(env.step(np.full(2 * CORES + 2, GO))[1]) == [1.0] * (2 * CORES + 2)
 
 
-def test_an_environment_that_cannot_be_made() -> None:
+def test_an_environment_that_cannot_be_created() -> None:
     with pytest.raises(WorkerError, match="no room"):
         WorkerVectorEnv([Fragile, partial(missing, True)], "ray")
 

@@ -1,4 +1,4 @@
-"""Worker processes give what the environments themselves give, bit for bit."""
+"""Worker processes give the same steps as environments in this process, bit for bit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SHARED = ("verdict", "state", "progress", "success")
 
 
 def same(one: Any, other: Any) -> bool:
-    """Equal, down to the types of arrays."""
+    """Whether the values are equal, including the types of arrays."""
     if isinstance(one, dict):
         return isinstance(other, dict) and one.keys() == other.keys() and all(same(one[k], other[k]) for k in one)
     if isinstance(one, np.ndarray):
@@ -43,7 +43,7 @@ def same(one: Any, other: Any) -> bool:
 
 
 def played(env: Any) -> list[Any]:
-    """Several hundred steps, with resets of all three kinds."""
+    """Take 210 steps, with resets by one seed, by none and by a list of seeds; return all results."""
     rng = np.random.default_rng(8)
     rows: list[Any] = []
     for seed, steps in ((7, 90), (None, 60), ([5, 7, 5, 9], 60)):
@@ -74,10 +74,10 @@ def test_same_episodes_for_any_number_of_workers(expected: list[Any], workers: i
     env = make_vec("cover_and_hide", "v2", COUNT, workers, spec=SPEC)
     assert env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
     assert len(env.worker_pids) == workers
-    found = played(env)
+    rows = played(env)
     ends, totals, lengths = 0, np.zeros(COUNT), np.zeros(COUNT)
-    for ours, theirs in zip(found, expected, strict=True):
-        assert all(same(one, other) for one, other in zip(ours[:-1], theirs[:-1], strict=True))
+    for ours, theirs in zip(rows, expected, strict=True):
+        assert all(same(our_part, their_part) for our_part, their_part in zip(ours[:-1], theirs[:-1], strict=True))
         assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
         totals = totals + ours[1] if len(ours) == 5 else np.zeros(COUNT)
         lengths = lengths + 1 if len(ours) == 5 else np.zeros(COUNT)
@@ -100,7 +100,7 @@ def test_autoreset_in_the_next_step() -> None:
     assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
     ends, totals = 0, np.zeros(COUNT)
     for ours, theirs in zip(played(env), expected, strict=True):
-        assert all(same(one, other) for one, other in zip(ours[:-1], theirs[:-1], strict=True))
+        assert all(same(our_part, their_part) for our_part, their_part in zip(ours[:-1], theirs[:-1], strict=True))
         assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
         totals = totals + ours[1] if len(ours) == 5 else np.zeros(COUNT)
         if "episode" in ours[-1]:
@@ -111,7 +111,7 @@ def test_autoreset_in_the_next_step() -> None:
     assert ends > 6
 
 
-def test_gymnasium_makes_them_by_their_ids() -> None:
+def test_gymnasium_creates_vector_environments_by_id() -> None:
     env = gymnasium.make_vec(
         "tltl/Branching-v0",
         num_envs=3,
@@ -127,7 +127,7 @@ def test_gymnasium_makes_them_by_their_ids() -> None:
     observations, rewards, terminated, truncated, infos = env.step(env.action_space.sample())
     assert env.observation_space.contains(observations)
     assert (rewards.shape, terminated.dtype, truncated.dtype) == ((3,), np.bool_, np.bool_)
-    assert set(infos) == {each for key in SHARED for each in (key, f"_{key}")}
+    assert set(infos) == {name for key in SHARED for name in (key, f"_{key}")}
     frames = env.render()
     assert frames is not None and [frame.ndim for frame in frames] == [3, 3, 3]
     env.close()
@@ -135,7 +135,7 @@ def test_gymnasium_makes_them_by_their_ids() -> None:
         env.reset()
 
 
-def test_any_environment_with_spaces_of_fixed_size() -> None:
+def test_workers_run_any_environment_with_spaces_of_fixed_size() -> None:
     env = WorkerVectorEnv([lambda: Fragile()] * 3, workers=2)
     observations, infos = env.reset(seed=[1, 2, 1], options={"why": 4})
     assert env.observation_space.contains(observations)
@@ -157,7 +157,7 @@ def test_any_environment_with_spaces_of_fixed_size() -> None:
     env.close()
 
 
-def test_workers_prepare_while_nothing_is_asked_of_them() -> None:
+def test_idle_workers_prepare_the_next_reset() -> None:
     env = WorkerVectorEnv([Preparing] * 3, workers=2)
     env.reset(seed=1)
     until(lambda: env.get_attr("left") == (0, 0, 0), "workers that are prepared")
@@ -170,13 +170,13 @@ def test_a_first_reset_without_a_seed_draws_seeds() -> None:
         env.step(np.zeros(2, dtype=np.int64))
     env.reset()
     env.reset()
-    (first, then), (second, _) = env.call("seeds")
+    (first, seed_of_second_reset), (second, _) = env.call("seeds")
     assert isinstance(first, int) and isinstance(second, int) and first != second
-    assert then is None
+    assert seed_of_second_reset is None
     env.close()
 
 
-def test_what_does_not_fit_is_refused() -> None:
+def test_invalid_arguments_are_rejected() -> None:
     class Talks(Fragile):
         observation_space = spaces.Text(5)  # type: ignore[assignment]
 
@@ -195,7 +195,7 @@ def test_what_does_not_fit_is_refused() -> None:
 
 
 @pytest.mark.parametrize("count, workers, lengths", [(4, 3, [1, 1, 2]), (32, 2, [16, 16]), (5, 1, [5])])
-def test_shares_are_even(count: int, workers: int, lengths: list[int]) -> None:
+def test_shares_differ_by_at_most_one(count: int, workers: int, lengths: list[int]) -> None:
     shares = list(shared_out(count, workers))
     assert [share.stop - share.start for share in shares] == lengths
     assert [row for share in shares for row in range(share.start, share.stop)] == list(range(count))
