@@ -1,4 +1,4 @@
-"""Small levels made in code, and random ones."""
+"""Small levels built in code, and random obstacles."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def box(x0: float, y0: float, x1: float, y1: float, z0: float = 0.0, z1: float =
 
 
 def bounds(x0: float, y0: float, x1: float, y1: float) -> tuple[Point, Point]:
-    """The corners of a box, as those of movers are told."""
+    """Return the corners of a box in the form that is used for movers."""
     return (x0, y0, 0.0), (x1, y1, 3.0)
 
 
@@ -87,14 +87,14 @@ def level(
 
 @st.composite
 def solids(draw: st.DrawFn, most: int = 8) -> tuple[Solid, ...]:
-    """Boxes anywhere in 10 m by 8 m, on the floor or above it, at no special positions."""
-    found = []
+    """Up to ``most`` boxes at arbitrary positions in 10 m by 8 m, on the floor or above it."""
+    boxes = []
     for _ in range(draw(st.integers(0, most))):
         x, y = draw(st.floats(0, 9.8)), draw(st.floats(0, 7.8))
         dx, dy = draw(st.floats(0.05, 4)), draw(st.floats(0.05, 4))
         z, dz = draw(st.sampled_from([0.0, 0.0, 1.2, 2.0])), draw(st.sampled_from([0.3, 1.0, 2.0]))
-        found.append(Solid("solid", "wall", box(x, y, min(x + dx, 10.0), min(y + dy, 8.0), z, z + dz)))
-    return tuple(found)
+        boxes.append(Solid("solid", "wall", box(x, y, min(x + dx, 10.0), min(y + dy, 8.0), z, z + dz)))
+    return tuple(boxes)
 
 
 def places() -> st.SearchStrategy[tuple[float, float]]:

@@ -1,4 +1,7 @@
-"""What a player can reach at all: rooms made for it, the shipped levels, and the physics never contradicts a no."""
+"""Which places a player can reach, in rooms built in code and in the shipped levels.
+
+In the physics, the player never gets to a place that counts as unreachable.
+"""
 
 from __future__ import annotations
 
@@ -23,11 +26,11 @@ from tltlc.io.limits import WORK
 
 BOUNDS = Box((0.0, 0.0, -0.5), (12.0, 5.0, 4.0))
 SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]
-SHUT = ("navigation", "v2")
+BLOCKED = ("navigation", "v2")
 
 
 def room(*boxes: Box, end: Point = (10.5, 2.5, 0.0), movers: tuple[Mover, ...] = ()) -> Level:
-    """A room 12 m long: one begins in the west, the exit is in the east, ``boxes`` stand between."""
+    """Return a room 12 m long, with the start in the west, the exit in the east, and ``boxes`` between them."""
     solids = [Solid(f"box_{number}", "wall", box) for number, box in enumerate(boxes)]
     return Level(
         name="room",
@@ -49,12 +52,12 @@ def room(*boxes: Box, end: Point = (10.5, 2.5, 0.0), movers: tuple[Mover, ...] =
 
 
 def wall(low: float, high: float, x: float = 6.0, thick: float = 0.2, south: float = 0.0, north: float = 5.0) -> Box:
-    """A wall across the room, from one height to another."""
+    """Return a wall across the room, from the height ``low`` to ``high``."""
     return Box((x, south, low), (x + thick, north, high))
 
 
 def pit(width: float) -> tuple[Box, Box]:
-    """Two platforms with nothing between them, and no way up: one begins on the first."""
+    """Return two platforms, 2 m high, with a gap between them. They cannot be climbed from the floor."""
     return Box((0.2, 0.2, 0.0), (4.0, 4.8, 2.0)), Box((4.0 + width, 0.2, 0.0), (11.8, 4.8, 2.0))
 
 
@@ -78,15 +81,15 @@ def test_walls_gaps_and_slits(boxes: tuple[Box, ...], reached: bool) -> None:
 
 
 @pytest.mark.parametrize(("width", "reached"), [(3.0, True), (5.0, False)])
-def test_leaps(width: float, reached: bool) -> None:
+def test_a_leap_crosses_3_m_and_not_5_m(width: float, reached: bool) -> None:
     level = room(*pit(width), end=(10.5, 2.5, 2.0))
     on_top = replace(level, start=Start((1.5, 2.5, 2.0)))
     assert reachable(on_top).reaches("exit") == reached
-    # From the floor nobody gets up again.
+    # The platforms cannot be climbed from the floor.
     assert not reachable(level).reaches("exit")
 
 
-def test_a_lift_carries() -> None:
+def test_a_lift_carries_the_player() -> None:
     ledge = Box((7.0, 0.2, 0.0), (11.8, 4.8, 3.0))
     lift = Mover("lift", (1.0, 1.0, 0.2), ((6.3, 2.5, 0.1), (6.3, 2.5, 2.4)), 1.0)
     top = (10.5, 2.5, 3.0)
@@ -99,22 +102,22 @@ def with_barriers(level: Level, place: Point, opened_by: tuple[str, ...], unlock
     return replace(level, switches=(Switch("lever", place, 1.0),), barriers=(door,), unlocks=unlocks)
 
 
-def test_barriers_wait_for_their_switches() -> None:
+def test_a_barrier_opens_if_its_switch_can_be_reached() -> None:
     assert reachable(with_barriers(room(), (3.0, 1.0, 0.0), ("lever",))).reaches("exit")
     behind = reachable(with_barriers(room(), (8.0, 1.0, 0.0), ("lever",)))
     assert (behind.switches, behind.barriers, behind.reaches("exit")) == ((), (), False)
-    by_chance = with_barriers(room(), (3.0, 1.0, 0.0), (), (Unlock("lever", ("door", "other")),))
-    assert reachable(by_chance).reaches("exit")
+    unlocked_at_random = with_barriers(room(), (3.0, 1.0, 0.0), (), (Unlock("lever", ("door", "other")),))
+    assert reachable(unlocked_at_random).reaches("exit")
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
-def test_shipped_levels(name: str, variant: str) -> None:
+def test_everything_in_the_shipped_levels_can_be_reached_except_in_navigation_v2(name: str, variant: str) -> None:
     level = load_level(name, variant)
     reach = reachable(level)
-    if (name, variant) == SHUT:
+    if (name, variant) == BLOCKED:
         assert reach.switches == ("s1",) and reach.barriers == ("gap",)
         assert not reach.reaches("s2") and not reach.reaches("exit")
-        # Nothing behind the block: it begins 11.6 m from the west.
+        # Nothing behind the block is reached. The block begins at x = 11.6 m.
         columns = np.flatnonzero(reach.ground.any(axis=0))
         assert reach.origin[0] + reach.cell * (columns.max() + 1) < 11.6
     else:
@@ -122,7 +125,7 @@ def test_shipped_levels(name: str, variant: str) -> None:
         assert len(reach.switches) == len(level.switches) and len(reach.barriers) == len(level.barriers)
 
 
-def test_jumps_in_the_physics_stay_below_the_lift() -> None:
+def test_jumps_in_the_physics_stay_below_the_highest_lift() -> None:
     lift = highest_lift(PlayerKind())
     rng = np.random.default_rng(1)
     for top, possible in ((1.1, True), (lift + 0.02, False)):
@@ -144,13 +147,13 @@ def test_jumps_in_the_physics_stay_below_the_lift() -> None:
             assert bool(landed) == possible
 
 
-def stands(reach: Reach, x: float, y: float) -> bool:
-    """Whether there is ground to reach in the cell of a place."""
+def has_ground(reach: Reach, x: float, y: float) -> bool:
+    """Whether the cell of a place has ground that can be reached."""
     return bool(reach.ground[int((y - reach.origin[1]) / reach.cell), int((x - reach.origin[0]) / reach.cell)])
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
-def test_nobody_stands_where_nobody_can(name: str, variant: str) -> None:
+def test_the_player_stands_only_on_reachable_ground(name: str, variant: str) -> None:
     reach = reachable(load_level(name, variant))
     rng = np.random.default_rng(7)
     with closing(World(load_level(name, variant))) as world:
@@ -164,81 +167,83 @@ def test_nobody_stands_where_nobody_can(name: str, variant: str) -> None:
             world.step(action)
             x, y, _ = world.player.position
             if world.player.grounded:
-                assert stands(reach, x, y)
+                assert has_ground(reach, x, y)
 
 
-def test_a_flood_goes_round_corners_and_through_nothing() -> None:
+def test_a_flood_visits_the_cells_of_a_plain_search() -> None:
     rng = np.random.default_rng(0)
     free = rng.random((4, 9, 11)) < 0.6
     seeds = np.zeros_like(free)
     seeds[2, 4, 5] = free[2, 4, 5] = True
-    found = {(2, 4, 5)}
-    waiting = [(2, 4, 5)]
-    while waiting:
-        z, y, x = waiting.pop()
+    visited = {(2, 4, 5)}
+    stack = [(2, 4, 5)]
+    while stack:
+        z, y, x = stack.pop()
         for a, b, c in ((z + 1, y, x), (z - 1, y, x), (z, y + 1, x), (z, y - 1, x), (z, y, x + 1), (z, y, x - 1)):
             inside = 0 <= a < 4 and 0 <= b < 9 and 0 <= c < 11
-            if inside and free[a, b, c] and (a, b, c) not in found:
-                found.add((a, b, c))
-                waiting.append((a, b, c))
-    assert set(zip(*(axis.tolist() for axis in np.nonzero(flood(free, seeds, Budget(10**6)))), strict=True)) == found
+            if inside and free[a, b, c] and (a, b, c) not in visited:
+                visited.add((a, b, c))
+                stack.append((a, b, c))
+    assert set(zip(*(axis.tolist() for axis in np.nonzero(flood(free, seeds, Budget(10**6)))), strict=True)) == visited
 
 
 def test_distances_between_cells() -> None:
     field = np.zeros((6, 7), dtype=np.bool_)
     field[1, 2] = field[5, 6] = True
-    found = distances(field, 5)
+    computed = distances(field, 5)
     for row in range(6):
         for column in range(7):
-            apart = [(max(abs(row - y) - 1, 0), max(abs(column - x) - 1, 0)) for y, x in ((1, 2), (5, 6))]
-            nearest = min(np.hypot(*each) for each in apart)
-            assert found[row, column] == (pytest.approx(nearest) if nearest < 5 else np.inf)
+            offsets = [(max(abs(row - y) - 1, 0), max(abs(column - x) - 1, 0)) for y, x in ((1, 2), (5, 6))]
+            nearest = min(np.hypot(*offset) for offset in offsets)
+            assert computed[row, column] == (pytest.approx(nearest) if nearest < 5 else np.inf)
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_distance_is_that_to_the_nearest_cell(seed: int) -> None:
+def test_distance_is_measured_to_the_nearest_cell(seed: int) -> None:
     random = np.random.default_rng(seed)
     grid = SpaceGrid(BOUNDS, [], [0.0, 1.0, 2.5], PlayerKind(), Budget(10**9))
     space = random.random(grid.shape) < 0.003
-    lows = np.array([each.ravel() for each in np.meshgrid(grid.lows, grid.south, grid.west, indexing="ij")])
+    lows = np.array([axis.ravel() for axis in np.meshgrid(grid.lows, grid.south, grid.west, indexing="ij")])
     widths = np.array([0.0, grid.cell, grid.cell])[:, None]
     highs = lows + widths
     highs[0] = np.repeat(grid.highs, grid.shape[1] * grid.shape[2])
     for point in random.uniform(-2.0, 14.0, (20, 3)):
-        away = np.maximum(np.maximum(lows - point[::-1, None], point[::-1, None] - highs), 0.0)
-        nearest = float(np.sqrt((away**2).sum(axis=0)[space.ravel()].min()))
+        offsets = np.maximum(np.maximum(lows - point[::-1, None], point[::-1, None] - highs), 0.0)
+        nearest = float(np.sqrt((offsets**2).sum(axis=0)[space.ravel()].min()))
         x, y, z = point.tolist()
         assert grid.distance(space, (x, y, z)) == pytest.approx(nearest)
         assert grid.distance(space, (x, y, z), 1.5) == pytest.approx(nearest if nearest <= 1.5 else np.inf)
     assert grid.distance(np.zeros(grid.shape, dtype=np.bool_), (1.0, 1.0, 1.0)) == np.inf
 
 
-def test_a_switch_nearby_is_found_with_little_work() -> None:
+def test_a_near_switch_is_found_with_little_work() -> None:
     grid = SpaceGrid(Box((0.0, 0.0, 0.0), (100.0, 100.0, 2.0)), [], [1.0], PlayerKind(), budget := Budget(10**9))
     before = budget._left
     assert grid.distance(np.ones(grid.shape, dtype=np.bool_), (50.0, 50.0, 0.5), 1.0) == 0.0
     assert before - budget._left < 100
 
 
-def test_a_level_that_takes_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_level_that_takes_too_long_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     level = room(wall(0.0, 4.0))
     fspa = load_task("import spatial\nentity exit\nspec out { limit 9 steps  reach near(exit) }").fspa
-    (found,) = reach_warnings(level, fspa)
-    assert found.code == "TLT0814"
-    assert "the way ends at `box_0`" in (found.help or "")
+    (warning,) = reach_warnings(level, fspa)
+    assert warning.code == "TLT0814"
+    assert "the way ends at `box_0`" in (warning.help or "")
     monkeypatch.setattr("tltl_runtime.stealth.capabilities.feasible.WORK", {"cells of reachable space": 1000})
-    (found,) = reach_warnings(level, fspa)
-    # Only the search for what is in the way has too little.
-    assert (found.code, found.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
+    (warning,) = reach_warnings(level, fspa)
+    # Only the search for the obstacle exceeds its limit.
+    assert (warning.code, warning.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
     monkeypatch.setattr("tltl_runtime.stealth.capabilities.reach.WORK", {"cells of reachable space": 1000})
     with pytest.raises(TltlError, match="TLT0006: it takes too long to find out what can be reached in `room:v0`"):
         reachable(level)
-    # Whoever plays is warned, and plays.
-    assert [(each.code, each.severity) for each in reach_warnings(level, fspa)] == [("TLT0006", "warning")]
+    # A player gets a warning, and can play.
+    assert [(diagnostic.code, diagnostic.severity) for diagnostic in reach_warnings(level, fspa)] == [
+        ("TLT0006", "warning")
+    ]
     assert not is_infeasible(level, fspa)
 
 
-def test_shipped_levels_take_a_small_part_of_the_work() -> None:
+def test_shipped_levels_need_a_small_part_of_the_work_limit() -> None:
     for name, variant in SHIPPED:
         budget = Budget(WORK["cells of reachable space"] // 20)
         assert reachable(load_level(name, variant), budget=budget).highest >= 0.0

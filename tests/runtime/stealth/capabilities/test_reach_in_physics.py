@@ -1,4 +1,4 @@
-"""The way through navigation, searched in the real physics: it goes on in v0, and ends at the block in v2."""
+"""Search the corridor of navigation in the real physics: it can be passed in v0 and v1, and ends at the block in v2."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tltlc.core.record import replace
 
 BEHIND_THE_HURDLE = 16.0
 BLOCK_2 = 11.6
-"""Metres from the west."""
+"""The x coordinates of the place behind the hurdle, and of the block in v2, in metres."""
 
 
-def searched(variant: str) -> Search:
-    """The corridor from its west end, behind the shut gap, in cells of 0.4 m."""
+def search_corridor(variant: str) -> Search:
+    """Search the corridor from its west end, behind the shut gap, in cells of 0.4 m."""
     level = replace(load_level("navigation", variant), start=Start((8.8, 2.5, 0.0)))
     with closing(World(level)) as world:
         world.reset(None)
@@ -27,22 +27,22 @@ def searched(variant: str) -> Search:
 
 
 @pytest.mark.parametrize("variant", ["v0", "v1"])
-def test_the_corridor_is_passed(variant: str) -> None:
-    assert searched(variant).met
+def test_the_corridor_can_be_passed(variant: str) -> None:
+    assert search_corridor(variant).met
 
 
-def test_nobody_gets_past_the_stretched_block() -> None:
-    found = searched("v2")
-    assert not found.met
-    assert found.poses > 300
-    east = max(place[0] for place in found.places)
+def test_the_stretched_block_cannot_be_passed() -> None:
+    result = search_corridor("v2")
+    assert not result.met
+    assert result.poses > 300
+    east = max(place[0] for place in result.places)
     assert BLOCK_2 - 0.35 < east < BLOCK_2
     reach = reachable(load_level("navigation", "v2"))
-    for x, y, _ in found.places:
+    for x, y, _ in result.places:
         assert reach.ground[int((y - reach.origin[1]) / reach.cell), int((x - reach.origin[0]) / reach.cell)]
 
 
-def test_a_state_that_is_put_back_goes_on_as_it_did() -> None:
+def test_a_restored_state_continues_as_before() -> None:
     with closing(World(load_level("navigation"))) as world:
         world.reset(None)
         for action in ((1, 0, 0, 0, 1), (1, 2, 1, 0, 1), (1, 2, 0, 0, 0)):

@@ -15,9 +15,9 @@ from tltl_runtime.stealth.enemies.behaviour import (
 )
 
 
-def leaf(status: int, seen: list[int]) -> Node:
+def leaf(status: int, ticks: list[int]) -> Node:
     def tick(_: object) -> int:
-        seen.append(status)
+        ticks.append(status)
         return status
 
     return tick
@@ -31,10 +31,12 @@ def leaf(status: int, seen: list[int]) -> Node:
         ((SUCCESS, RUNNING), SUCCESS, 1),
     ],
 )
-def test_a_selector_takes_the_first_that_does_not_fail(statuses: tuple[int, ...], result: int, ticked: int) -> None:
-    seen: list[int] = []
-    assert selector(*(leaf(status, seen) for status in statuses))(None) == result
-    assert len(seen) == ticked
+def test_a_selector_stops_at_the_first_child_that_does_not_fail(
+    statuses: tuple[int, ...], result: int, ticked: int
+) -> None:
+    ticks: list[int] = []
+    assert selector(*(leaf(status, ticks) for status in statuses))(None) == result
+    assert len(ticks) == ticked
 
 
 @pytest.mark.parametrize(
@@ -45,20 +47,20 @@ def test_a_selector_takes_the_first_that_does_not_fail(statuses: tuple[int, ...]
         ((FAILURE, SUCCESS), FAILURE, 1),
     ],
 )
-def test_a_sequence_goes_on_while_its_children_succeed(statuses: tuple[int, ...], result: int, ticked: int) -> None:
-    seen: list[int] = []
-    assert sequence(*(leaf(status, seen) for status in statuses))(None) == result
-    assert len(seen) == ticked
+def test_a_sequence_continues_while_its_children_succeed(statuses: tuple[int, ...], result: int, ticked: int) -> None:
+    ticks: list[int] = []
+    assert sequence(*(leaf(status, ticks) for status in statuses))(None) == result
+    assert len(ticks) == ticked
 
 
-def test_conditions_and_actions_speak_of_what_acts() -> None:
+def test_conditions_and_actions_get_the_agent() -> None:
     assert condition(lambda number: number > 3)(4) == SUCCESS
     assert condition(lambda number: number > 3)(3) == FAILURE
     assert action(lambda number: number > 3)(4) == SUCCESS
     assert action(lambda number: number > 3)(3) == RUNNING
 
 
-def test_check_gaps_is_what_can_be_added() -> None:
+def test_check_gaps_is_the_only_optional_branch() -> None:
     assert branches.added_branches() == ("check_gaps",)
     with pytest.raises(ValueError, match="no branch 'fly' can be added to an enemy: there are check_gaps"):
         branches.tree(("fly",))
@@ -66,7 +68,7 @@ def test_check_gaps_is_what_can_be_added() -> None:
         branches.tree(("chase",))
 
 
-def test_a_branch_is_added_by_one_function(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_decorated_function_adds_a_branch(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(branches, "_BRANCHES", dict(branches._BRANCHES))
 
     class Dancer:

@@ -34,7 +34,7 @@ def begin(game: Level, seed: int = 0) -> Enemies:
 
 
 def run(enemies: Enemies, player: PlayerView, seconds: float) -> list[str]:
-    """The modes of the first enemy, each once in a row."""
+    """Return the modes of the first enemy, without repeating a mode in a row."""
     modes: list[str] = []
     for _ in range(round(seconds / DT)):
         enemies.step(DT, player)
@@ -44,7 +44,7 @@ def run(enemies: Enemies, player: PlayerView, seconds: float) -> list[str]:
 
 
 STILL = (((1.0, 4.0, 0.0),),)
-"""The route of one who stands and looks along x."""
+"""A route of one point: the enemy stands there and looks along x."""
 
 
 def sees(game: Level, player: PlayerView) -> bool:
@@ -53,17 +53,17 @@ def sees(game: Level, player: PlayerView) -> bool:
     return enemies.sees[0]
 
 
-def test_it_walks_its_route_at_its_speed() -> None:
+def test_an_enemy_walks_its_route_at_its_speed() -> None:
     enemies = begin(level())
     assert enemies.positions == ((1.0, 1.0, 0.0),)
     enemies.step(DT, FAR)
     assert enemies.positions[0] == pytest.approx((1.0 + 1.5 * DT, 1.0, 0.0))
-    places = []
+    xs = []
     for _ in range(120):
         enemies.step(DT, FAR)
-        places.append(enemies.positions[0][0])
-    assert max(places) == pytest.approx(9.0)
-    assert min(places) == pytest.approx(1.0)
+        xs.append(enemies.positions[0][0])
+    assert max(xs) == pytest.approx(9.0)
+    assert min(xs) == pytest.approx(1.0)
     assert enemies.modes == ("patrol",)
 
 
@@ -82,7 +82,7 @@ def test_sight_has_a_range_and_a_cone(player: PlayerView, expected: bool) -> Non
     assert sees(level(routes=STILL), player) == expected
 
 
-def test_walls_stop_sight_and_low_cover_hides_who_crouches_behind_it() -> None:
+def test_walls_block_sight_and_low_cover_hides_a_crouching_player() -> None:
     behind = 6.0
     assert not sees(level(wall(5.0, 3.0, 5.2, 5.0), routes=STILL), standing(behind, 4.0))
     for height in (0.9, 1.2):
@@ -91,7 +91,7 @@ def test_walls_stop_sight_and_low_cover_hides_who_crouches_behind_it() -> None:
         assert not sees(game, crouched(behind, 4.0))
 
 
-def test_shut_doors_stop_sight_and_lasers_do_not() -> None:
+def test_shut_doors_block_sight_and_lasers_do_not() -> None:
     def with_barrier(kind: str) -> Level:
         return level(routes=STILL, barriers=(Barrier("door", kind, box(5.0, 3.0, 5.2, 5.0), ()),))  # type: ignore[arg-type]
 
@@ -106,7 +106,7 @@ def test_shut_doors_stop_sight_and_lasers_do_not() -> None:
     assert enemies.sees == (False,)
 
 
-def test_movers_stop_sight() -> None:
+def test_movers_block_sight() -> None:
     enemies = begin(level(routes=STILL))
     enemies.step(DT, standing(6.0, 4.0), [bounds(5.0, 3.0, 5.2, 5.0)])
     assert enemies.sees == (False,)
@@ -114,7 +114,7 @@ def test_movers_stop_sight() -> None:
     assert enemies.sees == (True,)
 
 
-def test_it_notices_after_its_reaction_time_and_loses_after_its_memory_time() -> None:
+def test_an_enemy_notices_after_its_reaction_time_and_forgets_after_its_memory_time() -> None:
     enemies = begin(level(routes=STILL))
     enemies.step(DT, standing(8.0, 4.0))
     enemies.step(DT, standing(8.0, 4.0))
@@ -135,7 +135,7 @@ def test_a_glance_is_forgotten() -> None:
     assert enemies.knows == (False,)
 
 
-def test_it_chases_searches_returns_and_patrols() -> None:
+def test_an_enemy_chases_searches_returns_and_patrols() -> None:
     enemies = begin(level())
     assert run(enemies, standing(8.0, 2.0), 1.0) == ["patrol", "chase"]
     assert run(enemies, standing(5.0, 7.0), 0.6) == ["chase"]
@@ -143,7 +143,7 @@ def test_it_chases_searches_returns_and_patrols() -> None:
     assert enemies.positions[0][1] == pytest.approx(1.0)
 
 
-def test_it_is_at_the_player_at_its_chase_speed_and_hurts_it() -> None:
+def test_an_enemy_runs_to_the_player_at_its_chase_speed_and_hurts_it() -> None:
     enemies = begin(level(routes=STILL))
     player = standing(7.0, 4.0)
     for _ in range(4):
@@ -158,7 +158,7 @@ def test_it_is_at_the_player_at_its_chase_speed_and_hurts_it() -> None:
     assert enemies.damage == pytest.approx(GUARD.attack_damage * DT)
 
 
-def test_who_is_on_a_platform_or_behind_a_wall_is_not_hurt() -> None:
+def test_a_player_on_a_platform_or_behind_a_wall_is_not_hurt() -> None:
     enemies = begin(level(Solid("p", "platform", box(6.5, 3.5, 7.5, 4.5, 0.0, 1.0)), routes=STILL))
     run(enemies, standing(7.0, 4.0, 1.0), 3.0)
     assert enemies.knows == (True,)
@@ -168,7 +168,7 @@ def test_who_is_on_a_platform_or_behind_a_wall_is_not_hurt() -> None:
     assert enemies.damage == 0.0
 
 
-def test_it_turns_at_its_turn_speed() -> None:
+def test_an_enemy_turns_at_its_turn_speed() -> None:
     enemies = begin(level(routes=(((1.0, 4.0, 0.0), (9.0, 4.0, 0.0)),)))
     yaws = []
     for _ in range(90):
@@ -186,12 +186,12 @@ GAPS = (wall(0.0, 5.0, 3.0, 5.2), wall(4.2, 5.0, 7.0, 5.2), wall(8.2, 5.0, 10.0,
 def test_check_gaps_visits_each_narrow_place_off_the_route() -> None:
     def nearest_visits(branches: tuple[str, ...]) -> list[float]:
         enemies = begin(level(*GAPS, kind=replace(GUARD, branches=branches)))
-        at = []
+        visited = []
         for _ in range(400):
             enemies.step(DT, FAR)
-            at.append(enemies.positions[0])
+            visited.append(enemies.positions[0])
             assert enemies.modes == ("patrol",)
-        return [min(hypot(x - gap, y - 5.1) for x, y, _ in at) for gap in (3.6, 7.6)]
+        return [min(hypot(x - gap, y - 5.1) for x, y, _ in visited) for gap in (3.6, 7.6)]
 
     assert max(nearest_visits(("check_gaps",))) < 0.5
     assert min(nearest_visits(())) > 3.0
@@ -199,13 +199,13 @@ def test_check_gaps_visits_each_narrow_place_off_the_route() -> None:
 
 def trace(enemies: Enemies, seed: int, players: list[PlayerView]) -> list[object]:
     enemies.reset(np.random.default_rng(seed))
-    found: list[object] = []
+    records: list[object] = []
     for step, player in enumerate(players):
         if step == 20:
             enemies.set_open(0, True)
         enemies.step(DT, player)
-        found.append((enemies.positions, enemies.yaws, enemies.modes, enemies.sees, enemies.damage))
-    return found
+        records.append((enemies.positions, enemies.yaws, enemies.modes, enemies.sees, enemies.damage))
+    return records
 
 
 def test_a_seed_repeats_an_episode_exactly() -> None:
@@ -224,15 +224,15 @@ def test_a_seed_repeats_an_episode_exactly() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(solids(), st.lists(places(), min_size=2, max_size=4), st.lists(places(), min_size=1, max_size=6), st.data())
-def test_an_enemy_never_comes_nearer_to_a_solid_than_its_radius(
-    things: tuple[Solid, ...],
+def test_an_enemy_never_comes_closer_to_a_solid_than_its_radius(
+    obstacles: tuple[Solid, ...],
     route: list[tuple[float, float]],
     players: list[tuple[float, float]],
     data: st.DataObject,
 ) -> None:
     x, y = data.draw(places())
     door = Barrier("door", "solid", Box((x, y, 0.0), (x + 1.0, y + 0.3, 3.0)), ())
-    game = level(*things, barriers=(door,), kind=replace(GUARD, branches=("check_gaps",), sight_angle=2 * pi))
+    game = level(*obstacles, barriers=(door,), kind=replace(GUARD, branches=("check_gaps",), sight_angle=2 * pi))
     game = replace(game, enemies=(Enemy("guard", game.enemies[0].kind, tuple((*place, 0.0) for place in route)),))
     try:
         enemies = begin(game)
@@ -246,8 +246,8 @@ def test_an_enemy_never_comes_nearer_to_a_solid_than_its_radius(
         for _ in range(12):
             x, y, _ = enemies.positions[0]
             enemies.step(DT, standing(*place))
-            far_x, far_y, _ = enemies.positions[0]
-            assert hypot(far_x - x, far_y - y) <= GUARD.chase_speed * DT + 1e-9
-            assert distance_to_boxes(far_x, far_y, things + shut) >= RADIUS - 1e-5
-            assert 0.3 < far_x < 9.7
-            assert 0.3 < far_y < 7.7
+            new_x, new_y, _ = enemies.positions[0]
+            assert hypot(new_x - x, new_y - y) <= GUARD.chase_speed * DT + 1e-9
+            assert distance_to_boxes(new_x, new_y, obstacles + shut) >= RADIUS - 1e-5
+            assert 0.3 < new_x < 9.7
+            assert 0.3 < new_y < 7.7

@@ -14,8 +14,8 @@ def around(c: Point, d: Point) -> Corners:
     return (min(c[0], d[0]), min(c[1], d[1]), min(c[2], d[2]), max(c[0], d[0]), max(c[1], d[1]), max(c[2], d[2]))
 
 
-def exactly(a: np.ndarray, b: np.ndarray, box: Corners) -> float:
-    """The length, as a part of the segment, that is inside the box: all six planes at once."""
+def exact_length(a: np.ndarray, b: np.ndarray, box: Corners) -> float:
+    """Return the fraction of the segment inside the box, from all six planes at once; not positive if it misses."""
     low, high = np.array(box[:3]), np.array(box[3:])
     delta = b - a
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -30,10 +30,10 @@ def exactly(a: np.ndarray, b: np.ndarray, box: Corners) -> float:
 
 @settings(max_examples=300, deadline=None)
 @given(POINTS, POINTS, POINTS, POINTS)
-def test_sight_is_the_exact_intersection_with_boxes(a: Point, b: Point, c: Point, d: Point) -> None:
+def test_sight_is_blocked_exactly_if_the_segment_crosses_a_box(a: Point, b: Point, c: Point, d: Point) -> None:
     box = around(c, d)
     assume(all(box[i] < box[i + 3] for i in range(3)))
-    length = exactly(np.array(a), np.array(b), box)
+    length = exact_length(np.array(a), np.array(b), box)
     assume(abs(length) > 1e-9 or a == b)
     if a != b:
         assert blocked(a, b, [box]) == (length > 0)
@@ -42,7 +42,7 @@ def test_sight_is_the_exact_intersection_with_boxes(a: Point, b: Point, c: Point
 
 @settings(max_examples=200, deadline=None)
 @given(POINTS, POINTS, POINTS, POINTS)
-def test_walking_is_sight_without_heights(a: Point, b: Point, c: Point, d: Point) -> None:
+def test_walking_is_blocked_like_sight_without_heights(a: Point, b: Point, c: Point, d: Point) -> None:
     box = around(c, d)
     assume(box[0] < box[3] and box[1] < box[4])
     flat = (box[0], box[1], -1.0, box[3], box[4], 1.0)

@@ -1,4 +1,4 @@
-"""The scripted expert finishes what can be finished, by actions that a player has."""
+"""The scripted expert finishes every level that can be finished, with the actions of a player."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _expert(level: str, variant: str = "v0", careful: bool = True) -> Iterator[t
         env.close()
 
 
-def _played(env: RecordEpisode, expert: Expert, seed: int) -> Episode:
+def _play(env: RecordEpisode, expert: Expert, seed: int) -> Episode:
     play_episode(env, expert, seed)
     return env.episode
 
@@ -90,58 +90,58 @@ def _left_is_open(episode: Episode) -> bool:
 
 
 @pytest.mark.parametrize(("variant", "seed"), [("v0", 0), ("v0", 1), ("v1", 0)])
-def test_it_finds_the_way_through_navigation(variant: str, seed: int) -> None:
+def test_the_expert_finishes_navigation(variant: str, seed: int) -> None:
     with _expert("navigation", variant) as (env, expert):
-        episode = _played(env, expert, seed)
+        episode = _play(env, expert, seed)
     assert episode.success
-    # Up to the platform, as only stairs lead there, and crouched through the gap.
-    assert max(shot.player.position[2] for shot in episode.snapshots) > 1.4
-    assert any(shot.player.crouching for shot in episode.snapshots)
+    # It climbed the stairs to the platform, and crouched through the gap.
+    assert max(snapshot.player.position[2] for snapshot in episode.snapshots) > 1.4
+    assert any(snapshot.player.crouching for snapshot in episode.snapshots)
 
 
-def test_it_goes_as_far_as_it_can_where_the_way_is_shut() -> None:
+def test_the_expert_goes_as_far_as_it_can_if_the_route_is_blocked() -> None:
     with _expert("navigation", "v2") as (env, expert):
         env.reset(seed=0)
         expert.reset()
         for _ in range(60):
             env.step(expert.act())
-        # To the block that shuts the corridor, 3.6 to 4.4 m from its west end at x = 8.
+        # It reached the block in the corridor. The corridor begins at x = 8, the block 3.6 to 4.4 m further east.
         assert env.episode.states[-1] == 1
         assert 11.0 < env.episode.snapshots[-1].player.position[0] < 11.6
 
 
-def test_it_takes_the_branch_that_has_opened() -> None:
-    taken = {}
+def test_the_expert_takes_the_open_branch() -> None:
+    final_y = {}
     with _expert("branching") as (env, expert):
         for seed in range(20):
-            episode = _played(env, expert, seed)
+            episode = _play(env, expert, seed)
             assert episode.success
-            taken["left" if _left_is_open(episode) else "right"] = episode.snapshots[-1].player.position[1]
-            if len(taken) == 2:
+            final_y["left" if _left_is_open(episode) else "right"] = episode.snapshots[-1].player.position[1]
+            if len(final_y) == 2:
                 break
-    assert taken["right"] < 9.6 < taken["left"]
+    assert final_y["right"] < 9.6 < final_y["left"]
 
 
-def test_it_passes_bars_that_rise() -> None:
+def test_the_expert_passes_rising_bars() -> None:
     with _expert("branching", "v1") as (env, expert):
         for seed in range(20):
-            episode = _played(env, expert, seed)
+            episode = _play(env, expert, seed)
             if _left_is_open(episode):
                 break
     assert episode.success
-    assert max(shot.player.position[2] for shot in episode.snapshots) > 0.4
+    assert max(snapshot.player.position[2] for snapshot in episode.snapshots) > 0.4
 
 
-def test_the_same_seed_is_the_same_episode_whatever_was_played_before() -> None:
+def test_a_seed_repeats_an_episode_after_other_episodes() -> None:
     with _expert("cover_and_hide", careful=False) as (env, expert):
-        first = _played(env, expert, 3)
-        _played(env, expert, 4)
-        again = _played(env, expert, 3)
-    assert np.array_equal(first.actions, again.actions)
+        first = _play(env, expert, 3)
+        _play(env, expert, 4)
+        second = _play(env, expert, 3)
+    assert np.array_equal(first.actions, second.actions)
     assert (first.actions < np.array(BRANCHES)).all()
 
 
-def test_it_stands_still_where_the_spec_sends_it_nowhere() -> None:
+def test_the_expert_stands_still_if_the_spec_has_no_goal() -> None:
     env = make_env("cover_and_hide", spec="import stealth\nspec hidden_at_once { limit 9 steps\n keep alive }")
     expert = Expert(env)
     env.reset(seed=0)
@@ -149,28 +149,29 @@ def test_it_stands_still_where_the_spec_sends_it_nowhere() -> None:
     env.close()
 
 
-def test_it_plays_a_level_it_was_not_made_for(tmp_path: Path) -> None:
-    """Up two steps of a metre, over a gap that only a sprint carries across, and down again."""
+def test_the_expert_finishes_a_level_that_is_not_shipped(tmp_path: Path) -> None:
+    """The route goes up two steps of a metre, across a gap that only a sprint can cross, and down again."""
     (tmp_path / "tower.tltl").write_text(
         "import spatial\nentity top, out\nspec tower { limit 100 steps\n reach near(top) then near(out) }\n"
     )
     (tmp_path / "tower.toml").write_text(TOWER)
     with _expert(str(tmp_path / "tower.toml")) as (env, expert):
-        episode = _played(env, expert, 0)
+        episode = _play(env, expert, 0)
     assert episode.success and len(episode.actions) < 60
 
 
-def test_it_comes_down_from_a_barrier_that_is_shut(tmp_path: Path) -> None:
+def test_the_expert_climbs_down_from_a_shut_barrier(tmp_path: Path) -> None:
     (tmp_path / "block.tltl").write_text(
         "import spatial\nentity out\nspec block { limit 40 steps\n reach near(out) }\n"
     )
     (tmp_path / "block.toml").write_text(BLOCK)
     with _expert(str(tmp_path / "block.toml")) as (env, expert):
-        episode = _played(env, expert, 0)
+        episode = _play(env, expert, 0)
     assert episode.success
 
 
-def test_switches_that_the_spec_does_not_name_are_pressed_where_they_open_the_way() -> None:
+def test_the_expert_presses_switches_that_open_its_route() -> None:
+    """The spec does not name these switches."""
     spec = "import stealth\nclock 0.15 s\nentity exit\nspec leave { limit 60 s  reach near(exit)  keep alive }\n"
     env = make_env("cover_and_hide", spec=spec)
     assert play_episode(env, Expert(env), 0)["success"]

@@ -1,4 +1,4 @@
-"""Where a spec sends the player is read off its automaton."""
+"""The next goals of the player are read from the automaton of the spec."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ PLACES = ("s1", "s2", "s3", "e_left", "e_right")
     ("state", "opened", "goals"),
     [(0, None, ("s1",)), (1, None, ("s2",)), (4, "left", ("e_left",)), (4, "right", ("e_right",)), (4, None, ())],
 )
-def test_the_way_of_branching(state: int, opened: str | None, goals: tuple[str, ...]) -> None:
+def test_the_goals_of_branching(state: int, opened: str | None, goals: tuple[str, ...]) -> None:
     task = load_task(BRANCHING)
     sample = SAMPLE | ({f"open_{opened}": 1.0} if opened else {})
     assert next_goals(task.fspa, state, sample, task.params, PLACES) == goals
 
 
-def test_an_automaton_that_is_content_sends_nowhere() -> None:
+def test_an_accepting_state_has_no_goals() -> None:
     task = load_task(BRANCHING)
     (accepting,) = (state.id for state in task.fspa.states if state.accepting)
     assert next_goals(task.fspa, accepting, SAMPLE, task.params, PLACES) == ()
 
 
-def test_the_choice_that_leads_nearer_to_acceptance_comes_first() -> None:
+def test_the_goal_closest_to_acceptance_comes_first() -> None:
     task = load_task("import spatial\nentity a, b\nspec either = (F (near(a) & X F near(b))) | F near(b)")
     sample = {"distance(a)": 9.0, "distance(b)": 9.0}
     assert next_goals(task.fspa, 0, sample, {"level_size": 20.0}, ("a", "b"))[0] == "b"

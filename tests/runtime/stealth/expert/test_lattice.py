@@ -1,4 +1,4 @@
-"""What actions do on the lattice is what they do in the physics, and its ways are as long as they are."""
+"""An action on the lattice has the same effect as in the physics, and routes have the right length."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import World
 
 
-def test_an_action_that_is_feasible_ends_where_the_lattice_says() -> None:
+def test_a_feasible_action_ends_where_the_lattice_predicts() -> None:
     cover = load_level("cover_and_hide")
     lattice = lattice_of(cover, frozenset(range(len(cover.barriers))))
     rng = np.random.default_rng(3)
@@ -29,18 +29,18 @@ def test_an_action_that_is_feasible_ends_where_the_lattice_says() -> None:
             assert world.player.position[:2] == pytest.approx(here + WAYS[chosen], abs=0.01)
 
 
-def test_a_way_around_a_wall_takes_as_many_decisions_as_its_length_says() -> None:
+def test_the_decisions_around_a_wall_match_the_length_of_the_route() -> None:
     lattice = lattice_of(level(wall(5.0, 0.0, 5.4, 6.0)), frozenset())
     way = lattice.way_to((8.0, 2.0, 0.0), within=0.8)
     start = np.array([[2.0, 2.0]])
-    # To the wall's end by straight and diagonal steps: 2.7 m of both to the corner, and back down.
+    # Straight to the corner of the wall, 2.7 m east and 4.3 m north, and as far again to the goal.
     shortest = 2 * np.hypot(2.7, 4.3) / 0.45
-    found = float(lattice.values(way, start)[0])
-    assert shortest * 0.9 < found < shortest * 1.2
+    decisions = float(lattice.values(way, start)[0])
+    assert shortest * 0.9 < decisions < shortest * 1.2
     assert lattice.values(way, np.array([[8.0, 2.0]]))[0] == 0.0
 
 
-def test_what_is_walled_in_is_not_reached() -> None:
+def test_a_place_behind_a_wall_is_unreachable() -> None:
     lattice = lattice_of(level(wall(5.0, 0.0, 5.4, 8.0)), frozenset())
     way = lattice.way_to((8.0, 2.0, 0.0), within=0.8)
     assert lattice.values(way, np.array([[2.0, 2.0]]))[0] >= 0.99 * FAR

@@ -1,4 +1,4 @@
-"""Lines of sight to a lattice's places are those by which enemies see."""
+"""Lines of sight to the places of a lattice agree with the sight of enemies."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from tltl_runtime.stealth.level import Solid
 
 @settings(max_examples=25, deadline=None)
 @given(solids(), places(), st.integers(0, 10**6))
-def test_places_that_are_wholly_seen_or_hidden_are_so_for_enemies(
+def test_enemies_agree_on_places_that_are_fully_seen_or_hidden(
     boxes: tuple[Solid, ...], eyes: tuple[float, float], seed: int
 ) -> None:
-    made = level(*boxes)
-    lattice = lattice_of(made, frozenset())
-    seen = Lines(made, frozenset()).seen_from(*eyes)
-    x, y = (round(each / ROUNDED) * ROUNDED for each in eyes)
-    found = [corners(each.box) for each in made.solids if each.box.high[2] > 0.0]
+    game_level = level(*boxes)
+    lattice = lattice_of(game_level, frozenset())
+    seen_shares = Lines(game_level, frozenset()).seen_from(*eyes)
+    x, y = (round(coordinate / ROUNDED) * ROUNDED for coordinate in eyes)
+    obstacles = [corners(solid.box) for solid in game_level.solids if solid.box.high[2] > 0.0]
     count = len(lattice.places)
     for place in np.random.default_rng(seed).integers(count, size=40 if count else 0):
         px, py = lattice.places[place]
         for stance, head in enumerate((STANDING_HEAD, CROUCHED_HEAD)):
-            free = any(not blocked((x, y, EYES), (px, py, part * head), found) for part in (1.0, CHEST))
-            if seen[stance, place] in (0.0, 1.0):
-                assert free == bool(seen[stance, place])
+            is_visible = any(not blocked((x, y, EYES), (px, py, part * head), obstacles) for part in (1.0, CHEST))
+            if seen_shares[stance, place] in (0.0, 1.0):
+                assert is_visible == bool(seen_shares[stance, place])
 
 
-def test_who_crouches_behind_something_low_is_hidden() -> None:
-    made = level(low(4.9, 1.0, 5.1, 7.0, height=1.2))
-    behind = int(np.argmin(np.hypot(*(lattice_of(made, frozenset()).places - (5.6, 4.0)).T)))
-    assert Lines(made, frozenset()).seen_from(1.0, 4.0)[:, behind].tolist() == [1.0, 0.0]
+def test_a_player_crouching_behind_low_cover_is_hidden() -> None:
+    game_level = level(low(4.9, 1.0, 5.1, 7.0, height=1.2))
+    behind = int(np.argmin(np.hypot(*(lattice_of(game_level, frozenset()).places - (5.6, 4.0)).T)))
+    assert Lines(game_level, frozenset()).seen_from(1.0, 4.0)[:, behind].tolist() == [1.0, 0.0]

@@ -1,4 +1,4 @@
-"""What is foreseen is what the physics does, to a few centimetres."""
+"""Predicted motion agrees with the physics to a few centimetres."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def _world() -> Iterator[World]:
 
 
 def _motion(world: World) -> Motion:
-    return Motion(world.kind, [each.box for each in (*world.level.solids, *world.level.barriers)])
+    return Motion(world.kind, [obstacle.box for obstacle in (*world.level.solids, *world.level.barriers)])
 
 
-def test_random_play_is_foreseen(world: World) -> None:
-    """Each decision from where the physics is; landings and stairs are the few that differ by more."""
+def test_random_play_is_predicted(world: World) -> None:
+    """Each prediction starts from the state in the physics. A few landings and stairs have larger errors."""
     motion, rng = _motion(world), np.random.default_rng(0)
     world.reset(None)
     before, actions, after = [], [], []
@@ -39,29 +39,32 @@ def test_random_play_is_foreseen(world: World) -> None:
         world.step(action.tolist())
         actions.append(action)
         after.append(world.player.position)
-    foreseen, _ = motion.step(joined(before), np.array(actions))
-    off = np.abs(np.stack([foreseen.x, foreseen.y, foreseen.z], axis=1) - np.array(after)).max(axis=1)
-    assert np.quantile(off, 0.5) < 0.005
-    assert np.quantile(off, 0.95) < 0.05
+    predicted, _ = motion.step(joined(before), np.array(actions))
+    errors = np.abs(np.stack([predicted.x, predicted.y, predicted.z], axis=1) - np.array(after)).max(axis=1)
+    assert np.quantile(errors, 0.5) < 0.005
+    assert np.quantile(errors, 0.95) < 0.05
 
 
-def test_bodies_do_not_meet_each_other_and_may_be_foreseen_in_any_company(world: World) -> None:
+def test_bodies_do_not_affect_each_other(world: World) -> None:
     motion = _motion(world)
     alone = poses_of(world.player)
     far = Poses(*(np.array([value]) for value in (20.0, 9.0, 1.5, 0.0, False, True, 1.0)))
     action = np.array([[1, 0, 1, 0, 1]])
-    one, _ = motion.step(alone, action)
-    both, _ = motion.step(joined([alone, far]), np.repeat(action, 2, axis=0))
-    assert (one.x[0], one.y[0], one.z[0]) == pytest.approx((both.x[0], both.y[0], both.z[0]), abs=1e-9)
+    predicted_alone, _ = motion.step(alone, action)
+    predicted_together, _ = motion.step(joined([alone, far]), np.repeat(action, 2, axis=0))
+    assert (predicted_alone.x[0], predicted_alone.y[0], predicted_alone.z[0]) == pytest.approx(
+        (predicted_together.x[0], predicted_together.y[0], predicted_together.z[0]), abs=1e-9
+    )
 
 
-def test_a_jump_over_a_mover_does_not_touch_it_and_a_walk_into_it_does() -> None:
+def test_a_walk_into_a_mover_touches_it_and_a_jump_over_it_does_not() -> None:
     floor, bar = Box((-9.0, -9.0, -1.0), (9.0, 9.0, 0.0)), Box((0.6, -1.0, 0.0), (0.8, 1.0, 0.2))
     motion = Motion(PlayerKind(), [floor])
-    start = Poses(*(np.zeros(2), np.zeros(2), np.array([0.0, 0.4]), np.array([0.0, 5.0])), *_still(2))
-    _, met = motion.step(start, np.array([[1, 0, 0, 0, 0], [1, 0, 0, 0, 0]]), [bar])
-    assert met.tolist() == [True, False]
+    start = Poses(*(np.zeros(2), np.zeros(2), np.array([0.0, 0.4]), np.array([0.0, 5.0])), *_stances(2))
+    _, touched = motion.step(start, np.array([[1, 0, 0, 0, 0], [1, 0, 0, 0, 0]]), [bar])
+    assert touched.tolist() == [True, False]
 
 
-def _still(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _stances(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The crouching, grounded and stamina columns of bodies, of which only the first is on the ground."""
     return np.zeros(count, dtype=np.bool_), np.arange(count) == 0, np.ones(count)

@@ -1,4 +1,4 @@
-"""Where moving obstacles will be is foreseen from where they were seen."""
+"""The positions of movers are predicted from where they were seen."""
 
 from __future__ import annotations
 
@@ -11,39 +11,39 @@ from tltlc.core.record import replace
 
 
 @pytest.mark.parametrize("unseen", [1, 7])
-def test_movers_are_foreseen(unseen: int) -> None:
-    """Ten decisions ahead, also by a player who looks at them only now and then."""
+def test_movers_are_predicted(unseen: int) -> None:
+    """Predict ten decisions ahead, also if the player looks at the movers only now and then."""
     game = Game(load_level("branching", "v1"))
     clocks = Clocks(game.level)
     for _ in range(12):
         for _ in range(unseen):
             game.step((0, 0, 0, 0, 0))
         clocks.see(game.snapshot())
-    foreseen = clocks.swept(9)
+    predicted = clocks.swept(9)
     for _ in range(10):
         game.step((0, 0, 0, 0, 0))
-    for box, place, mover in zip(foreseen, game.snapshot().movers, game.level.movers, strict=True):
-        far = reach_of(mover)
+    for box, place, mover in zip(predicted, game.snapshot().movers, game.level.movers, strict=True):
+        reach = reach_of(mover)
         for axis in range(3):
             half = mover.size[axis] / 2
-            assert far.low[axis] - 1e-9 <= box.low[axis] <= place[axis] - half + 1e-9
-            assert place[axis] + half - 1e-9 <= box.high[axis] <= far.high[axis] + 1e-9
+            assert reach.low[axis] - 1e-9 <= box.low[axis] <= place[axis] - half + 1e-9
+            assert place[axis] + half - 1e-9 <= box.high[axis] <= reach.high[axis] + 1e-9
     game.close()
 
 
 def test_a_mover_that_waits_for_the_player_is_noticed() -> None:
-    """Its clock stands still while somebody has no room to be pushed to."""
+    """The clock of a mover stops while a player who has no room to move is in its way."""
     game = Game(load_level("branching"))
     clocks = Clocks(game.level)
     clocks.see(game.snapshot())
     for _ in range(20):
         game.step((0, 0, 0, 0, 0))
-    late = game.snapshot()
+    before = game.snapshot()
     game.step((0, 0, 0, 0, 0))
-    shown = game.snapshot()
+    after = game.snapshot()
     # As if the movers had stood still in the last decision.
-    clocks.see(replace(shown, movers=late.movers))
-    for box, place, mover in zip(clocks.swept(0), late.movers, game.level.movers, strict=True):
+    clocks.see(replace(after, movers=before.movers))
+    for box, place, mover in zip(clocks.swept(0), before.movers, game.level.movers, strict=True):
         for axis in range(3):
             half = mover.size[axis] / 2
             assert box.low[axis] - 1e-9 <= place[axis] - half and place[axis] + half <= box.high[axis] + 1e-9

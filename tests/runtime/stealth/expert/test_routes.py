@@ -1,4 +1,4 @@
-"""Where a player can stand, and the ways between."""
+"""The places where a player can stand, and the routes between them."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def test_a_place_has_ground_and_room() -> None:
 
 
 @pytest.mark.parametrize(("variant", "there"), [("v0", True), ("v1", True), ("v2", False)])
-def test_the_way_to_the_second_switch_of_navigation(variant: str, there: bool) -> None:
+def test_a_route_leads_to_the_second_switch_of_navigation_except_in_v2(variant: str, there: bool) -> None:
     routes = routes_of(load_level("navigation", variant), frozenset({1}))
     seconds = routes.field(S2).at(*(np.array([value]) for value in START))
     assert isinf(seconds[0]) is not there
 
 
-def test_the_kinds_of_a_way() -> None:
+def test_a_route_has_legs_of_several_kinds() -> None:
     level = load_level("navigation")
     up = routes_of(level, frozenset({1})).field(S2).way(START)
     assert {leg.kind for leg in up} == {"walk", "crouch", "climb", "drop", "leap"}
@@ -45,18 +45,18 @@ def test_the_kinds_of_a_way() -> None:
     assert fall.kind in ("drop", "leap") and fall.place[2] == 0.0
 
 
-def test_a_way_ends_where_it_is_cut_off() -> None:
+def test_a_route_can_be_cut_at_a_length() -> None:
     field = routes_of(load_level("navigation"), frozenset({1})).field(S2)
     whole, piece = field.way(START), field.way(START, 3.0)
     assert whole[: len(piece)] == piece
     assert 2.5 < _length(piece) < 5.5 < _length(whole)
 
 
-def test_without_a_way_it_leads_to_the_nearest_place() -> None:
+def test_without_a_route_the_field_leads_to_the_nearest_place() -> None:
     routes = routes_of(load_level("navigation", "v2"), frozenset({1}))
     end = routes.field_from(START, S2).way(START)[-1].place
     assert 11.0 < end[0] < 11.5
 
 
 def _length(legs: tuple[Leg, ...]) -> float:
-    return sum(dist(one.place, other.place) for one, other in pairwise(legs))
+    return sum(dist(start.place, end.place) for start, end in pairwise(legs))

@@ -1,4 +1,4 @@
-"""Sneaking: unseen where that is possible, and the same game without care is lost."""
+"""Sneaking: a careful player stays unseen where that is possible, and a careless one loses the same game."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ GOAL = (8.2, 7.2, 0.0)
 
 
 def guarded() -> Level:
-    """A guard that stands in the west and looks east, and a low wall all along the way behind which one can crouch."""
+    """Return a level with a guard in the west that looks east, and a low wall along the route to crouch behind."""
     hedge = Solid("hedge", "low", box(3.0, 6.0, 10.0, 6.3, 0.0, 1.2))
-    made = level(hedge, routes=(((1.5, 3.0, 0.0),),))
-    return replace(made, start=Start((3.6, 7.2, 0.0)))
+    base = level(hedge, routes=(((1.5, 3.0, 0.0),),))
+    return replace(base, start=Start((3.6, 7.2, 0.0)))
 
 
-def passed(player: type[Sneaker] | type[Walker]) -> tuple[bool, int, int]:
-    """Whether the goal was reached unseen, after how many decisions, and in how many of them crouched."""
+def play_to_goal(player: type[Sneaker] | type[Walker]) -> tuple[bool, int, int]:
+    """Return whether the goal was reached unseen, the number of decisions, and the number of crouched ones."""
     with closing(Game(guarded())) as game:
         game.reset(0)
-        playing = player(game.level)
+        agent = player(game.level)
         seen, crouched = False, 0
         for decision in range(60):
             snapshot = game.snapshot()
@@ -39,18 +39,18 @@ def passed(player: type[Sneaker] | type[Walker]) -> tuple[bool, int, int]:
             x, y, _ = snapshot.player.position
             if abs(x - GOAL[0]) < 1.0 and abs(y - GOAL[1]) < 1.0:
                 return not seen, decision, crouched
-            game.step(playing.act(snapshot, GOAL))
+            game.step(agent.act(snapshot, GOAL))
     raise AssertionError("the goal was not reached")
 
 
-def test_it_crouches_where_only_that_hides() -> None:
-    unseen, decisions, crouched = passed(Sneaker)
+def test_the_sneaker_crouches_where_only_that_hides_it() -> None:
+    unseen, decisions, crouched = play_to_goal(Sneaker)
     assert unseen
     assert crouched > 0.5 * decisions
 
 
-def test_who_does_not_mind_runs_and_is_seen() -> None:
-    unseen, _, crouched = passed(Walker)
+def test_the_walker_does_not_crouch_and_is_seen() -> None:
+    unseen, _, crouched = play_to_goal(Walker)
     assert not unseen
     assert crouched == 0
 
@@ -64,18 +64,18 @@ def test_who_does_not_mind_runs_and_is_seen() -> None:
         ("branching", "v0", (1,)),
     ],
 )
-def test_the_careful_expert_finishes_and_nobody_chases_it(name: str, variant: str, seeds: tuple[int, ...]) -> None:
+def test_the_careful_expert_finishes_without_a_chase(name: str, variant: str, seeds: tuple[int, ...]) -> None:
     env = RecordEpisode(make_env(name, variant))
     with closing(env):
         expert = Expert(env)
         for seed in seeds:
             assert play_episode(env, expert, seed)["success"]
             episode = env.episode
-            assert "chase" not in {mode for shot in episode.snapshots for mode in shot.modes}
+            assert "chase" not in {mode for snapshot in episode.snapshots for mode in snapshot.modes}
             assert episode.snapshots[-1].health == 1.0
 
 
-def test_the_careless_one_fails_in_most_episodes_where_a_guard_is() -> None:
+def test_the_careless_expert_loses_most_episodes_with_a_guard() -> None:
     lost = 0
     env = make_env("cover_and_hide")
     with closing(env):

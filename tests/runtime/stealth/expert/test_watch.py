@@ -1,4 +1,4 @@
-"""Who watches an enemy foresees what it does, as far as that is settled."""
+"""A player who watches an enemy predicts its actions, as far as they are determined."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STAY = (0, 0, 0, 0, 0)
 
 @contextmanager
 def watched(name: str, variant: str, decisions: int) -> Iterator[tuple[Game, Watch]]:
-    """A game that was watched for so many decisions, by a player who does nothing where nobody sees it."""
+    """Yield a game that was watched for ``decisions`` steps by a player who stands still, out of sight."""
     with closing(Game(load_level(name, variant))) as game:
         game.reset(11)
         watch = Watch(game.level)
@@ -30,7 +30,7 @@ def watched(name: str, variant: str, decisions: int) -> Iterator[tuple[Game, Wat
 
 @pytest.mark.parametrize("name", ["cover_and_hide", "branching"])
 @pytest.mark.parametrize("decisions", [0, 37])
-def test_patrols_are_foreseen_exactly(name: str, decisions: int) -> None:
+def test_patrols_are_predicted_exactly(name: str, decisions: int) -> None:
     with watched(name, "v0", decisions) as (game, watch):
         outlooks = watch.outlook(60)
         for step in range(60):
@@ -42,13 +42,13 @@ def test_patrols_are_foreseen_exactly(name: str, decisions: int) -> None:
                 assert outlook.poses[0, step] == pytest.approx((x, y, yaw, 0.0), abs=1e-9)
 
 
-def test_of_narrow_places_that_may_be_visited_next_one_model_is_right() -> None:
+def test_a_model_predicts_which_gap_is_visited_next() -> None:
     with watched("cover_and_hide", "v2", 20) as (game, watch):
         surprises = 0
         for _ in range(250):
             game.step(STAY)
             surprises += watch.see(game.snapshot())
-        # Three choices each time and twelve models: hardly ever is none of them right.
+        # There are three choices each time, and twelve models. It is rare that no model is right.
         assert surprises <= 3
         outlook = watch.outlook(80)[0]
         assert len(outlook.poses) > 1
@@ -57,7 +57,7 @@ def test_of_narrow_places_that_may_be_visited_next_one_model_is_right() -> None:
         assert first < 0.3 < last
 
 
-def test_who_starts_watching_late_learns_where_the_enemy_goes() -> None:
+def test_a_late_watcher_learns_where_the_enemy_goes() -> None:
     with closing(Game(load_level("cover_and_hide"))) as game:
         game.reset(11)
         for _ in range(50):
