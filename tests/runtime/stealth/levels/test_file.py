@@ -39,8 +39,8 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def solid(level: Level, name: str) -> Solid:
-    (found,) = (each for each in level.solids if each.name == name)
-    return found
+    (match,) = (candidate for candidate in level.solids if candidate.name == name)
+    return match
 
 
 def write(path: str, text: str) -> None:
@@ -55,37 +55,37 @@ def test_message(case: Case, folder: Path) -> None:
     _, _, *arguments = case.arguments
     with pytest.raises(TltlError) as error:
         load_level(*arguments)
-    found = render(error.value.diagnostics)
-    case.check(found)
-    assert case.name[:7] in found
-    # Each message says where, unless it is about an argument, and a way out.
-    messages = re.split(r"^(?=error\[)", found, flags=re.MULTILINE)[1:]
+    text = render(error.value.diagnostics)
+    case.check(text)
+    assert case.name[:7] in text
+    # Each message has a help, and a location unless it is about an argument.
+    messages = re.split(r"^(?=error\[)", text, flags=re.MULTILINE)[1:]
     assert all("  help: " in message for message in messages)
     assert all(re.search(r"\.toml:\d+:\d+\n", message) for message in messages) or arguments == ["navigaton", "v0"]
 
 
-def test_the_levels_of_the_paper_are_there_in_three_variants() -> None:
+def test_the_levels_of_the_paper_have_three_variants() -> None:
     assert level_names() == ("branching", "cover_and_hide", "navigation")
     assert all(variants(name) == ("v0", "v1", "v2") for name in level_names())
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
-def test_a_shipped_level_has_what_its_spec_speaks_of(name: str, variant: str) -> None:
+def test_a_shipped_level_has_the_signals_and_entities_of_its_spec(name: str, variant: str) -> None:
     level = load_level(name, variant)
     assert (level.name, level.variant) == (name, variant)
     path, _, spec = level.spec.rpartition(":")
-    fspa = next(each for each in tltlc.compile_file(path) if each.name == spec)
-    wanted = {signal.name for signal in fspa.signals}
-    plain = {signal for signal in wanted if "(" not in signal} - {"health"}
-    assert plain <= {alias for alias, _ in level.signals}
-    called = {argument for signal in wanted for argument in re.findall(r"\((\w+)\)", signal)}
-    assert called and called <= set(entity_names(level))
+    fspa = next(automaton for automaton in tltlc.compile_file(path) if automaton.name == spec)
+    signals = {signal.name for signal in fspa.signals}
+    plain_signals = {signal for signal in signals if "(" not in signal} - {"health"}
+    assert plain_signals <= {alias for alias, _ in level.signals}
+    entities = {argument for signal in signals for argument in re.findall(r"\((\w+)\)", signal)}
+    assert entities and entities <= set(entity_names(level))
     assert pickle.loads(pickle.dumps(level)) == level
 
 
-def test_the_variants_change_what_the_paper_says() -> None:
-    block = [solid(load_level("navigation", variant), "corridor_block_2").box for variant in ("v0", "v1", "v2")]
-    gaps = [max(4.5 - box.high[1], box.low[1] - 0.5) for box in block]
+def test_the_variants_differ_as_in_the_paper() -> None:
+    boxes = [solid(load_level("navigation", variant), "corridor_block_2").box for variant in ("v0", "v1", "v2")]
+    gaps = [max(4.5 - box.high[1], box.low[1] - 0.5) for box in boxes]
     assert gaps[0] > gaps[1] > 0.9
     assert gaps[2] == pytest.approx(0.0)
 
@@ -104,7 +104,7 @@ def test_the_variants_change_what_the_paper_says() -> None:
 
 def test_variants_share_what_they_do_not_change() -> None:
     first, second = load_level("navigation"), load_level("navigation", "v2")
-    changed = {one.name for one, other in zip(first.solids, second.solids, strict=True) if one != other}
+    changed = {before.name for before, after in zip(first.solids, second.solids, strict=True) if before != after}
     assert changed == {"corridor_block_2"}
     assert first.switches == second.switches
     names = [name for name, _ in second.files]
@@ -113,19 +113,19 @@ def test_variants_share_what_they_do_not_change() -> None:
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
-def test_solids_of_a_shipped_level_do_not_run_into_its_barriers(name: str, variant: str) -> None:
+def test_solids_of_a_shipped_level_do_not_overlap_its_barriers(name: str, variant: str) -> None:
     level = load_level(name, variant)
     for barrier in level.barriers:
-        for each in level.solids:
-            apart = any(
-                each.box.high[axis] <= barrier.box.low[axis] or barrier.box.high[axis] <= each.box.low[axis]
+        for obstacle in level.solids:
+            is_apart = any(
+                obstacle.box.high[axis] <= barrier.box.low[axis] or barrier.box.high[axis] <= obstacle.box.low[axis]
                 for axis in range(3)
             )
-            assert apart, (barrier.name, each.name)
+            assert is_apart, (barrier.name, obstacle.name)
 
 
 @pytest.mark.parametrize("line", ['spec = "{}.tltl:careful"\n{}', '{1}[[use]]\nasset = "{0}"\n'])
-def test_names_that_no_file_can_have_are_missing_ones(folder: Path, line: str) -> None:
+def test_names_too_long_for_a_file_are_reported_as_missing(folder: Path, line: str) -> None:
     write("long.toml", line.format("a" * 300, ROOM))
     with pytest.raises(TltlError, match=r"TLT0805: there is no .*`aaa"):
         load_level("long.toml")
@@ -144,7 +144,7 @@ def test_boxes_stairs_and_the_enclosure(folder: Path) -> None:
     assert level.sensors.map is None
 
 
-def test_a_designer_adds_a_level_with_parts_of_the_package_and_of_their_own(folder: Path) -> None:
+def test_a_level_can_use_assets_and_overlays_of_its_own_and_of_the_package(folder: Path) -> None:
     write("assets/bar.toml", BAR)
     write(
         "overlays/quick.toml",
@@ -194,20 +194,20 @@ size = [0.5, 0.5, 0.5]
 
 
 @pytest.mark.parametrize("name", ["../navigation", "/etc/passwd", "", ".", "navigation.toml.txt"])
-def test_a_level_is_no_path_into_the_dark(name: str) -> None:
+def test_names_without_a_level_are_rejected(name: str) -> None:
     with pytest.raises(TltlError):
         load_level(name)
 
 
-def test_places_survive_odd_toml(folder: Path) -> None:
-    odd = 'doc = """a [[wall]]\n= "]" # no comment"""  # a [comment]\n' + ROOM.partition("\n")[2]
-    odd += "[sensors] # [x]\nentities = [\n  # ] ,\n  'exit' ]\n"
-    odd += "map.cell = 0.5\nmap . \"extent\" = 15\nmap.types = ['wool']\n"
-    write("room.toml", odd)
+def test_labels_are_correct_in_unusual_toml(folder: Path) -> None:
+    text = 'doc = """a [[wall]]\n= "]" # no comment"""  # a [comment]\n' + ROOM.partition("\n")[2]
+    text += "[sensors] # [x]\nentities = [\n  # ] ,\n  'exit' ]\n"
+    text += "map.cell = 0.5\nmap . \"extent\" = 15\nmap.types = ['wool']\n"
+    write("room.toml", text)
     with pytest.raises(TltlError) as error:
         load_level("room.toml")
-    places = [(d.labels[0].source.slice(d.labels[0].span), d.title) for d in error.value.diagnostics]
-    assert places == [("map.types", "there is no cell type `wool`"), ("entities", "there is no entity `exit`")]
+    labels = [(d.labels[0].source.slice(d.labels[0].span), d.title) for d in error.value.diagnostics]
+    assert labels == [("map.types", "there is no cell type `wool`"), ("entities", "there is no entity `exit`")]
 
 
 def test_loading_a_level_loads_no_physics() -> None:
@@ -219,12 +219,12 @@ def test_loading_a_level_loads_no_physics() -> None:
     assert done.stdout == "[]\n"
 
 
-def test_assets_and_overlays_are_all_used() -> None:
+def test_every_asset_and_overlay_is_used() -> None:
     used = {name for level, variant in SHIPPED for name, _ in load_level(level, variant).files}
     assert used == {str(path.relative_to(LEVELS)) for path in LEVELS.rglob("*.toml")}
 
 
-def test_the_reference_describes_a_level_that_loads_and_every_key(folder: Path) -> None:
+def test_the_level_in_the_reference_loads_and_every_key_is_documented(folder: Path) -> None:
     text = (LEVELS.parents[2] / "docs" / "levels.md").read_text(encoding="utf-8")
     level, overlay = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
     (spec,) = re.findall(r"```tltl\n(.*?)```", text, re.DOTALL)
@@ -259,25 +259,29 @@ DAMAGE += ["[{a=1}]", "\n", "name", "[sensors.map]\n", "[[use]]\n", "[variants.v
 @pytest.mark.parametrize(
     "file", ["branching.toml", "assets/guard.toml", "assets/crates.toml", "overlays/guard_alert.toml"]
 )
-def test_damaged_files_are_told_so_and_nothing_else_happens(file: str, seed: int, folder: Path) -> None:
+def test_damaged_files_are_loaded_or_rejected_with_diagnostics(file: str, seed: int, folder: Path) -> None:
     shutil.copytree(LEVELS, folder / "levels")
     lines = (LEVELS / file).read_text(encoding="utf-8").split("\n")
     draw = random.Random(seed)
-    refused = 0
+    rejected = 0
     for _ in range(15):
         damaged = list(lines)
         for _ in range(draw.randint(1, 3)):
-            at, what = draw.randrange(len(damaged)), draw.choice(DAMAGE)
-            key, equals, _ = damaged[at].partition("=")
-            column = draw.randrange(len(damaged[at]) + 1)
-            inside = damaged[at][:column] + what + damaged[at][column:]
-            damaged[at] = draw.choice([f"{key}= {what}" if equals else what, inside, "", f"{damaged[at]}\n{what} = 1"])
+            row, piece = draw.randrange(len(damaged)), draw.choice(DAMAGE)
+            key, equals, _ = damaged[row].partition("=")
+            column = draw.randrange(len(damaged[row]) + 1)
+            inside = damaged[row][:column] + piece + damaged[row][column:]
+            damaged[row] = draw.choice(
+                [f"{key}= {piece}" if equals else piece, inside, "", f"{damaged[row]}\n{piece} = 1"]
+            )
         (folder / "levels" / file).write_text("\n".join(damaged), encoding="utf-8")
         try:
             load_level("levels/branching.toml", "v1")
         except TltlError as error:
-            refused += 1
+            rejected += 1
             for diagnostic in error.diagnostics:
-                assert all(0 <= at.span.start <= at.span.end <= len(at.source.text) for at in diagnostic.labels)
+                assert all(
+                    0 <= label.span.start <= label.span.end <= len(label.source.text) for label in diagnostic.labels
+                )
             assert render(error.diagnostics)
-    assert refused > 0
+    assert rejected > 0

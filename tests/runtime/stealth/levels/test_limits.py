@@ -1,4 +1,4 @@
-"""Levels of files that are small and ask for endless work: each is refused, or read in little time."""
+"""Small level files that ask for endless work are rejected, or read in little time."""
 
 from __future__ import annotations
 
@@ -47,33 +47,33 @@ def part(folder: Path, name: str, text: str) -> None:
     (folder / "assets" / f"{name}.toml").write_text(f'doc = "a part"\ntype = "part"\n{text}', encoding="utf-8")
 
 
-def refusal(path: str) -> tuple[Diagnostic, ...]:
+def diagnostics_of(path: str) -> tuple[Diagnostic, ...]:
     with pytest.raises(TltlError) as caught:
         load_level(path)
     return caught.value.diagnostics
 
 
-def test_a_large_part_that_is_used_often_is_too_much(tmp_path: Path) -> None:
+def test_a_large_part_that_is_used_often_is_rejected(tmp_path: Path) -> None:
     part(tmp_path, "big", 4000 * WALL)
     uses = "".join(f'[[use]]\nasset = "big"\nname = "u{number}"\n' for number in range(6000))
-    (found,) = refusal(level(tmp_path, uses))
-    assert found.code == "TLT0006"
-    assert "more than 4,000 things" in found.title
+    (diagnostic,) = diagnostics_of(level(tmp_path, uses))
+    assert diagnostic.code == "TLT0006"
+    assert "more than 4,000 things" in diagnostic.title
 
 
-def test_a_wrong_part_that_is_used_often_is_told_a_few_times(tmp_path: Path) -> None:
+def test_an_invalid_part_that_is_used_often_gives_a_limited_number_of_errors(tmp_path: Path) -> None:
     part(tmp_path, "big", 2000 * "[[wall]]\n")
     uses = "".join(f'[[use]]\nasset = "big"\nname = "u{number}"\n' for number in range(6000))
-    assert len(refusal(level(tmp_path, uses))) < 10_000
+    assert len(diagnostics_of(level(tmp_path, uses))) < 10_000
 
 
-def test_steps_of_stairs_and_points_of_ways_count(tmp_path: Path) -> None:
-    (found,) = refusal(level(tmp_path, "".join(STAIRS.format(number) for number in range(120))))
-    assert found.code == "TLT0006"
+def test_steps_of_stairs_and_points_of_paths_count_as_things(tmp_path: Path) -> None:
+    (diagnostic,) = diagnostics_of(level(tmp_path, "".join(STAIRS.format(number) for number in range(120))))
+    assert diagnostic.code == "TLT0006"
     points = ", ".join(5000 * ["[1.0, 1.0, 0.0]"])
     lift = f'[[mover]]\nname = "lift"\nsize = [1.0, 1.0, 1.0]\nspeed = 1.0\npath = [{points}]\n'
-    (found,) = refusal(level(tmp_path, lift))
-    assert found.code == "TLT0006"
+    (diagnostic,) = diagnostics_of(level(tmp_path, lift))
+    assert diagnostic.code == "TLT0006"
 
 
 def stairs(count: int) -> Callable[[], object]:
@@ -86,19 +86,19 @@ def test_the_work_for_stairs_grows_with_their_number() -> None:
     assert calls(stairs(200)) < 15 * calls(stairs(20))
 
 
-def test_a_variant_has_a_hundred_overlays_at_most(tmp_path: Path) -> None:
+def test_a_variant_has_at_most_a_hundred_overlays(tmp_path: Path) -> None:
     names = ", ".join(40_000 * ['"wider"'])
-    found = refusal(level(tmp_path, f"[variants]\nv0 = [{names}]\n"))
-    assert "TLT0006" in {each.code for each in found}
-    assert len(found) < 200
+    diagnostics = diagnostics_of(level(tmp_path, f"[variants]\nv0 = [{names}]\n"))
+    assert "TLT0006" in {diagnostic.code for diagnostic in diagnostics}
+    assert len(diagnostics) < 200
 
 
-def test_what_stands_in_many_solids_is_told_once(tmp_path: Path) -> None:
+def test_an_entity_inside_many_solids_is_reported_once(tmp_path: Path) -> None:
     switches = "".join(f'[[switch]]\nname = "s{number}"\nat = [5.0, 5.0, 0.1]\n' for number in range(100))
-    assert len(refusal(level(tmp_path, 1000 * WALL + switches))) == 100
+    assert len(diagnostics_of(level(tmp_path, 1000 * WALL + switches))) == 100
 
 
-def test_a_mover_that_runs_into_much_is_told_a_few_times(tmp_path: Path) -> None:
+def test_a_mover_that_hits_many_solids_gives_ten_warnings(tmp_path: Path) -> None:
     lift = "speed = 1.0\npath = [[5.0, 5.0, 0.2], [5.0, 8.0, 0.2]]\n"
     lift = f'[[mover]]\nname = "lift"\nsize = [1.0, 1.0, 0.5]\n{lift}'
     assert len(read_level(level(tmp_path, 1000 * WALL + lift))[1]) == 10
@@ -113,17 +113,18 @@ def test_a_mover_that_runs_into_much_is_told_a_few_times(tmp_path: Path) -> None
     ],
     ids=["unknown keys", "unknown assets", "unknown entities"],
 )
-def test_only_the_first_mistakes_look_for_names_that_are_alike(
+def test_only_the_first_errors_search_for_similar_names(
     tmp_path: Path, text: str, head: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    looked = []
+    searches = []
     monkeypatch.setattr(
-        "tltl_runtime.stealth.levels.table.get_close_matches", lambda *given, **more: looked.append(given) or []
+        "tltl_runtime.stealth.levels.table.get_close_matches",
+        lambda *arguments, **options: searches.append(arguments) or [],
     )
-    found = refusal(level(tmp_path, text, head))
-    # No mistake is left out.
-    assert len(found) >= 6_000
-    assert len(looked) <= 200
+    diagnostics = diagnostics_of(level(tmp_path, text, head))
+    # All errors are reported.
+    assert len(diagnostics) >= 6_000
+    assert len(searches) <= 200
 
 
 def test_a_floor_that_would_take_gigabytes_is_too_large_for_enemies(tmp_path: Path) -> None:
@@ -131,8 +132,11 @@ def test_a_floor_that_would_take_gigabytes_is_too_large_for_enemies(tmp_path: Pa
     assert load_level(level(tmp_path, guard)).enemies
     wide = ROOM.replace("40.0, 40.0", "1000.0, 1000.0")
     (tmp_path / "room.toml").write_text(wide + guard, encoding="utf-8")
-    (found,) = refusal(str(tmp_path / "room.toml"))
-    assert (found.code, found.title) == ("TLT0006", "the bounds of the level `room` are too large for enemies")
+    (diagnostic,) = diagnostics_of(str(tmp_path / "room.toml"))
+    assert (diagnostic.code, diagnostic.title) == (
+        "TLT0006",
+        "the bounds of the level `room` are too large for enemies",
+    )
     (tmp_path / "room.toml").write_text(wide, encoding="utf-8")
     large = load_level(str(tmp_path / "room.toml"))
     assert fault(large) is None

@@ -1,4 +1,4 @@
-"""Levels as arguments name them, with variants and overlays that are added to these."""
+"""Levels in arguments, with variants and added overlays."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_variant_is_split(variant: str, overlays: tuple[str, ...]) -> None:
         assert with_overlays("v0", overlays) == variant.replace("./a+b.toml", f"{Path.cwd()}/a+b.toml")
 
 
-def test_a_path_with_a_plus_is_still_one_when_it_was_added(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_path_of_an_overlay_may_contain_a_plus(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "c++").mkdir()
     (tmp_path / "c++" / "a+b.toml").write_text(WIDER, encoding="utf-8")
@@ -74,7 +74,7 @@ def test_a_path_with_a_plus_is_still_one_when_it_was_added(tmp_path: Path, monke
     assert changes("branching", variant)[0] == "The guard sees further."
 
 
-def test_line_ends_are_no_difference(tmp_path: Path) -> None:
+def test_line_endings_do_not_change_the_hash(tmp_path: Path) -> None:
     wider = tmp_path / "wider.toml"
     hashes = []
     for text in (WIDER, WIDER.replace("\n", "\r\n"), WIDER.replace("12.5", "12.6")):
@@ -94,11 +94,11 @@ def test_overlays_are_added_to_a_variant(tmp_path: Path) -> None:
     assert both.enemies[0].kind.reaction_time == alert.enemies[0].kind.reaction_time
     assert [name for name, _ in both.files][-2:] == ["overlays/guard_alert.toml", "overlays/wider.toml"]
     assert changes("branching", f"v0+{wider}") == ("The guard sees further.",)
-    # The same in another order is another level, where overlays change the same.
+    # The order of the overlays matters if they change the same value.
     assert load_level("branching", f"v0+{wider}+guard_alert").enemies[0].kind.sight_range != 12.5
 
 
-def test_what_overlays_do_not_change_is_the_same_level(tmp_path: Path) -> None:
+def test_an_overlay_without_changes_gives_the_same_level_hash(tmp_path: Path) -> None:
     (tmp_path / "nothing.toml").write_text('doc = "Nothing."\n', encoding="utf-8")
     assert level_hash(load_level("branching", f"v0+{tmp_path / 'nothing.toml'}")) == level_hash(load_level("branching"))
 
@@ -114,9 +114,9 @@ def test_what_overlays_do_not_change_is_the_same_level(tmp_path: Path) -> None:
         ("v0+corridor_shut", "TLT0808", "the level uses no asset `corridor`"),
     ],
 )
-def test_what_cannot_be_added(variant: str, code: str, title: str) -> None:
+def test_invalid_overlays_are_rejected(variant: str, code: str, title: str) -> None:
     with pytest.raises(TltlError) as error:
         load_level("branching", variant)
-    (found,) = error.value.diagnostics
-    assert (found.code, found.title) == (code, title)
-    assert found.help
+    (diagnostic,) = error.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == (code, title)
+    assert diagnostic.help

@@ -1,4 +1,4 @@
-"""Regions: what a level names itself, and the parts that it uses."""
+"""Regions of a level: those that it declares, and the parts that it uses."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def room(folder: Path, text: str) -> str:
     return str(folder / "room.toml")
 
 
-def test_regions_are_named_or_are_parts(tmp_path: Path) -> None:
+def test_declared_regions_and_parts_are_regions(tmp_path: Path) -> None:
     named, part = load_level(room(tmp_path, USE + REGION)).regions
     assert named == Region("dark corner", Box((6.5, 7.0, 0.0), (9.5, 9.0, 3.0)))
     assert part.name == "old_lift"
@@ -50,7 +50,7 @@ def test_regions_are_named_or_are_parts(tmp_path: Path) -> None:
     assert 2.5 < high[2] < 2.8, "the mover is in it wherever it goes"
 
 
-def test_a_level_is_the_same_whatever_its_places_are_called(tmp_path: Path) -> None:
+def test_regions_do_not_change_the_level_hash(tmp_path: Path) -> None:
     plain = load_level(room(tmp_path, USE))
     named = load_level(room(tmp_path, USE + REGION))
     assert plain.regions != named.regions
@@ -66,14 +66,14 @@ def test_a_level_is_the_same_whatever_its_places_are_called(tmp_path: Path) -> N
         ("region = 3\n", "TLT0802", "`[start]` has no key `region`"),
     ],
 )
-def test_mistakes(tmp_path: Path, text: str, code: str, title: str) -> None:
+def test_invalid_regions_are_rejected(tmp_path: Path, text: str, code: str, title: str) -> None:
     with pytest.raises(TltlError) as error:
         load_level(room(tmp_path, text))
-    assert (code, title) in [(found.code, found.title) for found in error.value.diagnostics]
+    assert (code, title) in [(diagnostic.code, diagnostic.title) for diagnostic in error.value.diagnostics]
 
 
 @pytest.mark.parametrize("name", level_names())
-def test_shipped_levels_name_their_places(name: str) -> None:
+def test_shipped_levels_have_named_regions(name: str) -> None:
     level = load_level(name)
     names = [region.name for region in level.regions]
     assert len(set(names)) == len(names) >= 4

@@ -1,4 +1,4 @@
-"""What an agent senses, chosen beside what its level declares."""
+"""A choice of sensors overrides the sensors that the level declares."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
 LEVEL = load_level("navigation")
-OWN = LEVEL.sensors
+DECLARED = LEVEL.sensors
 
 
 @pytest.mark.parametrize(
     ("choice", "expected"),
     [
-        (None, OWN),
-        ({}, OWN),
-        ({"entities": ["exit"]}, replace(OWN, entities=("exit",))),
-        ({"entities": ()}, replace(OWN, entities=())),
-        ({"variables": ["health", "active(s1)"]}, replace(OWN, variables=("health", "active(s1)"))),
-        ({"map": None}, replace(OWN, map=None)),
-        ({"map": {"cell": 1}}, replace(OWN, map=replace(OWN.map, cell=1.0))),
-        ({"map": {"types": ["wall"], "extent": 3}}, replace(OWN, map=MapSensor(("wall",), 0.5, 3))),
-        ({"map": MapSensor(("wall",), 1.0, 5)}, replace(OWN, map=MapSensor(("wall",), 1.0, 5))),
+        (None, DECLARED),
+        ({}, DECLARED),
+        ({"entities": ["exit"]}, replace(DECLARED, entities=("exit",))),
+        ({"entities": ()}, replace(DECLARED, entities=())),
+        ({"variables": ["health", "active(s1)"]}, replace(DECLARED, variables=("health", "active(s1)"))),
+        ({"map": None}, replace(DECLARED, map=None)),
+        ({"map": {"cell": 1}}, replace(DECLARED, map=replace(DECLARED.map, cell=1.0))),
+        ({"map": {"types": ["wall"], "extent": 3}}, replace(DECLARED, map=MapSensor(("wall",), 0.5, 3))),
+        ({"map": MapSensor(("wall",), 1.0, 5)}, replace(DECLARED, map=MapSensor(("wall",), 1.0, 5))),
         (Sensors((), (), None), Sensors((), (), None)),
     ],
 )
-def test_chosen(choice: Any, expected: Sensors) -> None:
+def test_a_choice_overrides_the_declared_sensors(choice: Any, expected: Sensors) -> None:
     assert chosen(LEVEL, choice) == expected
 
 
@@ -59,9 +59,9 @@ def test_a_level_without_a_map_gets_the_default_one() -> None:
         (Sensors(("x",), (), None), "has no entity `x`", "`s1`"),
     ],
 )
-def test_what_cannot_be_sensed(choice: Any, title: str, help_: str) -> None:
+def test_invalid_choices_are_rejected(choice: Any, title: str, help_: str) -> None:
     with pytest.raises(TltlError) as error:
         chosen(LEVEL, choice)
-    (found,) = error.value.diagnostics
-    assert found.code == "TLT0815"
-    assert title in found.title and help_ in str(found.help)
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0815"
+    assert title in diagnostic.title and help_ in str(diagnostic.help)

@@ -1,4 +1,4 @@
-"""Why episodes ended: who took the health, what broke, what remained, found in recordings alone."""
+"""Why episodes ended: who dealt the damage, which atoms broke and what remained, from recordings alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltl_runtime.stealth.world.player import DECISION
 from tltlc.core.record import replace
 
 
-def careless(level: str, seed: int, spec: Path | None = None) -> Episode:
+def play_carelessly(level: str, seed: int, spec: Path | None = None) -> Episode:
     env = RecordEpisode(make_env(level, spec=spec), "careless expert")
     play_episode(env, Expert(env, careful=False), seed)
     episode = env.episode
@@ -25,8 +25,8 @@ def careless(level: str, seed: int, spec: Path | None = None) -> Episode:
     return episode
 
 
-def walked(level: str, action: list[int], steps: int, seed: int, spec: str | None = None) -> Episode:
-    """One action again and again, to the end or for so many steps."""
+def repeat_action(level: str, action: list[int], steps: int, seed: int, spec: str | None = None) -> Episode:
+    """Repeat an action for ``steps`` steps, or to the end of the episode."""
     env = RecordEpisode(make_env(level, spec=spec), "hand")
     env.reset(seed=seed)
     for _ in range(steps):
@@ -38,24 +38,24 @@ def walked(level: str, action: list[int], steps: int, seed: int, spec: str | Non
     return episode
 
 
-def test_a_guard_kills() -> None:
-    why = cause(careless("cover_and_hide", 1))
-    assert (why.kind, why.by, why.broke) == ("killed", ("guard",), ("alive",))
-    x, y, _ = why.place
-    assert why.text == f"killed by `guard` at {why.time:.2f} s at ({x:.1f}, {y:.1f})"
+def test_a_guard_that_kills_is_named() -> None:
+    result = cause(play_carelessly("cover_and_hide", 1))
+    assert (result.kind, result.by, result.broke) == ("killed", ("guard",), ("alive",))
+    x, y, _ = result.place
+    assert result.text == f"killed by `guard` at {result.time:.2f} s at ({x:.1f}, {y:.1f})"
 
 
 @pytest.mark.parametrize(("level", "seed"), [("cover_and_hide", 1), ("branching", 0), ("branching", 3)])
-def test_what_is_seen_accounts_for_all_the_health(level: str, seed: int) -> None:
-    episode = careless(level, seed)
+def test_the_recorded_damage_accounts_for_all_lost_health(level: str, seed: int) -> None:
+    episode = play_carelessly(level, seed)
     for before, after in pairwise(episode.snapshots):
         if after.health > 0.0:
-            taken = sum(_blows(episode.level, before, after).values()) * DECISION
-            assert taken == pytest.approx(before.health - after.health, abs=1e-9)
+            damage = sum(_blows(episode.level, before, after).values()) * DECISION
+            assert damage == pytest.approx(before.health - after.health, abs=1e-9)
 
 
-def test_a_laser_burns() -> None:
-    """The player is led to the laser of branching, which is north-east of where it starts, and stays."""
+def test_a_laser_that_kills_is_named() -> None:
+    """Walk to the laser of branching, north-east of the start, and stay there."""
     env = RecordEpisode(make_env("branching"), "hand")
     env.reset(seed=2)
     laser = next(barrier for barrier in env.get_wrapper_attr("level").barriers if barrier.kind == "laser")
@@ -66,28 +66,28 @@ def test_a_laser_burns() -> None:
         action = [int(np.sign(round(there - here, 1))) % 3 for here, there in ((x, goal[0]), (y, goal[1]))]
         _, _, terminated, truncated, _ = env.step([*action, 0, 0, 0])
         over, steps = terminated or truncated, steps + 1
-    why = cause(env.episode)
+    result = cause(env.episode)
     env.close()
-    assert (why.kind, why.by) == ("killed", ("laser",))
-    assert why.text.startswith("burnt by the laser `laser` at ")
+    assert (result.kind, result.by) == ("killed", ("laser",))
+    assert result.text.startswith("burnt by the laser `laser` at ")
 
 
-def test_what_broke_is_named(tmp_path: Path) -> None:
+def test_the_atom_that_broke_is_named(tmp_path: Path) -> None:
     spec = tmp_path / "still.tltl"
     spec.write_text(
         "import stealth\nentity s1\nspec still { limit 90 steps\n keep !near(s1) }\n",
         encoding="utf-8",
     )
-    episode = walked("navigation", [1, 2, 0, 0, 0], 90, 1, str(spec))
-    why = cause(episode)
-    assert (why.kind, why.by, why.broke) == ("violated", ("near(s1)",), ("near(s1)",))
-    assert why.text.endswith("): near(s1) holds")
+    episode = repeat_action("navigation", [1, 2, 0, 0, 0], 90, 1, str(spec))
+    result = cause(episode)
+    assert (result.kind, result.by, result.broke) == ("violated", ("near(s1)",), ("near(s1)",))
+    assert result.text.endswith("): near(s1) holds")
 
 
-def test_of_what_broke_at_a_death_what_reads_the_health_is_named(tmp_path: Path) -> None:
-    """The spec has another atom that is kept, which is made to break at the same moment."""
+def test_an_atom_that_reads_the_health_explains_a_death(tmp_path: Path) -> None:
+    """The spec keeps a second atom, which is changed to break at the same step."""
     within = "signal position.x: length\npredicate within in [-1, 1] = clamp(1 - position.x / 100 m, -1, 1)\n"
-    episode = careless("cover_and_hide", 1, way(tmp_path, within, "keep within\n keep alive"))
+    episode = play_carelessly("cover_and_hide", 1, write_spec(tmp_path, within, "keep within\n keep alive"))
     names = [atom.name for atom in episode.fspa.atoms]
     atoms = episode.atoms.copy()
     assert names.index("within") < names.index("alive") and atoms[-1, names.index("alive")] <= 0.0
@@ -96,13 +96,13 @@ def test_of_what_broke_at_a_death_what_reads_the_health_is_named(tmp_path: Path)
 
 
 def test_a_death_that_the_spec_allows_breaks_nothing() -> None:
-    """Time was up then, and no transition into a trap was taken."""
-    why = cause(replace(careless("cover_and_hide", 1), end="limit"))
-    assert (why.kind, why.by, why.broke) == ("killed", ("guard",), ())
+    """The episode ended at its limit, without a transition into a trap."""
+    result = cause(replace(play_carelessly("cover_and_hide", 1), end="limit"))
+    assert (result.kind, result.by, result.broke) == ("killed", ("guard",), ())
 
 
-def way(folder: Path, declared: str, kept: str) -> Path:
-    """A spec of the way through `cover_and_hide`, with what is to be kept."""
+def write_spec(folder: Path, declared: str, kept: str) -> Path:
+    """Write a spec for the route through `cover_and_hide`, with conditions to keep."""
     path = folder / "way.tltl"
     path.write_text(
         f"import stealth\nentity s1, s2, exit\nexclusive near(s1), near(s2), near(exit)\n{declared}"
@@ -112,26 +112,26 @@ def way(folder: Path, declared: str, kept: str) -> Path:
     return path
 
 
-def test_what_remained_is_told(tmp_path: Path) -> None:
+def test_what_remains_is_reported(tmp_path: Path) -> None:
     spec = tmp_path / "short.tltl"
     spec.write_text("import stealth\nentity exit\nspec short { limit 4 steps\n reach near(exit) }\n", encoding="utf-8")
-    episode = walked("cover_and_hide", [0, 0, 0, 0, 0], 9, 1, str(spec))
+    episode = repeat_action("cover_and_hide", [0, 0, 0, 0, 0], 9, 1, str(spec))
     assert cause(episode).text == "limit after 4 steps, remaining: Reach near(exit)"
-    stopped = walked("cover_and_hide", [0, 0, 0, 0, 0], 2, 1, str(spec))
+    stopped = repeat_action("cover_and_hide", [0, 0, 0, 0, 0], 2, 1, str(spec))
     assert cause(stopped).text == "stopped after 0.30 s, remaining: Reach near(exit)"
 
 
-def test_the_expert_tells_what_it_finds_no_way_to(tmp_path: Path) -> None:
-    """`right` is a gate of branching that the middle of the level lies behind, and shut until a switch is pressed."""
+def test_a_goal_without_a_route_for_the_expert_is_reported(tmp_path: Path) -> None:
+    """In branching, the middle of the level lies behind the gate `right`, which is shut until a switch is pressed."""
     spec = tmp_path / "beyond.tltl"
     spec.write_text(
         "import stealth\nentity e_right\nspec beyond { limit 3 steps\n reach near(e_right) }\n", encoding="utf-8"
     )
-    why = cause(careless("branching", 1, spec))
-    assert (why.kind, why.by) == ("no way", ("e_right",))
-    assert why.text == "finds no way to `e_right`; limit after 3 steps, remaining: Reach near(e_right)"
+    result = cause(play_carelessly("branching", 1, spec))
+    assert (result.kind, result.by) == ("no way", ("e_right",))
+    assert result.text == "finds no way to `e_right`; limit after 3 steps, remaining: Reach near(e_right)"
 
 
-def test_success_is_its_own_cause() -> None:
-    why = cause(careless("branching", 1))
-    assert (why.kind, why.by) == ("success", ()) and why.text.startswith("success after ")
+def test_success_is_reported_as_the_cause() -> None:
+    result = cause(play_carelessly("branching", 1))
+    assert (result.kind, result.by) == ("success", ()) and result.text.startswith("success after ")

@@ -1,4 +1,4 @@
-"""docs/episode-log.md describes the files that are written, and its programs run."""
+"""docs/episode-log.md describes episode files as they are written, and its programs run."""
 
 from __future__ import annotations
 
@@ -29,26 +29,28 @@ def table(head: str) -> list[str]:
 
 def row(array: Array) -> str:
     shape, dtype = ", ".join(map(str, array.shape)), array.dtype.replace("|", "\\|")
-    return f"| `{array.name}` | `{dtype}` | {shape} | {array.unit} | {said(array.low, array.high)} | {array.doc} |"
+    return (
+        f"| `{array.name}` | `{dtype}` | {shape} | {array.unit} | {range_text(array.low, array.high)} | {array.doc} |"
+    )
 
 
-def said(low: float, high: float) -> str:
+def range_text(low: float, high: float) -> str:
     if high == inf:
         return "" if low == -inf else f"{low:g} and up"
     return f"{low:g} to {high:g}"
 
 
-def test_every_array_is_there() -> None:
+def test_the_page_lists_every_array() -> None:
     assert table("| array | type |")[2:] == [row(array) for array in ARRAYS]
 
 
-def test_a_file_is_as_the_table_says() -> None:
+def test_a_file_matches_the_table() -> None:
     env = RecordEpisode(make_env("branching"))
     env.reset(seed=1)
     env.step([1, 0, 0, 0, 0])
     with np.load(BytesIO(to_bytes(env.episode))) as arrays:
         meta = json.loads(bytes(arrays["meta"]))
-        sizes = {"n": 1, "n + 1": 2, **{name: len(each) for name, each in meta["names"].items()}}
+        sizes = {"n": 1, "n + 1": 2, **{name: len(entries) for name, entries in meta["names"].items()}}
         for array in ARRAYS:
             assert arrays[array.name].dtype.str == array.dtype
             assert arrays[array.name].shape == tuple(sizes.get(size, size) for size in array.shape)  # type: ignore[call-overload]
@@ -57,7 +59,7 @@ def test_a_file_is_as_the_table_says() -> None:
     assert set(meta["versions"]) <= set(re.findall(r"`(\w+)`", TEXT))
 
 
-def test_every_key_of_meta_is_there() -> None:
+def test_the_page_lists_every_key_of_meta() -> None:
     rows = [re.findall(r"`([\w-]+)`", line.split("|")[1]) for line in table("| key of `meta` |")]
     fields: Any = Meta.__match_args__  # type: ignore[attr-defined]
     assert [name for names in rows for name in names] == list(fields)

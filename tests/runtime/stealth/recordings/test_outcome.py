@@ -1,4 +1,4 @@
-"""What is counted of an episode is what the environment said of it."""
+"""The outcome of an episode agrees with what the environment reported."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tltl_runtime.stealth.recordings.outcome import outcome
 
 
 @pytest.mark.parametrize(("level", "careful"), [("navigation", True), ("cover_and_hide", False)])
-def test_it_agrees_with_the_environment(level: str, careful: bool) -> None:
+def test_an_outcome_agrees_with_the_environment(level: str, careful: bool) -> None:
     with closing(RecordEpisode(make_env(level))) as env:
         expert = Expert(env, careful)
         env.reset(seed=1)
@@ -26,10 +26,10 @@ def test_it_agrees_with_the_environment(level: str, careful: bool) -> None:
             total, steps = total + reward, steps + 1
             seen += any(game.enemies.sees)
             chased |= "chase" in game.enemies.modes
-        went = outcome(env.episode)
-        opened = tuple(each.name for each, is_open in zip(game.level.barriers, game.open, strict=True) if is_open)
-    assert went.reward == pytest.approx(total)
-    assert (went.success, went.verdict, went.progress) == (info["success"], info["verdict"], info["progress"])
-    assert (went.steps, went.seconds, went.health) == (steps, pytest.approx(steps * 0.15), game.health)
-    assert (went.seen_steps, went.chased, went.opened) == (seen, chased, opened)
-    assert (went.end, went.chased) == (("success", False) if careful else ("violation", True))
+        result = outcome(env.episode)
+        opened = tuple(barrier.name for barrier, is_open in zip(game.level.barriers, game.open, strict=True) if is_open)
+    assert result.reward == pytest.approx(total)
+    assert (result.success, result.verdict, result.progress) == (info["success"], info["verdict"], info["progress"])
+    assert (result.steps, result.seconds, result.health) == (steps, pytest.approx(steps * 0.15), game.health)
+    assert (result.seen_steps, result.chased, result.opened) == (seen, chased, opened)
+    assert (result.end, result.chased) == (("success", False) if careful else ("violation", True))

@@ -1,4 +1,4 @@
-"""What a player reads, and what is seen between two decisions."""
+"""The head-up display, and the interpolation between two decisions."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ def played() -> Any:
     env.close()
 
 
-def test_it_tells_how_things_stand(played: Any) -> None:
+def test_the_display_shows_the_state_of_the_game(played: Any) -> None:
     env, snapshot, info = played
     shown = hud(snapshot, info, env.task.fspa)
     assert [(bar.name, bar.value) for bar in shown.bars] == [("health", 1.0), ("stamina", 1.0), ("progress", 0.0)]
-    said = [line.text for line in shown.lines]
-    assert said[:2] == ["0.0 s, 60 s left   pending", "nobody sees you"]
+    texts = [line.text for line in shown.lines]
+    assert texts[:2] == ["0.0 s, 60 s left   pending", "nobody sees you"]
     endless = replace(env.task.fspa, limit_steps=None)
     assert hud(snapshot, info, endless).lines[0].text == "0.0 s   pending"
-    assert " ".join(said[2:]) == env.task.fspa.states[0].label.english
-    assert max(map(len, said)) <= 36
+    assert " ".join(texts[2:]) == env.task.fspa.states[0].label.english
+    assert max(map(len, texts)) <= 36
 
 
 @pytest.mark.parametrize(
@@ -46,7 +46,9 @@ def test_it_tells_how_things_stand(played: Any) -> None:
         (("return",), (False,), "nobody sees you"),
     ],
 )
-def test_it_tells_who_sees_the_player(played: Any, modes: tuple[str, ...], sees: tuple[bool, ...], said: str) -> None:
+def test_the_display_shows_who_sees_the_player(
+    played: Any, modes: tuple[str, ...], sees: tuple[bool, ...], said: str
+) -> None:
     env, snapshot, info = played
     shown = hud(replace(snapshot, modes=modes, sees=sees), info, env.task.fspa)
     assert shown.lines[1].text == said
@@ -61,7 +63,7 @@ def test_a_long_formula_is_cut(played: Any) -> None:
     assert len(shown.lines) == 12 and shown.lines[-1].text.endswith(" …")
 
 
-def test_titles(played: Any) -> None:
+def test_the_first_and_the_last_screen(played: Any) -> None:
     env, snapshot, info = played
     shown = hud(snapshot, info, env.task.fspa)
     first = beginning(shown, env.unwrapped.level, env.task.fspa)
@@ -72,7 +74,7 @@ def test_titles(played: Any) -> None:
     assert last.below[:2] == (text, "recorded: a.episode.npz")
 
 
-def test_between_two_decisions() -> None:
+def test_snapshots_are_interpolated_between_decisions() -> None:
     game = Game(load_level("branching"))
     before = game.snapshot()
     for _ in range(4):
@@ -81,13 +83,13 @@ def test_between_two_decisions() -> None:
     assert between(before, after, 1.0) == after
     start = between(before, after, 0.0)
     assert start.player.position == before.player.position and start.movers == before.movers
-    half = between(before, after, 0.5)
-    assert half.player.position[0] == pytest.approx((before.player.position[0] + after.player.position[0]) / 2)
-    assert half.time == pytest.approx(0.3) and half.health == after.health
+    middle = between(before, after, 0.5)
+    assert middle.player.position[0] == pytest.approx((before.player.position[0] + after.player.position[0]) / 2)
+    assert middle.time == pytest.approx(0.3) and middle.health == after.health
     game.close()
 
 
-def test_turning_the_shorter_way() -> None:
+def test_yaw_is_interpolated_along_the_shorter_turn() -> None:
     game = Game(load_level("branching"))
     snapshot = game.snapshot()
     game.close()

@@ -1,4 +1,4 @@
-"""Plans of levels: pictures of the right size, with what the level has in them, the same every time."""
+"""Plans of levels: pictures of the right size that show what the level has, and are the same every time."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ def test_a_plan_shows_what_a_level_has(name: str) -> None:
     reach = reachable(level)
     drawn = pixels(draw_level(level, reach))
     assert drawn.shape[1] > 500
-    for colour in ((0xFA, 0xCC, 0x15), (0x16, 0xA3, 0x4A)):  # switches and exits, in the key alone where one is hidden
+    for colour in ((0xFA, 0xCC, 0x15), (0x16, 0xA3, 0x4A)):  # switches and exits; hidden ones are only in the legend
         wanted = level.switches if colour[0] == 0xFA else level.exits
         assert has(drawn, colour) == bool(wanted)
     assert not any(has(drawn, colour) for colour in ((0x25, 0x63, 0xEB), (0x93, 0x33, 0xEA)))  # states 0 and 1
     assert draw_level(level, reach) == draw_level(level, reach)
 
 
-def test_a_plan_shows_what_nobody_reaches() -> None:
+def test_a_plan_marks_unreachable_places() -> None:
     pictures = {}
     for variant in ("v0", "v2"):
         level = load_level("navigation", variant)
         drawn = pixels(draw_level(level, reachable(level))).astype(int)
         pictures[variant] = float((drawn[..., 0] - drawn[..., 2] > 40).mean())
-    # The outer walls alone, and all that lies behind the block.
+    # In v0 only the outer walls are red, in v2 also everything behind the block.
     assert pictures["v0"] < 0.15 < 0.4 < pictures["v2"]
 
 
 @pytest.mark.parametrize("name", ["branching", "cover_and_hide"])
-def test_routes_are_drawn_past_what_stands_in_the_way(name: str) -> None:
+def test_routes_are_drawn_around_obstacles(name: str) -> None:
     level = load_level(name)
     floor = grid_of(level).floor(range(len(level.barriers)))
     bends = 0

@@ -1,4 +1,4 @@
-"""Pictures: they are the same for the same snapshot, they show what is there, and nothing hides the player."""
+"""Pictures: equal snapshots give equal pictures, everything is shown, and nothing hides the player."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def standing(place: tuple[float, float, float], crouching: bool = False) -> Play
 
 
 def amount(frame: NDArray[np.uint8], colour: tuple[float, float, float]) -> int:
-    """How many pixels have about this hue, bright or dark."""
+    """Return how many pixels have about this hue, bright or dark."""
     pixel = frame / np.linalg.norm(frame, axis=2, keepdims=True).clip(1)
     return int((pixel @ (np.array(colour) / np.linalg.norm(colour)) > 0.985).sum())
 
@@ -61,7 +61,7 @@ def test_the_same_snapshot_gives_the_same_picture(drawn: tuple[Snapshot, Rendere
     assert len(np.unique(frame.reshape(-1, 3), axis=0)) > 50
 
 
-def test_the_player_is_seen_wherever_it_stands(drawn: tuple[Snapshot, Renderer]) -> None:
+def test_the_player_is_visible_at_every_place(drawn: tuple[Snapshot, Renderer]) -> None:
     snapshot, renderer = drawn
     low, high = renderer.level.bounds.low, renderer.level.bounds.high
     solids = [solid.box for solid in renderer.level.solids if solid.kind != "floor"]
@@ -78,7 +78,7 @@ def is_in(box: Box, x: float, y: float) -> bool:
     return box.low[0] - 0.3 < x < box.high[0] + 0.3 and box.low[1] - 0.3 < y < box.high[1] + 0.3
 
 
-def test_who_crouches_is_smaller(drawn: tuple[Snapshot, Renderer]) -> None:
+def test_a_crouching_player_is_smaller(drawn: tuple[Snapshot, Renderer]) -> None:
     snapshot, renderer = drawn
     place = renderer.level.start.position
     upright = amount(renderer.frame(changed(snapshot, player=standing(place))), PLAYER)
@@ -86,7 +86,7 @@ def test_who_crouches_is_smaller(drawn: tuple[Snapshot, Renderer]) -> None:
     assert 0.4 < crouched / upright < 0.8
 
 
-def test_open_barriers_vanish_and_active_switches_change(drawn: tuple[Snapshot, Renderer]) -> None:
+def test_open_barriers_disappear_and_active_switches_change(drawn: tuple[Snapshot, Renderer]) -> None:
     snapshot, renderer = drawn
     level = renderer.level
     shut = renderer.frame(snapshot, "top_down")
@@ -95,13 +95,13 @@ def test_open_barriers_vanish_and_active_switches_change(drawn: tuple[Snapshot, 
     for box in (barrier.box for barrier in level.barriers if barrier.name != "gap"):
         top = [*np.add(box.low, box.high)[:2] / 2, box.high[2]]
         x, y = pixels(eye, np.array([top]), *SIZE)[0].astype(int)
-        there = (slice(y - 1, y + 2), slice(x - 1, x + 2))
-        assert np.abs(shut[there] - opened[there].astype(int)).max() > 30
+        window = (slice(y - 1, y + 2), slice(x - 1, x + 2))
+        assert np.abs(shut[window] - opened[window].astype(int)).max() > 30
     active = renderer.frame(changed(snapshot, active=(True,) * len(snapshot.active)), "top_down")
     assert np.abs(active - renderer.frame(snapshot, "top_down").astype(int)).max() > 30
 
 
-def test_a_field_of_sight_is_what_the_enemy_sees() -> None:
+def test_the_drawn_field_of_sight_agrees_with_the_enemy() -> None:
     level = load_level("cover_and_hide")
     enemies = Enemies(level)
     enemies.reset(np.random.default_rng(0))
@@ -117,16 +117,16 @@ def test_a_field_of_sight_is_what_the_enemy_sees() -> None:
         field = SightField(guard.kind, (guard.x, guard.y, 0.0), guard.yaw, boxes)
         places = rng.uniform((0.5, 0.5), (19.5, 13.5), (60, 2))
         shown = field.at(places.astype(np.float32)) > 0.25
-        for place, says in zip(places, shown, strict=True):
+        for place, is_shown in zip(places, shown, strict=True):
             if any(is_in(box, *place) for box in boxes if box.high[2] > 0):
                 continue
             guard.knows = False
             guard.dt = 0.0
             guard._look(PlayerView((place[0], place[1], 0.0)), enemies._boxes)
             tried += 1
-            wrong += guard.sees != says
+            wrong += guard.sees != is_shown
     assert tried > 200
-    # Those at the very edges of shadows, and who is seen by the chest alone.
+    # Exceptions are places at the edges of shadows, and players of whom only the chest is visible.
     assert wrong / tried < 0.03
 
 
@@ -139,24 +139,24 @@ def test_pixels_and_sight_lines_agree() -> None:
         assert pixels(eye, places, 30, 20) == pytest.approx(np.array([[4.5, 3.5], [25.5, 11.5]]), abs=1e-3)
 
 
-def test_names_are_where_things_are(drawn: tuple[Snapshot, Renderer]) -> None:
+def test_names_are_drawn_at_their_entities(drawn: tuple[Snapshot, Renderer]) -> None:
     snapshot, renderer = drawn
     level = renderer.level
     shown = {name: (x, y) for name, x, y in renderer.names(snapshot, "top_down")}
-    things = (*level.switches, *level.exits, *level.barriers, *level.movers, *level.enemies)
-    assert shown.keys() == {thing.name for thing in things}
+    entities = (*level.switches, *level.exits, *level.barriers, *level.movers, *level.enemies)
+    assert shown.keys() == {entity.name for entity in entities}
     # North is up and east is right.
     for axis, sign in ((0, 1), (1, -1)):
         order = sorted(level.switches, key=lambda switch: sign * switch.position[axis])
-        found = [shown[switch.name][axis] for switch in order]
-        assert all(a < b + 0.5 for a, b in pairwise(found))
+        coordinates = [shown[switch.name][axis] for switch in order]
+        assert all(a < b + 0.5 for a, b in pairwise(coordinates))
     opened = renderer.names(changed(snapshot, open=(True,) * len(snapshot.open)), "top_down")
     assert not {name for name, *_ in opened} & {barrier.name for barrier in level.barriers}
     near = renderer.names(snapshot)
     assert all(0 <= x < SIZE[0] and 0 <= y < SIZE[1] for _, x, y in near)
 
 
-def test_finer_samples_leave_the_size() -> None:
+def test_finer_samples_do_not_change_the_size() -> None:
     game = Game(load_level("branching"))
     renderer = Renderer(game.level, 60, 40, samples=2)
     assert renderer.frame(game.snapshot()).shape == (40, 60, 3)

@@ -1,4 +1,4 @@
-"""The trajectories of many episodes over a plan."""
+"""The trajectories of many episodes on the plan of a level."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 RED, GREEN = (220, 38, 38), (22, 163, 74)
 
 
-def test_trajectories_and_where_they_failed() -> None:
+def test_trajectories_are_marked_where_they_end() -> None:
     level = load_level("cover_and_hide")
     env = make_env("cover_and_hide")
     fspa = env.task.fspa
@@ -30,9 +30,9 @@ def test_trajectories_and_where_they_failed() -> None:
         with Image.open(BytesIO(drawn)) as picture:
             colours = picture.convert("RGB").getcolors(1 << 20)
             assert colours is not None
-            return sum(number for number, found in colours if found == colour)
+            return sum(pixels for pixels, pixel_colour in colours if pixel_colour == colour)
 
-    without = count([passed] * 3, RED)
-    assert count([passed, failed, passed], RED) > without + 40, "a mark at the end and one in the legend"
-    elsewhere = Trajectory(line[:2], np.array([0, 4], dtype=np.int32), "success")
-    assert count([passed, elsewhere], GREEN) > count([passed, passed], GREEN), "a mark where each succeeded"
+    unmarked = count([passed] * 3, RED)
+    assert count([passed, failed, passed], RED) > unmarked + 40, "a mark at the end and one in the legend"
+    shorter = Trajectory(line[:2], np.array([0, 4], dtype=np.int32), "success")
+    assert count([passed, shorter], GREEN) > count([passed, passed], GREEN), "a mark where each succeeded"
