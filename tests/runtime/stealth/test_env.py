@@ -1,4 +1,4 @@
-"""The environments: Gymnasium's own checks, observations, seeds, and the spec's verdict."""
+"""The environments: the checks of Gymnasium, observations, seeds, and the verdict of the spec."""
 
 from __future__ import annotations
 
@@ -48,25 +48,25 @@ def test_gymnasium_finds_nothing_wrong(name: str) -> None:
     env.close()
 
 
-def played(seed: int) -> list[Any]:
+def play(seed: int) -> list[Any]:
     env = make_env("branching")
     rng = np.random.default_rng(5)
-    seen = [env.reset(seed=seed)[0]]
+    observations = [env.reset(seed=seed)[0]]
     for _ in range(40):
         observation, reward, *_ = env.step([int(rng.integers(size)) for size in (3, 3, 2, 2, 2)])
-        seen.append({**observation, "reward": reward})
+        observations.append({**observation, "reward": reward})
     env.close()
-    return seen
+    return observations
 
 
 def test_a_seed_reproduces_an_episode() -> None:
-    for one, other in zip(played(11), played(11), strict=True):
-        assert one.keys() == other.keys()
-        assert all(np.array_equal(one[key], other[key]) for key in one)
-    assert any(not np.array_equal(a["entities"], b["entities"]) for a, b in zip(played(11), played(12), strict=True))
+    for first, second in zip(play(11), play(11), strict=True):
+        assert first.keys() == second.keys()
+        assert all(np.array_equal(first[key], second[key]) for key in first)
+    assert any(not np.array_equal(a["entities"], b["entities"]) for a, b in zip(play(11), play(12), strict=True))
 
 
-def test_standing_still_fails_in_the_end() -> None:
+def test_an_episode_of_standing_still_fails() -> None:
     env = make_env("navigation")
     env.reset(seed=0)
     total, done = 0.0, False
@@ -78,7 +78,7 @@ def test_standing_still_fails_in_the_end() -> None:
     env.close()
 
 
-def test_the_designer_chooses_what_is_sensed() -> None:
+def test_the_sensors_can_be_chosen() -> None:
     sensors = Sensors(("exit",), ("time", "distance(s1)", "position.x", "crouching"), MapSensor(("wall",), 1.0, 5))
     env = GameEnv("cover_and_hide", sensors=sensors)
     observation, _ = env.reset(seed=1)
@@ -94,13 +94,13 @@ def test_the_designer_chooses_what_is_sensed() -> None:
     assert observation["entities"] == pytest.approx(vector)
     assert observation["variables"][0] == 0.0
     env.step([0, 0, 0, 1, 0])
-    time, near, _, crouching = env.step([0, 0, 0, 1, 0])[0]["variables"]
+    time, distance, _, crouching = env.step([0, 0, 0, 1, 0])[0]["variables"]
     assert time == pytest.approx(0.3 / 60.3) and crouching == 1.0
-    assert near == pytest.approx(env.tltl_signals()["distance(s1)"] / size)
+    assert distance == pytest.approx(env.tltl_signals()["distance(s1)"] / size)
     env.close()
 
 
-def test_an_observation_stays_what_it_was() -> None:
+def test_later_steps_do_not_change_an_observation() -> None:
     env = GameEnv("cover_and_hide")
     first, _ = env.reset(seed=1)
     kept = {key: value.copy() for key, value in first.items()}
@@ -112,18 +112,18 @@ def test_an_observation_stays_what_it_was() -> None:
 
 
 @pytest.mark.parametrize("sensors", [Sensors(("door",), (), None), Sensors((), ("mood",), None)])
-def test_what_the_level_does_not_have_cannot_be_sensed(sensors: Sensors) -> None:
+def test_unknown_entities_and_signals_cannot_be_sensed(sensors: Sensors) -> None:
     with pytest.raises(TltlError, match=r"TLT0815: the level `navigation` has no (entity|signal) `(door|mood)`"):
         GameEnv("navigation", sensors=sensors)
 
 
-def test_gymnasium_takes_plain_mappings_of_sensors() -> None:
+def test_gymnasium_accepts_a_mapping_of_sensors() -> None:
     sensors = {"entities": ["exit"], "variables": ["health"], "map": {"cell": 1.0}}
     env = gymnasium.make("tltl/Navigation-v0", sensors=sensors)
-    own = env.get_wrapper_attr("level").sensors.map
+    map_sensor = env.get_wrapper_attr("level").sensors.map
     shapes = {key: value.shape for key, value in env.reset(seed=1)[0].items()}
     assert shapes["entities"] == (3,) and shapes["variables"] == (1,)
-    assert shapes["map"] == (len(own.types), own.extent, own.extent)
+    assert shapes["map"] == (len(map_sensor.types), map_sensor.extent, map_sensor.extent)
     env.close()
 
 
@@ -135,7 +135,7 @@ def test_importing_registers_and_loads_neither_torch_nor_pybullet() -> None:
 @pytest.mark.parametrize(
     "action", [[0] * 4, [0] * 6, [3, 0, 0, 0, 0], [-1, 0, 0, 0, 0], [0, 0, 0, 0, 2], [0.0] * 5, [np.nan] * 5, "jump", 0]
 )
-def test_an_action_that_there_is_not_is_refused(action: Any) -> None:
+def test_invalid_actions_are_rejected(action: Any) -> None:
     env = make_env("navigation")
     env.reset(seed=1)
     with pytest.raises(ValueError, match=r"five whole numbers of MultiDiscrete\(\[3 3 2 2 2\]\): x, y, jump, crouch"):
@@ -144,7 +144,7 @@ def test_an_action_that_there_is_not_is_refused(action: Any) -> None:
     env.close()
 
 
-def test_a_closed_environment_says_so() -> None:
+def test_a_closed_environment_raises_an_error() -> None:
     env = make_env("navigation")
     env.reset(seed=1)
     env.close()
@@ -157,44 +157,44 @@ def test_a_closed_environment_says_so() -> None:
 def test_a_running_game_cannot_be_copied() -> None:
     env = make_env("navigation")
     env.reset(seed=1)
-    for copied in (copy.deepcopy, pickle.dumps):
+    for copy_env in (copy.deepcopy, pickle.dumps):
         with pytest.raises(TypeError, match="neither copied nor pickled: make another environment, and reset it"):
-            copied(env)  # type: ignore[operator]
+            copy_env(env)  # type: ignore[operator]
     env.step([0] * 5)
     env.close()
 
 
-def test_an_environment_that_nobody_closes_frees_its_physics() -> None:
+def test_an_environment_that_is_not_closed_frees_its_physics() -> None:
     env = make_env("navigation")
     env.reset(seed=1)
-    freed = env.unwrapped.game.world._disconnect  # type: ignore[attr-defined]
-    assert freed.alive
+    finalizer = env.unwrapped.game.world._disconnect  # type: ignore[attr-defined]
+    assert finalizer.alive
     del env
     gc.collect()
-    assert not freed.alive
+    assert not finalizer.alive
 
 
-def test_gymnasium_makes_it_again_from_json() -> None:
+def test_gymnasium_recreates_an_environment_from_json() -> None:
     env = gymnasium.make("tltl/Navigation-v0", variant="v1", params={"level_size": 21.0})
     assert env.spec is not None
-    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
-    assert again.spec == env.spec
-    for each in (env, again):
-        assert each.get_wrapper_attr("level").variant == "v1"
-        assert each.get_wrapper_attr("task").params == {"level_size": 21.0}
-    assert np.array_equal(env.reset(seed=5)[0]["entities"], again.reset(seed=5)[0]["entities"])
+    restored = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
+    assert restored.spec == env.spec
+    for made_env in (env, restored):
+        assert made_env.get_wrapper_attr("level").variant == "v1"
+        assert made_env.get_wrapper_attr("task").params == {"level_size": 21.0}
+    assert np.array_equal(env.reset(seed=5)[0]["entities"], restored.reset(seed=5)[0]["entities"])
     env.close()
-    again.close()
+    restored.close()
 
 
-def test_what_the_level_lacks_is_told_where_the_spec_asks_for_it(tmp_path: Path) -> None:
+def test_a_missing_entity_is_reported_at_its_place_in_the_spec(tmp_path: Path) -> None:
     plan = tmp_path / "plan.tltl"
     plan.write_text("import stealth\nentity s9\nspec plan = F near(s9)\n", encoding="utf-8")
     with pytest.raises(TltlError) as caught:
         make_env("navigation", spec=plan)
-    (said,) = caught.value.diagnostics
-    assert (said.code, said.title) == ("TLT0810", "the level `navigation` has no entity `s9`")
-    label = said.labels[0]
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == ("TLT0810", "the level `navigation` has no entity `s9`")
+    label = diagnostic.labels[0]
     assert (label.source.name, label.source.slice(label.span)) == (str(plan), "s9")
     for spec in (plan.read_text(encoding="utf-8"), load_task(plan).fspa):
         with pytest.raises(TltlError, match="TLT0810"):
@@ -218,11 +218,11 @@ def test_a_level_without_a_spec_needs_one() -> None:
         ({"spec": ()}, "a spec is a path, a text or an automaton, not"),
     ],
 )
-def test_options_of_another_type_are_refused(options: dict[str, Any], said: str) -> None:
+def test_options_of_the_wrong_type_are_rejected(options: dict[str, Any], said: str) -> None:
     with pytest.raises(TypeError, match=said):
         make_env(**{"level": "navigation", **options})
 
 
-def test_what_is_sensed_is_named_once() -> None:
+def test_an_entity_cannot_be_sensed_twice() -> None:
     with pytest.raises(TltlError, match="TLT0815: `exit` is to be sensed twice"):
         make_env("navigation", sensors={"entities": ["exit", "exit"]})

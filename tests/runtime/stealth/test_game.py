@@ -1,4 +1,4 @@
-"""The whole game on the shipped levels: determinism, switches and barriers, signals, and bodies that stay inside."""
+"""The whole game on the shipped levels: repeatability, switches and barriers, signals, and players that stay inside."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def random_actions(seed: int, count: int) -> list[list[int]]:
     return [[int(rng.integers(size)) for size in BRANCHES] for _ in range(count)]
 
 
-def test_random_play_keeps_every_promise(game: Game) -> None:
+def test_random_play_stays_within_all_bounds(game: Game) -> None:
     low, high = game.level.bounds.low, game.level.bounds.high
     for seed in range(2):
         game.reset(seed)
@@ -48,19 +48,19 @@ def test_a_seed_reproduces_an_episode(game: Game) -> None:
     runs = []
     for _ in range(2):
         game.reset(7)
-        seen = []
+        snapshots = []
         for action in random_actions(3, 60):
             game.step(action)
-            seen.append(game.snapshot())
-        runs.append(seen)
-        game.reset(8)  # another episode in between leaves no trace
+            snapshots.append(game.snapshot())
+        runs.append(snapshots)
+        game.reset(8)  # another episode in between must not matter
         for action in random_actions(4, 10):
             game.step(action)
     assert runs[0] == runs[1]
 
 
-def put(level: Level, place: Point) -> Game:
-    """A game whose player stands at a place."""
+def game_at(level: Level, place: Point) -> Game:
+    """Return a game whose player starts at a place."""
     from tltlc.core.record import replace
 
     return Game(replace(level, start=replace(level.start, position=place, spread=0.0)))
@@ -69,7 +69,7 @@ def put(level: Level, place: Point) -> Game:
 def test_a_switch_opens_its_barrier() -> None:
     level = load_level("cover_and_hide")
     s1 = level.switches[0]
-    game = put(level, s1.position)
+    game = game_at(level, s1.position)
     opened = [index for index, barrier in enumerate(level.barriers) if barrier.opened_by == (s1.name,)]
     assert opened and not any(game.open)
     game.step([0, 0, 0, 0, 0])
@@ -79,20 +79,20 @@ def test_a_switch_opens_its_barrier() -> None:
     game.close()
 
 
-def test_the_third_switch_unlocks_one_of_two() -> None:
+def test_the_third_switch_unlocks_one_of_two_barriers() -> None:
     level = load_level("branching")
     unlock = level.unlocks[0]
     place = next(switch.position for switch in level.switches if switch.name == unlock.switch)
-    game = put(level, place)
-    found = set()
+    game = game_at(level, place)
+    unlocked = set()
     for seed in range(12):
         game.reset(seed)
         game.step([0, 0, 0, 0, 0])
-        opened = [b.name for b, is_open in zip(level.barriers, game.open, strict=True) if is_open]
+        opened = [barrier.name for barrier, is_open in zip(level.barriers, game.open, strict=True) if is_open]
         assert len(opened) == 1
-        found.update(opened)
+        unlocked.update(opened)
         assert [game.signals()["open_right"], game.signals()["open_left"]].count(1.0) == 1
-    assert found == set(unlock.barriers)
+    assert unlocked == set(unlock.barriers)
     game.close()
 
 
@@ -100,7 +100,7 @@ def test_a_laser_burns() -> None:
     level = load_level("branching")
     laser = next(barrier for barrier in level.barriers if barrier.kind == "laser")
     low, high = laser.box.low, laser.box.high
-    game = put(level, ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, 0.0))
+    game = game_at(level, ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, 0.0))
     game.step([0, 0, 0, 0, 0])
     assert game.health < 1.0
     game.close()
@@ -110,7 +110,7 @@ def test_a_laser_burns() -> None:
 def test_each_level_supplies_the_signals_of_its_spec(name: str) -> None:
     level = load_level(name)
     file, _, spec = level.spec.partition(":")
-    (fspa,) = (each for each in tltlc.compile_file(ROOT / "examples" / file) if each.name == spec)
+    (fspa,) = (automaton for automaton in tltlc.compile_file(ROOT / "examples" / file) if automaton.name == spec)
     game = Game(level)
     assert {signal.name for signal in fspa.signals} <= set(game.signals())
     game.close()

@@ -1,4 +1,4 @@
-"""Recordings hold what was played, and playing is the same with and without them."""
+"""Recordings contain what was played, and recording does not change the game."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def _recorder() -> Iterator[RecordEpisode]:
     env.close()
 
 
-def test_rows_are_those_that_were_played(recorder: RecordEpisode) -> None:
+def test_a_recording_contains_the_steps_that_were_played(recorder: RecordEpisode) -> None:
     _, info = recorder.reset(seed=7)
-    infos, rewards, said = [info], [], actions(30)
-    for action in said:
+    infos, rewards, played_actions = [info], [], actions(30)
+    for action in played_actions:
         _, reward, _, _, info = recorder.step(action)
         infos.append(info)
         rewards.append(reward)
@@ -45,35 +45,35 @@ def test_rows_are_those_that_were_played(recorder: RecordEpisode) -> None:
     game = recorder.unwrapped.game  # type: ignore[attr-defined]
     names = [signal.name for signal in episode.fspa.signals]
     assert episode.level.name == "cover_and_hide" and episode.player == "dice" and episode.seed == game.seed
-    assert episode.actions.tolist() == said and episode.rewards.tolist() == rewards
+    assert episode.actions.tolist() == played_actions and episode.rewards.tolist() == rewards
     assert episode.states.tolist() == [info["state"] for info in infos]
     assert episode.progress.tolist() == [info["progress"] for info in infos]
     assert episode.atoms.tolist() == [list(info["atoms"].values()) for info in infos[1:]]
     assert episode.signals.shape == (31, len(names)) and len(episode.snapshots) == 31
     assert episode.signals[-1].tolist() == [game.signals()[name] for name in names]
-    assert episode.signals[:, names.index("health")].tolist() == [each.health for each in episode.snapshots]
+    assert episode.signals[:, names.index("health")].tolist() == [snapshot.health for snapshot in episode.snapshots]
     assert episode.snapshots[-1] == game.snapshot() and episode.snapshots[0].time == 0.0
     assert (episode.end, episode.success, episode.verdict) == ("stopped", False, infos[-1]["verdict"])
     assert episode.params == {"level_size": pytest.approx(recorder.unwrapped.tltl_params()["level_size"])}  # type: ignore[attr-defined]
     assert {"python", "tltlc", "pybullet", "numpy"} == set(episode.versions)
 
 
-def test_recording_changes_nothing() -> None:
+def test_recording_does_not_change_the_game() -> None:
     plain, recorded = make_env("branching", "v1"), RecordEpisode(make_env("branching", "v1"))
     for seed in (3, None):
-        flows: list[list[Any]] = []
+        results: list[list[Any]] = []
         for env in (plain, recorded):
-            flow: list[Any] = [env.reset(seed=seed)]
-            flow += [env.step(action) for action in actions(40)]
-            flows.append(flow)
-        for one, other in zip(*flows, strict=True):
-            assert all(np.array_equal(one[0][key], other[0][key]) for key in one[0] | other[0])
-            assert one[1:] == other[1:]
+            env_results: list[Any] = [env.reset(seed=seed)]
+            env_results += [env.step(action) for action in actions(40)]
+            results.append(env_results)
+        for first, second in zip(*results, strict=True):
+            assert all(np.array_equal(first[0][key], second[0][key]) for key in first[0] | second[0])
+            assert first[1:] == second[1:]
     plain.close()
     recorded.close()
 
 
-def test_a_copy_stays_and_a_reset_in_the_middle_begins_anew(recorder: RecordEpisode) -> None:
+def test_an_episode_is_a_copy_and_a_reset_starts_a_new_one(recorder: RecordEpisode) -> None:
     with pytest.raises(RuntimeError, match="first reset"):
         _ = recorder.episode
     with pytest.raises(RuntimeError, match="first reset"):
@@ -85,8 +85,8 @@ def test_a_copy_stays_and_a_reset_in_the_middle_begins_anew(recorder: RecordEpis
     recorder.step(NOTHING)
     assert len(first.snapshots) == 1 and len(recorder.episode.snapshots) == 2
     recorder.reset()
-    again = recorder.episode
-    assert len(again.snapshots) == 1 and again.seed != first.seed
+    second = recorder.episode
+    assert len(second.snapshots) == 1 and second.seed != first.seed
 
 
 @pytest.mark.parametrize(
@@ -101,14 +101,14 @@ def test_a_copy_stays_and_a_reset_in_the_middle_begins_anew(recorder: RecordEpis
 def test_how_episodes_end(spec: str, end: str, success: bool, steps: int) -> None:
     env = RecordEpisode(make_env("navigation", spec=spec))
     env.reset(seed=1)
-    for _ in range(6):  # what comes after the end is no part of it
+    for _ in range(6):  # steps after the end are not recorded
         env.step(NOTHING)
     episode = env.episode
     env.close()
     assert (episode.end, episode.success, len(episode.actions)) == (end, success, steps)
 
 
-def test_it_records_what_gymnasium_makes_and_a_time_limit_around_it_only_stops() -> None:
+def test_a_time_limit_of_gymnasium_ends_a_recording_as_stopped() -> None:
     env = RecordEpisode(gymnasium.make("tltl/Navigation-v0", max_episode_steps=3))
     env.reset(seed=1)
     ends = [env.step(NOTHING)[3] for _ in range(3)]
@@ -117,7 +117,7 @@ def test_it_records_what_gymnasium_makes_and_a_time_limit_around_it_only_stops()
     env.close()
 
 
-def test_what_cannot_be_recorded_is_said() -> None:
+def test_other_environments_cannot_be_recorded() -> None:
     with pytest.raises(TypeError, match="only the stealth game can be recorded, not CartPoleEnv"):
         RecordEpisode(gymnasium.make("CartPole-v1"))
     game = GameEnv("navigation")
@@ -126,14 +126,14 @@ def test_what_cannot_be_recorded_is_said() -> None:
     game.close()
 
 
-def test_an_action_that_is_none_is_not_recorded(recorder: RecordEpisode) -> None:
+def test_an_invalid_action_is_not_recorded(recorder: RecordEpisode) -> None:
     recorder.reset()
     with pytest.raises(ValueError, match="an action is five whole numbers"):
         recorder.step([3, 0, 0, 0, 0])
     assert len(recorder.episode.actions) == 0
 
 
-def test_what_is_played_is_recorded_whatever_wrappers_make_of_it() -> None:
+def test_the_action_that_reaches_the_game_is_recorded() -> None:
     east = gymnasium.wrappers.TransformAction(make_env("navigation"), lambda _: [1, 0, 0, 0, 0], None)
     env = RecordEpisode(east)
     env.reset(seed=1)
@@ -142,7 +142,7 @@ def test_what_is_played_is_recorded_whatever_wrappers_make_of_it() -> None:
     env.close()
 
 
-def test_a_folder_that_takes_nothing_is_told_at_once(tmp_path: Path) -> None:
+def test_an_unusable_folder_is_reported_at_once(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     env = make_env("navigation")
     for folder in ("/proc/x", tmp_path / "file"):

@@ -1,4 +1,4 @@
-"""Random steps in every variant; ``benchmarks/safety.py`` takes a million."""
+"""Random steps in every variant. ``benchmarks/safety.py`` takes a million of them."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ STEPS = 2_300
 
 
 @pytest.mark.parametrize("level, variant", variants_of_all())
-def test_nothing_passes_a_wall_or_leaves_its_bounds(level: str, variant: str) -> None:
+def test_the_player_passes_no_wall_and_stays_in_bounds(level: str, variant: str) -> None:
     record = safety.tried(level, variant, STEPS)
     assert (record["steps"], record["episodes"], record["checks"]) == (STEPS, 6, 11)
     assert 0.0 < record["deepest_m"] < safety.DEEPEST
 
 
-def test_a_wall_that_is_missing_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The world is built without one of the walls that its level has."""
+def test_a_missing_wall_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The world is built without the walls of its level."""
     env = GameEnv("navigation")
-    whole = env.level
-    missing = replace(whole, solids=tuple(solid for solid in whole.solids if solid.kind != "wall"))
+    complete = env.level
+    without_walls = replace(complete, solids=tuple(solid for solid in complete.solids if solid.kind != "wall"))
     env.close()
-    monkeypatch.setattr("tltl_runtime.stealth.env.load_level", lambda *_: missing)
+    monkeypatch.setattr("tltl_runtime.stealth.env.load_level", lambda *_: without_walls)
     begin = safety._begin
 
-    def with_the_whole_level(env: GameEnv, _: object, rng: object, *, anywhere: bool) -> None:
-        begin(env, whole, rng, anywhere=anywhere)  # type: ignore[arg-type]
+    def begin_with_complete_level(env: GameEnv, _: object, rng: object, *, anywhere: bool) -> None:
+        begin(env, complete, rng, anywhere=anywhere)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(safety, "_begin", with_the_whole_level)
+    monkeypatch.setattr(safety, "_begin", begin_with_complete_level)
     with pytest.raises(WorldError, match="nothing is hit on its side"):
         safety.tried("navigation", "v0", 10)
 
 
-def test_a_body_inside_a_box_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_player_inside_a_box_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(safety, "DEEPEST", -1.0)
     with pytest.raises(safety.Violation, match=r"navigation v0, seed \d+, step 0: the player at .* m inside a box"):
         safety.tried("navigation", "v0", 10)

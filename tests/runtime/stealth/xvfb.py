@@ -1,4 +1,4 @@
-"""A screen for tests that need one, and keys that are really pressed on it."""
+"""A screen for tests that need one, and real key presses on it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MISSING += [name for name in ("pygame",) if find_spec(name) is None]
 
 @contextmanager
 def screen() -> Iterator[dict[str, str]]:
-    """An environment for processes, with the DISPLAY of an X server that ends with the block."""
+    """Yield environment variables for processes, with the DISPLAY of an X server that ends with the block."""
     reading, writing = os.pipe()
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x700x24", "-nolisten", "tcp"],
@@ -26,14 +26,14 @@ def screen() -> Iterator[dict[str, str]]:
     )
     os.close(writing)
     try:
-        with os.fdopen(reading) as told:
-            number = told.readline().strip()
+        with os.fdopen(reading) as pipe:
+            number = pipe.readline().strip()
         yield {**os.environ, "DISPLAY": f":{number}", "SDL_VIDEODRIVER": "x11", "OMP_NUM_THREADS": "1"}
     finally:
         server.terminate()
         server.wait(HANG_S)
 
 
-def keys(environment: dict[str, str], *what: str) -> None:
-    """Say to xdotool what to press: ``key Escape``, ``keydown d``."""
-    subprocess.run(["xdotool", *what], env=environment, check=True, timeout=HANG_S, capture_output=True)
+def keys(environment: dict[str, str], *commands: str) -> None:
+    """Press keys with commands of xdotool, such as ``key Escape`` or ``keydown d``."""
+    subprocess.run(["xdotool", *commands], env=environment, check=True, timeout=HANG_S, capture_output=True)

@@ -1,4 +1,4 @@
-"""Rendering through Gymnasium: pictures, a window, and what there is not."""
+"""Rendering through Gymnasium: pictures, a window, and invalid options."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ def test_pictures_through_gymnasium(name: str) -> None:
 
 
 @pytest.mark.parametrize("size", [(-1, 5), (0, 0), (100_000, 100_000), 64, (10,), (64.0, 48.0), (64, 15), None])
-def test_a_size_that_no_picture_has_is_refused_at_once(size: object) -> None:
+def test_invalid_sizes_are_rejected_at_once(size: object) -> None:
     with pytest.raises(ValueError, match=r"\(width, height\) in pixels, each from 16 to 4096, not "):
         GameEnv("branching", render_mode="rgb_array", render_size=size)  # type: ignore[arg-type]
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads what Linux says of memory")
-def test_pictures_give_their_memory_back() -> None:
-    def used() -> float:
-        """MB"""
+def test_closing_a_screen_frees_its_memory() -> None:
+    def used_mb() -> float:
+        """Return the resident memory of this process in MB."""
         return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * resource.getpagesize() / 1e6
 
-    def once() -> None:
+    def render_once() -> None:
         screen = Screen(level, "rgb_array", "third_person", SMALL)
         screen.render(snapshot)
         screen.close()
@@ -60,11 +60,11 @@ def test_pictures_give_their_memory_back() -> None:
     level, snapshot = game.level, game.snapshot()
     game.close()
     for _ in range(3):
-        once()
-    before = used()
+        render_once()
+    before = used_mb()
     for _ in range(12):
-        once()
-    assert used() - before < 4.0  # where each keeps its meshes, it is 15 and more
+        render_once()
+    assert used_mb() - before < 4.0  # it is 15 or more if each screen keeps its meshes
 
 
 def test_lists_of_pictures() -> None:
@@ -78,7 +78,7 @@ def test_lists_of_pictures() -> None:
 
 
 def test_an_episode_is_the_same_with_pictures() -> None:
-    seen = []
+    observations = []
     for mode in (None, "rgb_array"):
         env = make_env("cover_and_hide", render_mode=mode, render_size=SMALL)
         env.reset(seed=5)
@@ -86,12 +86,12 @@ def test_an_episode_is_the_same_with_pictures() -> None:
             observation, *_ = env.step([1, 1, 0, 0, 1])
             if mode:
                 env.render()
-        seen.append(observation)
+        observations.append(observation)
         env.close()
-    assert all(np.array_equal(seen[0][key], seen[1][key]) for key in seen[0])
+    assert all(np.array_equal(observations[0][key], observations[1][key]) for key in observations[0])
 
 
-def test_modes_and_views_that_there_are_not() -> None:
+def test_unknown_modes_and_views_are_rejected() -> None:
     with pytest.raises(ValueError, match=r"no render mode 'ansi': there are human, rgb_array"):
         GameEnv("navigation", render_mode="ansi")
     with pytest.raises(ValueError, match=r"no view 'side': there are third_person, top_down, overview"):
@@ -120,7 +120,7 @@ print("checked")
 
 
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
-def test_gymnasiums_own_checks_of_all_modes_with_a_screen(tmp_path: Path) -> None:
+def test_the_checks_of_gymnasium_pass_with_a_screen(tmp_path: Path) -> None:
     with screen() as environment:
         command = [sys.executable, "-c", CHECK]
         done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S)
@@ -128,8 +128,8 @@ def test_gymnasiums_own_checks_of_all_modes_with_a_screen(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_gymnasiums_own_checks_without_a_screen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They try all render modes, so one without a screen must not fail where there is none."""
+def test_the_checks_of_gymnasium_pass_without_a_screen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The checks try all render modes, so the mode with a window must not fail without a screen."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv("SDL_VIDEODRIVER", "x11")
     env = gymnasium.make(name, render_mode="rgb_array", render_size=SMALL)
@@ -138,14 +138,14 @@ def test_gymnasiums_own_checks_without_a_screen(name: str, monkeypatch: pytest.M
     env.close()
 
 
-def test_the_pictures_of_the_readme_are_those_that_are_made(tmp_path: Path) -> None:
+def test_the_pictures_of_the_readme_are_up_to_date(tmp_path: Path) -> None:
     images = Path(__file__).parents[4] / "docs" / "images"
     subprocess.run([sys.executable, images / "frames.py", tmp_path], check=True, timeout=HANG_S, capture_output=True)
-    made = sorted(tmp_path.iterdir())
-    assert [path.name for path in made] == ["branching.png", "cover_and_hide.png", "navigation.png"]
-    for path in made:
-        kept = images / path.name
-        assert kept.stat().st_size < 150_000
-        pictures = [np.asarray(Image.open(each).convert("RGB"), float) for each in (path, kept)]
-        # Another processor may round another way.
+    new_paths = sorted(tmp_path.iterdir())
+    assert [path.name for path in new_paths] == ["branching.png", "cover_and_hide.png", "navigation.png"]
+    for path in new_paths:
+        committed = images / path.name
+        assert committed.stat().st_size < 150_000
+        pictures = [np.asarray(Image.open(picture_path).convert("RGB"), float) for picture_path in (path, committed)]
+        # Another processor may round differently.
         assert np.abs(pictures[0] - pictures[1]).mean() < 1.0, f"{path.name} is old: make generate"

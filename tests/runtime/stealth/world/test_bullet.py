@@ -1,4 +1,4 @@
-"""Pybullet is imported in one place, and says nothing there."""
+"""Pybullet is imported in one module only, and prints nothing."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_the_game_is_silent(closed: str) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "made\n", "")
 
 
-def test_no_other_module_imports_it() -> None:
+def test_one_module_imports_pybullet() -> None:
     importing = re.compile(r"^\s*(import|from) pybullet\b", re.MULTILINE)
-    found = [path.name for path in _PACKAGE.rglob("*.py") if importing.search(path.read_text(encoding="utf-8"))]
-    assert found == ["bullet.py"]
+    importers = [path.name for path in _PACKAGE.rglob("*.py") if importing.search(path.read_text(encoding="utf-8"))]
+    assert importers == ["bullet.py"]

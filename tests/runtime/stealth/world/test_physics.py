@@ -1,4 +1,4 @@
-"""The physics of a level: what stops the player, what it climbs, and that all of it happens again."""
+"""The physics of a level: what blocks the player, what it can climb, and that episodes repeat exactly."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def arena(
     movers: tuple[Mover, ...] = (),
     start: Start | None = None,
 ) -> Level:
-    """A square room of 24 m with walls of 4 m."""
+    """Return a square room of 24 m with walls 4 m high."""
     room = (
         Solid("floor", "floor", Box((-HALF, -HALF, -0.5), (HALF, HALF, 0.0))),
         wall("west", (-HALF - 0.5, -HALF, 0.0), (-HALF, HALF, 4.0)),
@@ -95,7 +95,7 @@ def test_speeds(opened: list[World]) -> None:
         assert world.player.velocity == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
 
 
-def test_a_diagonal_is_no_faster_and_turns_the_player(opened: list[World]) -> None:
+def test_a_diagonal_walk_is_no_faster_and_turns_the_player(opened: list[World]) -> None:
     world = World(arena())
     opened.append(world)
     walk(world, (1, 2, 0, 0, 0), 10)
@@ -106,7 +106,7 @@ def test_a_diagonal_is_no_faster_and_turns_the_player(opened: list[World]) -> No
     assert world.player.yaw == pytest.approx(-0.785, abs=1e-3)
 
 
-def test_sprint_takes_stamina_and_rest_gives_it_back(opened: list[World]) -> None:
+def test_a_sprint_costs_stamina_and_rest_restores_it(opened: list[World]) -> None:
     world = World(arena(start=Start((-11.0, 0.0, 0.0))))
     opened.append(world)
     walk(world, EAST_SPRINTING, 20)
@@ -119,7 +119,7 @@ def test_sprint_takes_stamina_and_rest_gives_it_back(opened: list[World]) -> Non
     assert world.player.stamina == 1.0
 
 
-def test_walls_stop_and_let_slide(opened: list[World]) -> None:
+def test_walls_stop_the_player_and_let_it_slide(opened: list[World]) -> None:
     world = World(arena(wall("wall", (2.0, -3.0, 0.0), (2.1, 3.0, 3.0))))
     opened.append(world)
     walk(world, EAST_SPRINTING, 12)
@@ -132,9 +132,9 @@ def test_walls_stop_and_let_slide(opened: list[World]) -> None:
 
 @pytest.mark.parametrize("sprint", [0, 1])
 @pytest.mark.parametrize("height, reached", [(0.6, True), (1.0, True), (1.2, False), (1.3, False)])
-def test_jump_reaches_platforms_of_a_metre(opened: list[World], height: float, reached: bool, sprint: int) -> None:
-    for way in range(4):
-        start = Start((0.11 * way, 0.0, 0.0))
+def test_a_jump_reaches_platforms_of_a_metre(opened: list[World], height: float, reached: bool, sprint: int) -> None:
+    for offset in range(4):
+        start = Start((0.11 * offset, 0.0, 0.0))
         world = World(arena(wall("platform", (3.0, -2.0, 0.0), (HALF, 2.0, height)), start=start))
         opened.append(world)
         walk(world, (1, 0, 1, 0, sprint), 13)
@@ -143,7 +143,7 @@ def test_jump_reaches_platforms_of_a_metre(opened: list[World], height: float, r
         assert (world.player.position[0] > 3.0) is reached
 
 
-def test_jump_needs_ground(opened: list[World]) -> None:
+def test_a_jump_needs_ground(opened: list[World]) -> None:
     world = World(arena())
     opened.append(world)
     heights = []
@@ -159,7 +159,7 @@ def test_jump_needs_ground(opened: list[World]) -> None:
 
 @pytest.mark.parametrize("action", [EAST, EAST_SPRINTING, EAST_CROUCHED, (1, 1, 0, 0, 0)])
 @pytest.mark.parametrize("rise, climbed", [(0.1, True), (0.25, True), (0.35, False)])
-def test_stairs_are_walked_up(opened: list[World], action: Action, rise: float, climbed: bool) -> None:
+def test_the_player_walks_up_stairs(opened: list[World], action: Action, rise: float, climbed: bool) -> None:
     stairs = [wall(f"stair {i}", (1 + 0.4 * i, -3.0, 0.0), (HALF, 1.0, rise * (i + 1))) for i in range(5)]
     world = World(arena(*stairs, wall("beside", (0.0, 1.0, 0.0), (HALF, 1.2, 4.0))))
     opened.append(world)
@@ -170,7 +170,7 @@ def test_stairs_are_walked_up(opened: list[World], action: Action, rise: float, 
         assert world.player.position[2] == pytest.approx(0.0, abs=0.03)
 
 
-def test_crouching_passes_a_low_gap_and_stands_up_behind_it(opened: list[World]) -> None:
+def test_a_crouching_player_passes_a_low_gap_and_stands_up_behind_it(opened: list[World]) -> None:
     world = World(arena(wall("beam", (2.0, -3.0, 1.0), (3.5, 3.0, 3.0))))
     opened.append(world)
     walk(world, EAST, 8)
@@ -188,7 +188,7 @@ def test_crouching_passes_a_low_gap_and_stands_up_behind_it(opened: list[World])
     assert world.player.position[2] == pytest.approx(0.0, abs=0.01)
 
 
-def test_a_solid_barrier_stops_until_it_is_open_and_a_laser_never_does(opened: list[World]) -> None:
+def test_a_solid_barrier_blocks_until_it_is_open_and_a_laser_never_does(opened: list[World]) -> None:
     gate = Barrier("gate", "solid", Box((2.0, -HALF, 0.0), (2.2, HALF, 3.0)), ())
     laser = Barrier("laser", "laser", Box((1.0, -HALF, 0.0), (1.1, HALF, 3.0)), (), damage=1.0)
     world = World(arena(barriers=(gate, laser)))
@@ -209,7 +209,7 @@ def test_a_solid_barrier_stops_until_it_is_open_and_a_laser_never_does(opened: l
     assert world.ray_blocked(*sight)
 
 
-def test_sight_is_stopped_by_walls_and_not_by_the_player(opened: list[World]) -> None:
+def test_walls_block_sight_and_the_player_does_not(opened: list[World]) -> None:
     world = World(arena(wall("low", (2.0, -1.0, 0.0), (2.2, 1.0, 1.0))))
     opened.append(world)
     assert not world.ray_blocked((-3.0, 0.0, 0.9), (1.5, 0.0, 0.9))
@@ -219,7 +219,7 @@ def test_sight_is_stopped_by_walls_and_not_by_the_player(opened: list[World]) ->
     assert not world.ray_blocked((-3.0, 0.0, 0.4), (1.5, 0.0, 0.4))
 
 
-def test_more_boxes_than_a_compound_holds_all_stand(opened: list[World]) -> None:
+def test_more_boxes_than_fit_in_a_compound_are_all_built(opened: list[World]) -> None:
     boxes = [
         wall(f"box {i}", (i % 7 * 3 - 10, i // 7 * 3 - 8, 0), (i % 7 * 3 - 9, i // 7 * 3 - 7, 2)) for i in range(40)
     ]
@@ -231,7 +231,7 @@ def test_more_boxes_than_a_compound_holds_all_stand(opened: list[World]) -> None
         assert world.ray_blocked((x + 0.5, y - 0.2, 1.0), (x + 0.5, y + 0.5, 1.0))
 
 
-def test_bodies_have_nothing_to_draw() -> None:
+def test_bodies_are_invisible_to_pybullet_cameras() -> None:
     client = pybullet.connect(pybullet.DIRECT)
     try:
         static_box(client, (2.0, 2.0, 2.0), (0.0, 0.0, 0.0))
@@ -244,19 +244,19 @@ def test_bodies_have_nothing_to_draw() -> None:
         pybullet.disconnect(physicsClientId=client)
 
 
-def test_a_compound_of_too_many_boxes_is_refused() -> None:
+def test_a_compound_of_too_many_boxes_is_rejected() -> None:
     with pytest.raises(ValueError, match="holds 16 boxes, 17 were given"):
         static_boxes(0, [((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))] * 17)
 
 
-def test_static_bodies_do_not_meet_each_other(opened: list[World]) -> None:
+def test_static_bodies_do_not_collide(opened: list[World]) -> None:
     world = World(busy())
     opened.append(world)
     pairs = {(row[1], row[2]) for row in pybullet.getContactPoints(physicsClientId=world._client)}
     assert len(pairs) == 1, "only the player and the floor"
 
 
-def test_check_names_the_wall_that_is_not_there(opened: list[World]) -> None:
+def test_check_names_a_missing_wall(opened: list[World]) -> None:
     world = World(arena(wall("wall", (2.0, -1.0, 0.0), (2.2, 1.0, 2.0))))
     opened.append(world)
     world.level = arena(
@@ -266,12 +266,12 @@ def test_check_names_the_wall_that_is_not_there(opened: list[World]) -> None:
         world.check()
 
 
-def test_a_start_inside_a_wall_is_refused() -> None:
+def test_a_start_inside_a_wall_is_rejected() -> None:
     with pytest.raises(WorldError, match="no room at the start"):
         World(arena(wall("wall", (-1.0, -1.0, 0.0), (1.0, 1.0, 2.0))))
 
 
-def test_leaving_the_bounds_is_an_error_that_tells_where(opened: list[World]) -> None:
+def test_leaving_the_bounds_is_an_error_with_the_step(opened: list[World]) -> None:
     level = arena()
     world = World(replace(level, solids=tuple(solid for solid in level.solids if solid.name != "east")))
     opened.append(world)
@@ -280,7 +280,7 @@ def test_leaving_the_bounds_is_an_error_that_tells_where(opened: list[World]) ->
     assert caught.value.step == world.steps
 
 
-def test_start_spread(opened: list[World]) -> None:
+def test_starts_are_spread_around_the_start(opened: list[World]) -> None:
     world = World(arena(wall("wall", (1.0, -3.0, 0.0), (2.5, 3.0, 2.0)), start=Start((0.0, 0.0, 0.0), 1.0, 2.0)))
     opened.append(world)
     rng = random.Random(3)
@@ -296,18 +296,18 @@ def test_start_spread(opened: list[World]) -> None:
     assert len(places) == 30
 
 
-def test_a_way_goes_there_and_back_or_round() -> None:
-    there = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0)), speed=1.0, pause=0.5)
-    way = Way(there)
-    assert [way.at(t)[0] for t in (0.0, 0.5, 1.5, 2.5, 3.0, 4.0, 5.0)] == [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
-    round_about = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0), (2.0, 2.0, 1.0)), speed=1.0, closed=True)
-    way = Way(round_about)
-    assert way.at(3.0) == (2.0, 1.0, 1.0)
-    assert way.at(4.0 + 8**0.5 / 2) == pytest.approx((1.0, 1.0, 1.0))
+def test_a_mover_goes_back_and_forth_or_round() -> None:
+    back_and_forth = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0)), speed=1.0, pause=0.5)
+    path = Way(back_and_forth)
+    assert [path.at(t)[0] for t in (0.0, 0.5, 1.5, 2.5, 3.0, 4.0, 5.0)] == [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
+    round_trip = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0), (2.0, 2.0, 1.0)), speed=1.0, closed=True)
+    path = Way(round_trip)
+    assert path.at(3.0) == (2.0, 1.0, 1.0)
+    assert path.at(4.0 + 8**0.5 / 2) == pytest.approx((1.0, 1.0, 1.0))
     assert Way(Mover("m", (1, 1, 1), ((1.0, 2.0, 3.0),), speed=1.0)).at(7.0) == (1.0, 2.0, 3.0)
 
 
-def test_a_mover_keeps_its_time_and_pushes_the_player(opened: list[World]) -> None:
+def test_a_mover_keeps_its_schedule_and_pushes_the_player(opened: list[World]) -> None:
     mover = Mover("mover", (1.0, 2.0, 1.5), ((-4.0, 0.0, 0.8), (4.0, 0.0, 0.8)), speed=2.0)
     world = World(arena(movers=(mover,)))
     opened.append(world)
@@ -327,7 +327,7 @@ def test_a_mover_waits_rather_than_push_the_player_through_a_wall(opened: list[W
         assert world.player.position[2] < 0.02
 
 
-def test_a_mover_carries_nobody_but_lifts_and_never_presses_into_the_floor(opened: list[World]) -> None:
+def test_a_mover_does_not_carry_the_player_or_press_it_into_the_floor(opened: list[World]) -> None:
     lift = Mover("lift", (2.0, 2.0, 0.5), ((0.0, 0.0, 3.0), (0.0, 0.0, 0.3)), speed=1.0)
     world = World(arena(movers=(lift,)))
     opened.append(world)
@@ -351,7 +351,7 @@ BUSY = (
 
 
 def busy() -> Level:
-    """An arena with some of everything."""
+    """Return an arena with boxes, a gate and movers."""
     boxes = [
         wall(
             f"box {i}",
@@ -383,7 +383,7 @@ def episode(world: World, seed: int) -> list[tuple[float, ...]]:
     return rows
 
 
-def test_an_episode_happens_again_bit_for_bit(opened: list[World]) -> None:
+def test_an_episode_repeats_bit_for_bit(opened: list[World]) -> None:
     first, second = World(busy()), World(busy())
     opened += [first, second]
     expected = episode(first, 7)
@@ -391,13 +391,13 @@ def test_an_episode_happens_again_bit_for_bit(opened: list[World]) -> None:
         assert episode(second, seed) != expected
     assert episode(second, 7) == expected
     assert episode(first, 7) == expected
-    other = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", BUSY], capture_output=True, text=True, check=True, timeout=HANG_S, cwd=ROOT
     )
-    assert repr(expected) in other.stdout
+    assert repr(expected) in process.stdout
 
 
-def test_a_random_player_stays_inside_everything(opened: list[World]) -> None:
+def test_a_random_player_stays_inside_the_arena(opened: list[World]) -> None:
     world = World(busy())
     opened.append(world)
     for seed in range(8):
@@ -413,7 +413,7 @@ def test_closing_twice_is_harmless() -> None:
         world.step((0, 0, 0, 0, 0))
 
 
-def test_the_capsule_that_is_not_played_never_falls_further_than_a_kilometre(opened: list[World]) -> None:
+def test_the_unused_capsule_falls_at_most_a_kilometre(opened: list[World]) -> None:
     world = World(arena())
     opened.append(world)
     for step in range(150):
