@@ -167,8 +167,8 @@ def test_the_level_size_changes_equation_2() -> None:
 
     sized = episode(TltlEnv(Sized(near), cover_and_hide(), current), most=1)
     assert sized[0][3]["atoms"] == step[3]["atoms"]
-    given = episode(TltlEnv(Sized(near), cover_and_hide(), current, params={"level_size": 20.0}), most=1)
-    assert given[0][3]["atoms"] == episode(played(near, cover_and_hide()), most=1)[0][3]["atoms"]
+    overridden = episode(TltlEnv(Sized(near), cover_and_hide(), current, params={"level_size": 20.0}), most=1)
+    assert overridden[0][3]["atoms"] == episode(played(near, cover_and_hide()), most=1)[0][3]["atoms"]
 
 
 def test_after_a_reset() -> None:
@@ -288,8 +288,8 @@ def test_a_missing_signal_is_reported_at_the_reset() -> None:
         played([row], cover_and_hide()).reset()
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0611"
-    given = "`distance(s1)`, `distance(s2)`, `distance(exid)`, `health`"
-    assert diagnostic.title == f"after the reset: no value for `distance(exit)`; `signals` gave {given}"
+    signals = "`distance(s1)`, `distance(s2)`, `distance(exid)`, `health`"
+    assert diagnostic.title == f"after the reset: no value for `distance(exit)`; `signals` gave {signals}"
     assert diagnostic.help == "is `distance(exid)` what the spec calls `distance(exit)`?"
 
 

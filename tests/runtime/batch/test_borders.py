@@ -1,4 +1,4 @@
-"""Comparisons in a batch are exact, whatever the size and format of the numbers."""
+"""Comparisons in a batch are exact, for numbers of any size and format."""
 
 from __future__ import annotations
 

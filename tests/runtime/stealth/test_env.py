@@ -103,10 +103,10 @@ def test_the_sensors_can_be_chosen() -> None:
 def test_later_steps_do_not_change_an_observation() -> None:
     env = GameEnv("cover_and_hide")
     first, _ = env.reset(seed=1)
-    kept = {key: value.copy() for key, value in first.items()}
+    copies = {key: value.copy() for key, value in first.items()}
     for _ in range(20):
         second, *_ = env.step((1, 1, 0, 0, 1))
-    assert all(np.array_equal(first[key], kept[key]) for key in kept)
+    assert all(np.array_equal(first[key], copies[key]) for key in copies)
     assert not np.array_equal(first["entities"], second["entities"])
     env.close()
 

@@ -69,7 +69,7 @@ def test_a_worker_that_is_killed_between_two_steps() -> None:
     kill(env.worker_pids[1])
     error = error_of_loss(env, [GO, GO])
     assert str(error).splitlines()[:1] == ["worker 1 was killed by SIGKILL; it had"]
-    assert [each.env for each in error.playing] == [1]
+    assert [playing.env for playing in error.playing] == [1]
 
 
 def test_a_worker_that_raises() -> None:

@@ -20,21 +20,24 @@ def floor_of(*obstacles: Solid) -> Floor:
     return Grid(level(*obstacles)).floor(())
 
 
-def distance_to_boxes(x: float, y: float, things: tuple[Solid, ...]) -> float:
+def distance_to_boxes(x: float, y: float, obstacles: tuple[Solid, ...]) -> float:
     """Return the distance from a point to the nearest box that blocks an enemy; ``RADIUS`` if there is none."""
     gaps = [
-        hypot(max(s.box.low[0] - x, 0.0, x - s.box.high[0]), max(s.box.low[1] - y, 0.0, y - s.box.high[1]))
-        for s in things
-        if s.box.low[2] < 1.8 and s.box.high[2] > 0.1
+        hypot(
+            max(obstacle.box.low[0] - x, 0.0, x - obstacle.box.high[0]),
+            max(obstacle.box.low[1] - y, 0.0, y - obstacle.box.high[1]),
+        )
+        for obstacle in obstacles
+        if obstacle.box.low[2] < 1.8 and obstacle.box.high[2] > 0.1
     ]
     return min(gaps, default=RADIUS)
 
 
 def test_a_path_leads_through_the_door() -> None:
-    way = floor_of(*ROOMS).way((1.0, 1.0), (9.0, 1.0))
-    assert len(way) > 30
-    assert any(abs(x - 5.0) < 0.2 and 5.3 < y < 6.2 for x, y in way)
-    assert all(hypot(a - c, b - d) < 0.36 for (a, b), (c, d) in pairwise(way))
+    path = floor_of(*ROOMS).way((1.0, 1.0), (9.0, 1.0))
+    assert len(path) > 30
+    assert any(abs(x - 5.0) < 0.2 and 5.3 < y < 6.2 for x, y in path)
+    assert all(hypot(a - c, b - d) < 0.36 for (a, b), (c, d) in pairwise(path))
 
 
 def test_a_walk_is_straight_if_nothing_is_in_the_way() -> None:
@@ -122,8 +125,8 @@ def test_paths_are_as_short_as_those_of_a_breadth_first_search(
     goal = data.draw(cells)
     steps = lengths(floor, goal)
     for cell in data.draw(st.lists(cells, min_size=1, max_size=8)):
-        way = floor._way(cell, goal)
-        assert len(way) == steps[cell] + 1 if steps[cell] >= 0 else way == [cell]
+        path = floor._way(cell, goal)
+        assert len(path) == steps[cell] + 1 if steps[cell] >= 0 else path == [cell]
 
 
 @settings(max_examples=40, deadline=None)
@@ -131,8 +134,8 @@ def test_paths_are_as_short_as_those_of_a_breadth_first_search(
 def test_no_path_comes_closer_to_an_obstacle_than_the_radius(
     obstacles: tuple[Solid, ...], a: tuple[float, float], b: tuple[float, float]
 ) -> None:
-    way = floor_of(*obstacles).way(a, b)
-    for (x0, y0), (x1, y1) in pairwise(way):
+    path = floor_of(*obstacles).way(a, b)
+    for (x0, y0), (x1, y1) in pairwise(path):
         for part in np.linspace(0.0, 1.0, 5):
             x, y = x0 + part * (x1 - x0), y0 + part * (y1 - y0)
             assert distance_to_boxes(x, y, obstacles) >= RADIUS - 1e-5

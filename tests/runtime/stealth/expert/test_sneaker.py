@@ -31,14 +31,14 @@ def play_to_goal(player: type[Sneaker] | type[Walker]) -> tuple[bool, int, int]:
     with closing(Game(guarded())) as game:
         game.reset(0)
         agent = player(game.level)
-        seen, crouched = False, 0
+        was_seen, crouched = False, 0
         for decision in range(60):
             snapshot = game.snapshot()
-            seen |= any(snapshot.sees)
+            was_seen |= any(snapshot.sees)
             crouched += snapshot.player.crouching
             x, y, _ = snapshot.player.position
             if abs(x - GOAL[0]) < 1.0 and abs(y - GOAL[1]) < 1.0:
-                return not seen, decision, crouched
+                return not was_seen, decision, crouched
             game.step(agent.act(snapshot, GOAL))
     raise AssertionError("the goal was not reached")
 

@@ -102,7 +102,7 @@ def test_the_variants_differ_as_in_the_paper() -> None:
     assert [level.enemies[0].kind for level in branching] == guards
 
 
-def test_variants_share_what_they_do_not_change() -> None:
+def test_variants_share_all_parts_that_they_do_not_change() -> None:
     first, second = load_level("navigation"), load_level("navigation", "v2")
     changed = {before.name for before, after in zip(first.solids, second.solids, strict=True) if before != after}
     assert changed == {"corridor_block_2"}

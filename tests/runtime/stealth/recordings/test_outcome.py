@@ -19,17 +19,17 @@ def test_an_outcome_agrees_with_the_environment(level: str, careful: bool) -> No
         env.reset(seed=1)
         expert.reset()
         game = env.get_wrapper_attr("game")
-        total, steps, seen, chased, over = 0.0, 0, int(any(game.enemies.sees)), False, False
+        total, steps, seen_steps, chased, over = 0.0, 0, int(any(game.enemies.sees)), False, False
         while not over:
             _, reward, terminated, truncated, info = env.step(expert.act())
             over = terminated or truncated
             total, steps = total + reward, steps + 1
-            seen += any(game.enemies.sees)
+            seen_steps += any(game.enemies.sees)
             chased |= "chase" in game.enemies.modes
         result = outcome(env.episode)
         opened = tuple(barrier.name for barrier, is_open in zip(game.level.barriers, game.open, strict=True) if is_open)
     assert result.reward == pytest.approx(total)
     assert (result.success, result.verdict, result.progress) == (info["success"], info["verdict"], info["progress"])
     assert (result.steps, result.seconds, result.health) == (steps, pytest.approx(steps * 0.15), game.health)
-    assert (result.seen_steps, result.chased, result.opened) == (seen, chased, opened)
+    assert (result.seen_steps, result.chased, result.opened) == (seen_steps, chased, opened)
     assert (result.end, result.chased) == (("success", False) if careful else ("violation", True))

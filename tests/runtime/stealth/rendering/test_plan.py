@@ -52,8 +52,8 @@ def test_routes_are_drawn_around_obstacles(name: str) -> None:
     floor = grid_of(level).floor(range(len(level.barriers)))
     bends = 0
     for enemy in level.enemies:
-        way = patrol(level, enemy)
-        assert all(floor.clear(here, there) for here, there in pairwise(way))
-        assert {point[:2] for point in enemy.route} <= set(way) and way[0] == way[-1]
-        bends += len(way) - len(enemy.route) - 1
+        path = patrol(level, enemy)
+        assert all(floor.clear(start, end) for start, end in pairwise(path))
+        assert {point[:2] for point in enemy.route} <= set(path) and path[0] == path[-1]
+        bends += len(path) - len(enemy.route) - 1
     assert bends > 0

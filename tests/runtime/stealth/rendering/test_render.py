@@ -55,9 +55,9 @@ def test_the_same_snapshot_gives_the_same_picture(drawn: tuple[Snapshot, Rendere
     assert frame.shape == (SIZE[1], SIZE[0], 3) and frame.dtype == np.uint8
     renderer.frame(changed(snapshot, player=standing((5.0, 5.0, 0.0)), open=(True,) * len(snapshot.open)), view)
     assert np.array_equal(renderer.frame(snapshot, view), frame)
-    other = Renderer(renderer.level, *SIZE)
-    assert np.array_equal(other.frame(snapshot, view), frame)
-    other.close()
+    second_renderer = Renderer(renderer.level, *SIZE)
+    assert np.array_equal(second_renderer.frame(snapshot, view), frame)
+    second_renderer.close()
     assert len(np.unique(frame.reshape(-1, 3), axis=0)) > 50
 
 
