@@ -181,7 +181,7 @@ def test_no_checkpoint_contains_an_unmeasured_iteration(
 
     reports = train(run := run_in(folder / f"before-{broken}"))
     next(reports)
-    monkeypatch.setattr(f"tltl_runtime.training.{broken}", interrupt)
+    monkeypatch.setattr(f"tltl_runtime.training.run.{broken}", interrupt)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 1
