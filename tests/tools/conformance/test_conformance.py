@@ -1,4 +1,5 @@
-"""Every monitor that can be built here says of every trace what :class:`tltlc.monitor.Monitor` says."""
+"""Every monitor that can be built here gives the same results as :class:`tltlc.monitor.Monitor` on
+every trace."""
 
 from __future__ import annotations
 
@@ -15,17 +16,19 @@ from tltlc.tools.conformance.corpus import CASES, is_exact
 from tltlc.tools.conformance.expected import Expected, expected
 
 ALONE = ("by_zero", "exclusive_many", "names_of_code")
-"""Cases whose programs are built, and started for each trace, as a person does it; ``test_programs`` has one more."""
+"""Cases whose programs are built one by one and started once per trace, as a user does;
+``test_programs`` has one more."""
 
 
 @cache
-def made(name: str) -> tuple[Case, tuple[Expected, ...]]:
+def case_and_expected(name: str) -> tuple[Case, tuple[Expected, ...]]:
     case = CASES[name]()
     return case, tuple(expected(case.fspa, trace) for trace in case.traces)
 
 
 def _usable() -> Iterator[Any]:
-    """Each runner; one that cannot be used here is skipped, and says why."""
+    """Yield each runner as a parameter; a runner that cannot be used here is skipped, with the
+    reason."""
     for runner in runners():
         reason = runner.missing()
         marks = [pytest.mark.skip(reason=reason)] if reason else []
@@ -33,32 +36,31 @@ def _usable() -> Iterator[Any]:
 
 
 def _differences(runner: Runner, name: str, outcomes: list[Outcome]) -> Iterator[str]:
-    """What is otherwise than expected in the outcomes of all traces of a case."""
-    case, wanted = made(name)
+    """Yield the differences from what is expected, over the outcomes of all traces of a case."""
+    case, expectations = case_and_expected(name)
     tolerance = 0.0 if is_exact(case.fspa) else runner.tolerance
-    for number, (outcome, right) in enumerate(zip(outcomes, wanted, strict=True), start=1):
-        found = list(problems(outcome, right, tolerance))
-        if found:
-            yield f"{runner.name}, {name}.{number}.csv\n" + "\n".join(found[:10])
+    for number, (outcome, expectation) in enumerate(zip(outcomes, expectations, strict=True), start=1):
+        differences = list(problems(outcome, expectation, tolerance))
+        if differences:
+            yield f"{runner.name}, {name}.{number}.csv\n" + "\n".join(differences[:10])
 
 
 @pytest.mark.parametrize("runner", list(_usable()))
-def test_conformance(runner: Runner, tmp_path: Path) -> None:
-    """All cases, by one program."""
-    cases = {name: made(name)[0] for name in CASES}
+def test_all_cases_built_as_one_program_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
+    cases = {name: case_and_expected(name)[0] for name in CASES}
     runs = [(name, trace) for name, case in cases.items() for trace in case.traces]
     outcomes = iter(built(runner, [case.fspa for case in cases.values()], tmp_path)(runs))
-    found: list[str] = []
+    differences: list[str] = []
     for name, case in cases.items():
-        found += _differences(runner, name, [next(outcomes) for _ in case.traces])
-    assert not found, f"{len(found)} of {len(runs)} traces differ\n" + "\n".join(found)
+        differences += _differences(runner, name, [next(outcomes) for _ in case.traces])
+    assert not differences, f"{len(differences)} of {len(runs)} traces differ\n" + "\n".join(differences)
 
 
 @pytest.mark.parametrize("name", ALONE)
 @pytest.mark.parametrize("runner", list(_usable()))
-def test_programs_alone(runner: Runner, name: str, tmp_path: Path) -> None:
-    case, _ = made(name)
+def test_single_programs_match_the_expected_rows(runner: Runner, name: str, tmp_path: Path) -> None:
+    case, _ = case_and_expected(name)
     write(runner, case.fspa, tmp_path)
     build(runner, name, tmp_path)
-    found = list(_differences(runner, name, [ran(runner, name, tmp_path, trace) for trace in case.traces]))
-    assert not found, "\n".join(found)
+    differences = list(_differences(runner, name, [ran(runner, name, tmp_path, trace) for trace in case.traces]))
+    assert not differences, "\n".join(differences)

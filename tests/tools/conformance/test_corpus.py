@@ -1,4 +1,5 @@
-"""The corpus holds what it is for: every operator, every error, every shape; and it is the same at each run."""
+"""The corpus covers every operator, every error and every shape of automaton, and is the same in
+each run."""
 
 from __future__ import annotations
 
@@ -53,9 +54,9 @@ def test_the_command_writes_the_same_bytes_in_every_process(tmp_path: Path) -> N
     for seed in ("1", "2"):
         command = [sys.executable, "-m", "tltlc", "conformance", "-o", str(tmp_path / seed)]
         environment = {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT), "HOME": str(tmp_path)}
-        done = subprocess.run(command, capture_output=True, text=True, env=environment)
-        assert done.returncode == 0, done.stderr
-        assert f"wrote {len(CASES)} cases" in done.stderr
+        process = subprocess.run(command, capture_output=True, text=True, env=environment)
+        assert process.returncode == 0, process.stderr
+        assert f"wrote {len(CASES)} cases" in process.stderr
         written = {
             path.relative_to(tmp_path / seed).as_posix(): path.read_bytes()
             for path in (tmp_path / seed).rglob("*")
@@ -64,40 +65,40 @@ def test_the_command_writes_the_same_bytes_in_every_process(tmp_path: Path) -> N
         assert written == corpus()
 
 
-def test_a_folder_holds_a_case_and_the_index_tells_of_all() -> None:
+def test_a_folder_holds_a_case_and_the_index_lists_all_files() -> None:
     index = json.loads(corpus()["index.json"])
     assert [case["name"] for case in index["cases"]] == list(CASES)
     assert len({name.lower() for name in CASES}) == len(CASES), "some file systems know one case of letters"
-    named = {"README.md", "check.py", "index.json"}
+    listed = {"README.md", "check.py", "index.json"}
     for case in index["cases"]:
         assert case["about"]
-        named |= {case["artefact"], case["source"]} - {None}
+        listed |= {case["artefact"], case["source"]} - {None}
         for trace in case["traces"]:
             stem = trace["trace"].removesuffix(".csv")
             assert trace["expected"] == f"{stem}.expected.csv"
-            named |= {trace["trace"], trace["expected"]} | ({f"{stem}.error.txt"} if trace["error"] else set())
+            listed |= {trace["trace"], trace["expected"]} | ({f"{stem}.error.txt"} if trace["error"] else set())
             assert trace["rows"] == len(corpus()[f"{stem}.expected.csv"].splitlines()) - 1 or "names" in stem
-    assert named == set(corpus())
+    assert listed == set(corpus())
 
 
 def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
-    """As its page says, with a monitor that is right, and with one that is not."""
+    """Run the check as its README says, with a correct and with a broken monitor."""
     write_files(tmp_path / "corpus", corpus())
     names = ("cells", "functions", "ranges", "trace_lines")
     for name in names:
         fspa = CASES[name]().fspa
         write_files(tmp_path / "build", emit("python", fspa))
     command = [sys.executable, "corpus/check.py", "--only", ",".join(names), sys.executable, "build/{name}_monitor.py"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     count = sum(len(CASES[name]().traces) for name in names)
-    assert (done.returncode, done.stdout) == (0, f"{count} traces, 0 of them not as expected\n"), done.stderr
+    assert (process.returncode, process.stdout) == (0, f"{count} traces, 0 of them not as expected\n"), process.stderr
     monitor = tmp_path / "build" / "ranges_monitor.py"
     monitor.write_text(monitor.read_text().replace("reward", "rewards"))
     command[3], count = "ranges,cells", sum(len(CASES[name]().traces) for name in ("ranges", "cells"))
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 1
-    assert done.stdout.endswith(f"{count} traces, 1 of them not as expected\n")
-    assert done.stdout.startswith("ranges/ranges.1.csv: ")
+    process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert process.returncode == 1
+    assert process.stdout.endswith(f"{count} traces, 1 of them not as expected\n")
+    assert process.stdout.startswith("ranges/ranges.1.csv: ")
     assert subprocess.run(command[:2], cwd=tmp_path, capture_output=True).returncode == 2
 
 
@@ -109,13 +110,13 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
         (["--only", "cells,rang", sys.executable, "{name}"], "no case is called `rang`; there are ranges"),
     ],
 )
-def test_what_the_check_refuses(words: list[str], message: str, tmp_path: Path) -> None:
+def test_the_check_rejects_invalid_commands(words: list[str], message: str, tmp_path: Path) -> None:
     write_files(tmp_path, {name: corpus()[name] for name in ("check.py", "index.json")})
     command = [sys.executable, "check.py", *words]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith(f"error: {message}")
-    assert done.stderr.count("\n") == 1
+    process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (process.returncode, process.stdout) == (2, "")
+    assert process.stderr.startswith(f"error: {message}")
+    assert process.stderr.count("\n") == 1
 
 
 def test_cases_without_functions_of_the_library_are_exact() -> None:
@@ -124,7 +125,7 @@ def test_cases_without_functions_of_the_library_are_exact() -> None:
     assert not {"powers", "exponentials", "hyperbolic", "functions"} & {name for name in exact if exact[name]}
 
 
-def test_artefacts_are_sound_and_the_rows_are_those_of_the_monitor() -> None:
+def test_expected_rows_match_the_monitor() -> None:
     for fspa in automata():
         monitor = Monitor(fspa)
         name = f"{fspa.name}/{fspa.name}.1"
@@ -145,31 +146,31 @@ def test_sources_compile_to_the_artefacts() -> None:
         assert fspa in automata()
 
 
-def test_those_of_the_paper_are_the_examples() -> None:
+def test_cases_of_the_paper_equal_the_examples() -> None:
     for name in ("cover_and_hide", "navigation", "branching"):
         assert corpus()[f"{name}/{name}.tltl"] == (ROOT / "examples" / f"{name}.tltl").read_bytes()
         assert corpus()[f"{name}/{name}.1.csv"] == (ROOT / "examples" / f"{name}.csv").read_bytes()
 
 
-def test_every_operator_of_expressions() -> None:
-    found = [node for fspa in automata() for atom in fspa.atoms for node in nodes(atom.expression)]
-    assert {node.op for node in found if isinstance(node, Op)} == set(get_args(ArithmeticOp))
-    assert {node.op for node in found if isinstance(node, Condition)} == set(get_args(ConditionOp))
-    powers = [node.args[1] for node in found if isinstance(node, Op) and node.op == "^"]
+def test_the_corpus_has_every_operator_of_expressions() -> None:
+    expressions = [node for fspa in automata() for atom in fspa.atoms for node in nodes(atom.expression)]
+    assert {node.op for node in expressions if isinstance(node, Op)} == set(get_args(ArithmeticOp))
+    assert {node.op for node in expressions if isinstance(node, Condition)} == set(get_args(ConditionOp))
+    powers = [node.args[1] for node in expressions if isinstance(node, Op) and node.op == "^"]
     assert {2.0, 3.0, 0.5, -1.5} <= {power.value for power in powers if isinstance(power, Const)}
     assert any(not isinstance(power, Const) for power in powers)
-    cases = [node for node in found if isinstance(node, When)]
-    assert any(isinstance(inner, When) for node in cases for inner in nodes(node) if inner is not node)
-    assert any(isinstance(node, Param) for node in found)
+    whens = [node for node in expressions if isinstance(node, When)]
+    assert any(isinstance(inner, When) for node in whens for inner in nodes(node) if inner is not node)
+    assert any(isinstance(node, Param) for node in expressions)
 
 
-def test_every_operator_of_formulas() -> None:
+def test_the_corpus_has_every_operator_of_formulas() -> None:
     labels = " ".join(fspa.formula.ascii for fspa in automata())
     for operator in ("F", "G", "X", "N", " U ", " W ", " R ", " M ", "!", " & ", " | ", " -> ", " <-> "):
         assert operator in labels, operator
 
 
-def test_every_shape_of_automata() -> None:
+def test_the_corpus_has_every_shape_of_automata() -> None:
     shapes = {(fspa.semantics, fspa.judge, fspa.limit_steps is None) for fspa in automata()}
     assert len(shapes) == 8, "finite and infinite, at the goal and at the limit, with and without one"
     assert any(fspa.exclusive for fspa in automata())
@@ -180,25 +181,25 @@ def test_every_shape_of_automata() -> None:
     assert all(character in names for character in ",\"'\n\\漢𝒰")
 
 
-def test_every_kind_of_row() -> None:
-    found = rows()
-    assert {row["verdict"] for row in found} == {"satisfied", "holding", "pending", "violated"}
-    assert {(row["accepting"], row["done"]) for row in found} == {(a, d) for a in FLAGS for d in FLAGS}
-    numbers = {row[column] for row in found for column in ("progress", "reward", "robustness")}
+def test_the_corpus_has_every_kind_of_row() -> None:
+    expected_rows = rows()
+    assert {row["verdict"] for row in expected_rows} == {"satisfied", "holding", "pending", "violated"}
+    assert {(row["accepting"], row["done"]) for row in expected_rows} == {(a, d) for a in FLAGS for d in FLAGS}
+    numbers = {row[column] for row in expected_rows for column in ("progress", "reward", "robustness")}
     assert "0" in numbers
     assert "-0" not in numbers
-    assert {bool(row["limiting"]) for row in found} == {True, False}
-    assert sum(row["done"] == "true" and row["reward"] == "0" for row in found) > 50, "steps past the end"
+    assert {bool(row["limiting"]) for row in expected_rows} == {True, False}
+    assert sum(row["done"] == "true" and row["reward"] == "0" for row in expected_rows) > 50, "steps past the end"
 
 
-def test_every_kind_of_error() -> None:
+def test_the_corpus_has_every_kind_of_error() -> None:
     kinds = [text.splitlines()[0].removeprefix("kind: ") for text in texts(".error.txt").values()]
     assert set(kinds) == set(get_args(Kind))
     cases = json.loads(corpus()["index.json"])["cases"]
     assert any(trace["warnings"] for case in cases for trace in case["traces"] if not trace["error"])
 
 
-def test_it_is_small() -> None:
+def test_the_corpus_is_small() -> None:
     assert 40 <= len(CASES) <= 90
     assert all(text.count("\n") < 200 for text in texts(".expected.csv").values())
 
@@ -208,13 +209,13 @@ def test_comparisons_next_to_their_thresholds_are_judged_as_the_exact_ones() -> 
     cases |= {f"borders_{number}": borders.drawn_borders(Draw(8000 + number), 8) for number in range(1, 4)}
     for name, compared in cases.items():
         rows = csv.DictReader(io.StringIO(corpus()[f"{name}/{name}.1.csv"].decode()))
-        wanted = []
+        verdicts = []
         for row in rows:
             pairs = [(float(row[f"x{n}"]), float(row.get(f"y{n}", "nan"))) for n in range(1, len(compared) + 1)]
             truths = [
                 border.holds(x, None if math.isnan(y) else y) for border, (x, y) in zip(compared, pairs, strict=True)
             ]
-            wanted.append("holding" if all(truths) else "pending")
-        found = csv.DictReader(io.StringIO(corpus()[f"{name}/{name}.1.expected.csv"].decode()))
-        assert [row["verdict"] for row in found] == wanted
-        assert {"holding", "pending"} <= set(wanted)
+            verdicts.append("holding" if all(truths) else "pending")
+        expected_rows = csv.DictReader(io.StringIO(corpus()[f"{name}/{name}.1.expected.csv"].decode()))
+        assert [row["verdict"] for row in expected_rows] == verdicts
+        assert {"holding", "pending"} <= set(verdicts)

@@ -1,4 +1,5 @@
-"""The programs of most languages read odd traces, of a table and random ones, as :mod:`tltlc.monitor.traces` does."""
+"""The programs of most languages read odd traces, listed and random ones, as
+:mod:`tltlc.monitor.traces` does."""
 
 from __future__ import annotations
 
@@ -15,9 +16,9 @@ from tltlc.tools.conformance.expected import expected
 from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, VALUES
 
 NAME = "trace_values"
-# C++ is the program of C again, and Godot takes long to read a megabyte.
+# The C++ program is the C program compiled as C++, and Godot takes long to read a megabyte.
 LEFT_OUT = ("c++", "gdscript3")
-# Which cannot be used here, and why, tests/tools/conformance/test_conformance.py says.
+# test_conformance.py reports which runners cannot be used here, and why.
 USABLE = [runner for runner in runners() if runner.build_all and not runner.missing() and runner.name not in LEFT_OUT]
 
 
@@ -26,10 +27,12 @@ def automaton() -> Fspa:
 
 
 def problems(run, traces: list[bytes]) -> list[str]:  # type: ignore[no-untyped-def]
-    fspa, found = automaton(), []
+    fspa, messages = automaton(), []
     for trace, outcome in zip(traces, run([(NAME, trace) for trace in traces]), strict=True):
-        found += [f"{trace[:200]!r}: {each}" for each in differences(outcome, expected(fspa, trace), 0.0)]
-    return found
+        messages += [
+            f"{trace[:200]!r}: {difference}" for difference in differences(outcome, expected(fspa, trace), 0.0)
+        ]
+    return messages
 
 
 @pytest.fixture(scope="module", params=USABLE, ids=lambda runner: runner.name)
@@ -39,11 +42,11 @@ def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 
 
 def test_odd_traces_are_read_alike(run) -> None:  # type: ignore[no-untyped-def]
-    odd = [each.trace for each in (*LINES.values(), *CELLS.values(), *VALUES.values(), *MORE_VALUES.values())]
+    odd = [odd_trace.trace for odd_trace in (*LINES.values(), *CELLS.values(), *VALUES.values(), *MORE_VALUES.values())]
     assert not problems(run, odd)
 
 
-# One example is a hundred traces, which one process reads.
+# One example consists of a hundred traces, which one process reads.
 @settings(max_examples=2, phases=(Phase.generate,), suppress_health_check=list(HealthCheck))
 @given(traces=st.lists(csv_traces(), min_size=100, max_size=100))
 def test_random_traces_are_read_alike(run, traces: list[bytes]) -> None:  # type: ignore[no-untyped-def]

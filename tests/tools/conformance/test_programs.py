@@ -1,6 +1,8 @@
-"""What monitors do as programs, beside printing the right rows: arguments, ways to write a trace, errors.
+"""How the monitors' programs handle arguments, the syntax of traces, errors, and closed or full
+output.
 
-Python's program reads JSON lines, too; its tests are in ``tests/monitor``, but for those on standard output.
+The Python program also reads JSON lines. Its tests are in ``tests/monitor``, except the tests of
+standard output, which are here.
 """
 
 from __future__ import annotations
@@ -22,12 +24,12 @@ from tltlc.tools.conformance.corpus import CASES
 
 NAME = "cover_and_hide"
 ROW_BYTES = TRACE_LINE.size
-WAYS = [
+SPELLINGS = [
     b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
     b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
     b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
     b'x,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,+20.\n',
-    # A cell of the greatest size.
+    # A cell of the maximal size.
     b"x,health,distance(s1),distance(s2),distance(exit)\n"
     + b"-" * (ROW_BYTES - len(b",1,20,20,20"))
     + b",1,20,20,20\n",
@@ -36,7 +38,7 @@ WAYS = [
     + b'",1,20,20,20',
 ]
 
-# What a message says, with `…` for what is the language's own.
+# Traces and the expected messages; `…` stands for text that differs between languages.
 ERRORS = [
     ("", "the trace holds no sample"),
     ("\n\n", "the trace holds no sample"),
@@ -62,7 +64,7 @@ ERRORS = [
     (f"{HEAD}\n{'-' * (ROW_BYTES + 1)}\n", "line 3: more than 1048576 bytes"),
     (f"{HEAD}1,1,1,{' ' * 3 * ROW_BYTES}1", "line 2: more than 1048576 bytes"),
     (f'{HEAD}1,1,1,"{chr(10) * ROW_BYTES}\xe9', "line 2: more than 1048576 bytes"),
-    # Digits that no regular expression should go through again and again.
+    # Long runs of digits, on which a backtracking regular expression would take quadratic time.
     (f"{HEAD}{'1' * 200_000}x,1,1,1\n", "line 2: the signal `health` is `1…no number"),
     (f"{HEAD}1{' ' * 200_000}1,1,1,1\n", "line 2: the signal `health` is `1…no number"),
     (f"{HEAD}1,0.5,0.5,20\n", "step 1: `near(s1)` and `near(s2)` hold at once, against …"),
@@ -79,14 +81,14 @@ def case() -> Case:
     return CASES[NAME]()
 
 
-# Which cannot be used here, and why, tests/tools/conformance/test_conformance.py says.
+# test_conformance.py reports which runners cannot be used here, and why.
 USABLE = [runner for runner in runners() if runner.name != "python" and runner.missing() is None]
 WITH_PYTHON = [*USABLE, *(runner for runner in runners() if runner.name == "python")]
 
 FULL = Path("/dev/full")
-# Their engine prints for them, and does not tell them whether it could.
+# In these languages, the engine prints and does not report whether it succeeded.
 UNAWARE = {"gdscript", "gdscript3"}
-# Their interpreter or library opens the null device where standard output is closed.
+# In these languages, the interpreter or library opens the null device in place of a closed standard output.
 REOPENING = {"csharp", "javascript", "rust"}
 
 
@@ -96,7 +98,10 @@ SLOW_TO_START = ("gdscript3", "node")
 
 @pytest.fixture(scope="session")
 def programs() -> dict[str, Program]:
-    """Those that have been built, by the name of the runner: in a random order, its tests do not follow one another."""
+    """The programs built so far, by the name of the runner.
+
+    In a random order, the tests of one runner need not follow one another, so programs are kept.
+    """
     return {}
 
 
@@ -107,7 +112,7 @@ def program(
     programs: dict[str, Program],
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Program:
-    """The program of a language: the runner, the folder in which it lies, and how it is started there."""
+    """The program of a language: its runner, its folder, and the command that starts it there."""
     runner: Runner = request.param
     if runner.name not in programs:
         folder = tmp_path_factory.mktemp(runner.name)
@@ -119,25 +124,30 @@ def program(
 
 @pytest.fixture(scope="session")
 def run(program: Program) -> Run:
-    """Runs the program of a language on a trace, a file's or that of standard input."""
+    """A function that runs the program on a trace, which it gets both as a file and on standard
+    input."""
     _, folder, command = program
 
     def run(*arguments: str, trace: str | bytes = "") -> Outcome:
         data = trace.encode() if isinstance(trace, str) else trace
         (folder / "trace.csv").write_bytes(data)
-        done = subprocess.run(
+        process = subprocess.run(
             [*command, *arguments], cwd=folder, input=data, capture_output=True, timeout=LONGEST_RUN_S
         )
-        # Engines print lines of their own first.
-        out = done.stdout.decode()
-        return done.returncode, out[out.index("step,state,") :] if "step,state," in out else "", done.stderr.decode()
+        # Some engines print lines of their own first.
+        out = process.stdout.decode()
+        return (
+            process.returncode,
+            out[out.index("step,state,") :] if "step,state," in out else "",
+            process.stderr.decode(),
+        )
 
     return run
 
 
 @pytest.fixture
 def outcomes(program: Program, run: Run, case: Case, tmp_path: Path) -> RunAll:
-    """Runs the program of a language on many traces, with ``--full``."""
+    """A function that runs the program on many traces, with ``--full``."""
     runner, _, _ = program
     if runner.name in SLOW_TO_START:
         together = built(runner, [case.fspa], tmp_path)
@@ -145,7 +155,7 @@ def outcomes(program: Program, run: Run, case: Case, tmp_path: Path) -> RunAll:
     return lambda traces: [run("--full", "trace.csv", trace=trace) for trace in traces]
 
 
-def test_files_and_standard_input(run: Run, case: Case) -> None:
+def test_files_and_standard_input_give_the_same_rows(run: Run, case: Case) -> None:
     samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
     status, out, err = expected(case.fspa, samples)
     short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
@@ -155,18 +165,18 @@ def test_files_and_standard_input(run: Run, case: Case) -> None:
     assert run("-", trace=trace) == (status, short, err)
 
 
-def test_ways_to_write_a_trace(outcomes: RunAll, case: Case) -> None:
-    wanted = expected(case.fspa, [FAR])
-    for trace, outcome in zip(WAYS, outcomes(WAYS), strict=True):
-        assert outcome == wanted, trace[:200]
+def test_a_trace_may_be_written_in_several_ways(outcomes: RunAll, case: Case) -> None:
+    expected_outcome = expected(case.fspa, [FAR])
+    for trace, outcome in zip(SPELLINGS, outcomes(SPELLINGS), strict=True):
+        assert outcome == expected_outcome, trace[:200]
 
 
-def test_traces_that_are_refused(outcomes: RunAll) -> None:
+def test_invalid_traces_are_rejected(outcomes: RunAll) -> None:
     traces = [trace.encode() for trace, _ in ERRORS]
     for trace, (_, message), (status, out, err) in zip(traces, ERRORS, outcomes(traces), strict=True):
-        begins, _, holds = f"error: {message}".partition("…")
+        start, _, rest = f"error: {message}".partition("…")
         assert (status, out) == (1, ""), trace[:200]
-        assert err.startswith(begins) and holds in err and err.count("\n") == 1, (trace[:200], err[:200])
+        assert err.startswith(start) and rest in err and err.count("\n") == 1, (trace[:200], err[:200])
 
 
 def test_rows_come_before_an_error(run: Run) -> None:
@@ -185,14 +195,15 @@ def test_standard_input_is_read_as_bytes(run: Run, byte: bytes) -> None:
     assert run("-", trace=trace)[2].startswith("error: line 3: ")
 
 
-def test_rows_come_as_the_samples_do(program: Program) -> None:
-    """A game that still runs may write the trace; Godot reads all of it first."""
+def test_rows_are_written_as_samples_arrive(program: Program) -> None:
+    """A game that is still running may write the trace. Godot reads all input first, so it is
+    skipped."""
     runner, folder, command = program
     if runner.target in UNAWARE:
         pytest.skip("Godot reads standard input to its end")
     with subprocess.Popen([*command, "-"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as running:
         assert running.stdin is not None and running.stdout is not None
-        # It ends a program that waits for more, and with it the test.
+        # Kill a program that waits for more input, so that the test ends.
         deadline = Timer(2 * LONGEST_RUN_S, running.kill)
         deadline.start()
         for number in (1, 2):
@@ -207,14 +218,14 @@ def test_rows_come_as_the_samples_do(program: Program) -> None:
 
 
 @pytest.mark.parametrize("path", ["missing.csv", "."])
-def test_files_that_cannot_be_read(run: Run, path: str) -> None:
+def test_unreadable_files_are_reported(run: Run, path: str) -> None:
     status, out, err = run(path)
     assert (status, out) == (3, "")
     assert err.startswith(f"error: cannot read `{path}`") and err.count("\n") == 1
 
 
 @pytest.mark.parametrize("arguments", USAGE, ids=" ".join)
-def test_wrong_usage(run: Run, arguments: list[str]) -> None:
+def test_wrong_usage_is_rejected(run: Run, arguments: list[str]) -> None:
     status, out, err = run(*arguments)
     assert (status, out) == (2, "")
     assert err.startswith("usage: ")
@@ -241,51 +252,53 @@ def full_device() -> Path:
 
 @with_python
 @pytest.mark.parametrize("rest", ["", "1,20,20,20\n" * 20_000, "1,20,?,20\n"], ids=["one row", "many", "an error"])
-def test_standard_output_without_room_is_3(program: Program, rest: str) -> None:
+def test_full_standard_output_exits_with_3(program: Program, rest: str) -> None:
     folder, command = notices_output(program)
     (folder / "trace.csv").write_text(f"{HEAD}2,20,20,20\n{rest}")
     with full_device().open("wb") as full:
-        done = subprocess.run(
+        process = subprocess.run(
             [*command, "--full", "trace.csv"], cwd=folder, stdout=full, stderr=subprocess.PIPE, timeout=LONGEST_RUN_S
         )
-    message, *warnings = done.stderr.decode().splitlines()
-    assert done.returncode == 3
+    message, *warnings = process.stderr.decode().splitlines()
+    assert process.returncode == 3
     assert message.startswith("error: cannot write to standard output: ")
     assert "no space left on device" in message.lower()
     assert warnings == ["warning: step 1: the signal `health` is 2, outside [0, 1]: it counts as 1"]
 
 
 @with_python
-def test_messages_without_room_do_not_change_the_exit_status(program: Program) -> None:
+def test_full_standard_error_does_not_change_the_exit_status(program: Program) -> None:
     folder, command = notices_output(program)
     for trace, status in ((f"{HEAD}2,20,20,20\n", 3), (f"{HEAD}1,20,?,20\n", 1)):
         (folder / "trace.csv").write_text(trace)
         with full_device().open("wb") as full:
-            done = subprocess.run([*command, "trace.csv"], cwd=folder, stdout=full, stderr=full, timeout=LONGEST_RUN_S)
-        assert done.returncode == status
+            process = subprocess.run(
+                [*command, "trace.csv"], cwd=folder, stdout=full, stderr=full, timeout=LONGEST_RUN_S
+            )
+        assert process.returncode == status
 
 
 @with_python
-def test_standard_output_that_is_closed_is_3(program: Program) -> None:
+def test_closed_standard_output_exits_with_3(program: Program) -> None:
     folder, command = notices_output(program)
     if program[0].target in REOPENING:
         pytest.skip(f"{program[0].name}: rows go to the null device where standard output is closed")
     (folder / "trace.csv").write_text(f"{HEAD}1,20,20,20\n")
-    closing = ["sh", "-c", 'exec "$@" >&-', "sh", *command, "trace.csv"]
-    done = subprocess.run(closing, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
-    assert (done.returncode, done.stderr) == (3, b"error: cannot write to standard output: it is closed\n")
+    command_with_closed_output = ["sh", "-c", 'exec "$@" >&-', "sh", *command, "trace.csv"]
+    process = subprocess.run(command_with_closed_output, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
+    assert (process.returncode, process.stderr) == (3, b"error: cannot write to standard output: it is closed\n")
 
 
 @with_python
 @pytest.mark.parametrize("by_signal", [True, False], ids=["by signal", "by error"])
-def test_a_reader_that_has_gone_ends_a_program_quietly(program: Program, by_signal: bool) -> None:
-    """The system tells a program by a signal, unless whoever starts it has turned that off."""
+def test_a_closed_pipe_ends_the_program_quietly(program: Program, by_signal: bool) -> None:
+    """The system sends SIGPIPE, unless the parent process ignores this signal."""
     folder, command = notices_output(program)
     (folder / "trace.csv").write_text(f"{HEAD}2,20,20,20\n")
     reading, writing = os.pipe()
     os.close(reading)
     try:
-        done = subprocess.run(
+        process = subprocess.run(
             [*command, "trace.csv"],
             cwd=folder,
             stdout=writing,
@@ -295,13 +308,13 @@ def test_a_reader_that_has_gone_ends_a_program_quietly(program: Program, by_sign
         )
     finally:
         os.close(writing)
-    # A shell gives 141 for the signal.
-    assert done.returncode in ((141, -signal.SIGPIPE) if by_signal else (141,))
-    assert done.stderr == b""
+    # A shell returns 141 for the signal.
+    assert process.returncode in ((141, -signal.SIGPIPE) if by_signal else (141,))
+    assert process.stderr == b""
 
 
 @with_python
-def test_a_reader_that_goes_ends_a_program_that_waits(program: Program) -> None:
+def test_a_pipe_closed_during_the_run_ends_the_program_quietly(program: Program) -> None:
     folder, command = notices_output(program)
     running = subprocess.Popen(
         [*command, "-"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -317,7 +330,7 @@ def test_a_reader_that_goes_ends_a_program_that_waits(program: Program) -> None:
         running.stdout.close()
         running.stdin.write(b"1,20,20,20\n")
         running.stdin.flush()
-        # It ends though more could follow.
+        # The program ends although more input could follow.
         assert running.wait() in (141, -signal.SIGPIPE)
         assert running.stderr.read() == b""
         deadline.cancel()

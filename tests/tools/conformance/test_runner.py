@@ -1,4 +1,4 @@
-"""The comparison itself: what is wrong in a monitor's output is seen."""
+"""The comparison itself detects every error in a monitor's output."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ RIGHT = ("1", "0", "pending", "false", "false", "0.10000000000000001", "0", "0.5
 HEADER = ",".join(COLUMNS)
 ROW = ",".join((*RIGHT[:-1], '"a, b"'))
 REFUSED = Refusal("by zero", 2, ("a",))
-SAID = "error: step 2: the atom `a` divides by zero"
+MESSAGE = "error: step 2: the atom `a` divides by zero"
 
 
-def found(out: str, err: str, status: int, expected: Expected, folder: Path, tolerance: float = 0.0) -> list[str]:
-    """The problems with a program that says this."""
+def problems_of(out: str, err: str, status: int, expected: Expected, folder: Path, tolerance: float = 0.0) -> list[str]:
+    """Return the problems with a program that prints this output and exits with this status."""
     program = f"import sys; sys.stdout.write({out!r}); sys.stderr.write({err!r}); sys.exit({status})"
     (folder / "spec.py").write_text(program)
     runner = Runner(name="it", target="python", run=(sys.executable, "{name}.py"))
@@ -48,35 +48,37 @@ def found(out: str, err: str, status: int, expected: Expected, folder: Path, tol
         (f"{HEADER}\n{ROW[:-7]}\n", "", 0, 0.0, False),
         (f"{HEADER}\n{ROW}\n", "", 1, 0.0, False),
         (f"{HEADER}\n{ROW}\n", "warning: one\n", 0, 0.0, False),
-        (f"{HEADER}\n{ROW}\n", f"{SAID}\n", 0, 0.0, False),
+        (f"{HEADER}\n{ROW}\n", f"{MESSAGE}\n", 0, 0.0, False),
     ],
 )
-def test_rows(out: str, err: str, status: int, tolerance: float, right: bool, tmp_path: Path) -> None:
-    assert (not found(out, err, status, Expected((RIGHT,), None, 0), tmp_path, tolerance)) == right
+def test_wrong_rows_are_detected(
+    out: str, err: str, status: int, tolerance: float, right: bool, tmp_path: Path
+) -> None:
+    assert (not problems_of(out, err, status, Expected((RIGHT,), None, 0), tmp_path, tolerance)) == right
 
 
 @pytest.mark.parametrize(
     ("out", "err", "status", "right"),
     [
-        (f"{HEADER}\n{ROW}\n", f"warning: x\n{SAID}\n", 1, True),
-        (f"{HEADER}\n{ROW}\n", SAID.replace("2", "3"), 1, False),
-        (f"{HEADER}\n{ROW}\n", SAID.replace("`a`", "`ab`"), 1, False),
+        (f"{HEADER}\n{ROW}\n", f"warning: x\n{MESSAGE}\n", 1, True),
+        (f"{HEADER}\n{ROW}\n", MESSAGE.replace("2", "3"), 1, False),
+        (f"{HEADER}\n{ROW}\n", MESSAGE.replace("`a`", "`ab`"), 1, False),
         (f"{HEADER}\n{ROW}\n", "error: step 2: no", 1, False),
         (f"{HEADER}\n{ROW}\n", "", 1, False),
-        (f"{HEADER}\n{ROW}\n", SAID, 0, False),
-        ("", SAID, 1, False),
+        (f"{HEADER}\n{ROW}\n", MESSAGE, 0, False),
+        ("", MESSAGE, 1, False),
     ],
 )
-def test_errors(out: str, err: str, status: int, right: bool, tmp_path: Path) -> None:
-    assert (not found(out, err, status, Expected((RIGHT,), REFUSED, 0), tmp_path)) == right
+def test_wrong_errors_are_detected(out: str, err: str, status: int, right: bool, tmp_path: Path) -> None:
+    assert (not problems_of(out, err, status, Expected((RIGHT,), REFUSED, 0), tmp_path)) == right
 
 
-def test_the_header_may_be_missing_before_a_refused_first_sample(tmp_path: Path) -> None:
+def test_the_header_may_be_missing_before_a_rejected_first_sample(tmp_path: Path) -> None:
     for out in ("", f"{HEADER}\n", "Engine v3\n\n"):
-        assert not found(out, "error: no sample", 1, Expected((), Refusal("no sample", 1), 0), tmp_path)
+        assert not problems_of(out, "error: no sample", 1, Expected((), Refusal("no sample", 1), 0), tmp_path)
 
 
-def test_runners_have_names_of_their_own_and_say_why_they_are_left_out() -> None:
+def test_runners_have_unique_names_and_report_why_they_are_skipped() -> None:
     names = [runner.name for runner in runners()]
     assert len(set(names)) == len(names)
     assert "python" in names
@@ -100,7 +102,7 @@ sys.exit(STATUS)
 
 
 def together(folder: Path, *traces: str, status: int = 0) -> list[tuple[int, str, str]]:
-    """The outcomes of a program of two monitors, ``one`` and ``other``, that reads traces in turns."""
+    """Run a program of two monitors, ``one`` and ``other``, which take turns reading the traces."""
 
     def build_all(folder: Path, names: Sequence[str]) -> None:
         assert names == ["one", "other"]
@@ -112,12 +114,12 @@ def together(folder: Path, *traces: str, status: int = 0) -> list[tuple[int, str
     return built(runner, fspas, folder)(runs)
 
 
-def test_outcomes_of_many_are_told_apart(tmp_path: Path) -> None:
-    wanted = [(3, "rows of one\n", "a\n"), (5, "rows of other\n", "b\n"), (3, "rows of one\n", "c\n")]
-    assert together(tmp_path, "a", "b", "c") == wanted
+def test_outcomes_of_a_joint_program_are_separated(tmp_path: Path) -> None:
+    outcomes = [(3, "rows of one\n", "a\n"), (5, "rows of other\n", "b\n"), (3, "rows of one\n", "c\n")]
+    assert together(tmp_path, "a", "b", "c") == outcomes
 
 
-def test_a_program_of_many_that_ends_is_told_by_the_monitor_at_which_it_did(tmp_path: Path) -> None:
+def test_a_joint_program_that_ends_early_is_reported_with_the_monitor(tmp_path: Path) -> None:
     with pytest.raises(AssertionError, match=r"^it, other, 1.csv: the program ended within it: end\n"):
         together(tmp_path, "a", "end", "c")
     with pytest.raises(AssertionError):

@@ -1,4 +1,5 @@
-"""``tltlc breaking``: the old files are those of a revision or folder, with their own imports; its formats."""
+"""``tltlc breaking``: old files come from a revision or a folder, with the imports of that
+revision; its formats."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ PROJECT = 'libraries = ["libs"]\n'
 
 
 def git(*arguments: str) -> None:
-    names = {f"GIT_{who}_{what}": "t@t" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
+    names = {f"GIT_{role}_{field}": "t@t" for role in ("AUTHOR", "COMMITTER") for field in ("NAME", "EMAIL")}
     environment = {**os.environ, **names, "GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
     subprocess.run(["git", *arguments], check=True, capture_output=True, env=environment)
 
@@ -44,7 +45,8 @@ def commit(tag: str) -> None:
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository whose revision `v1` holds a spec that imports a library of its project; the current folder."""
+    """A repository, as the current folder; its revision `v1` has a spec that imports a library of
+    the project."""
     monkeypatch.chdir(tmp_path)
     git("init", "-q", ".")
     write(specs__leave=SPEC, libs__mine=LIBRARY, tltl=PROJECT)
@@ -53,14 +55,14 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def codes(done: Outcome) -> list[str]:
-    return [f"{each['severity']} {each['code']}" for each in json.loads(done.out)["diagnostics"]]
+    return [f"{diagnostic['severity']} {diagnostic['code']}" for diagnostic in json.loads(done.out)["diagnostics"]]
 
 
 @needs_git
-def test_nothing_has_changed(repository: Path, tltlc: Run) -> None:  # noqa: F811
-    done = tltlc("breaking", "specs/leave.tltl", "libs/mine.tltl", "--against", "v1")
-    assert (done.status, done.out) == (0, "")
-    assert done.err == (
+def test_unchanged_files_break_nothing(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    outcome = tltlc("breaking", "specs/leave.tltl", "libs/mine.tltl", "--against", "v1")
+    assert (outcome.status, outcome.out) == (0, "")
+    assert outcome.err == (
         "specs/leave.tltl: nothing has changed that others notice\n"
         "libs/mine.tltl: nothing has changed that others notice\n"
         "0 breaking, 0 changed, 0 compatible\n"
@@ -68,19 +70,19 @@ def test_nothing_has_changed(repository: Path, tltlc: Run) -> None:  # noqa: F81
 
 
 @needs_git
-def test_imports_of_the_old_files_are_the_old_ones(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_old_files_import_the_old_libraries(repository: Path, tltlc: Run) -> None:  # noqa: F811
     write(libs__mine=LIBRARY.replace("= health", "= health - 10 %"))
-    done = tltlc("breaking", "specs", "--against", "v1", "--format", "json")
-    assert (done.status, codes(done)) == (1, ["error TLT0757"])
-    (found,) = json.loads(done.out)["diagnostics"]
-    assert found["title"] == "the atom `alive` is judged otherwise"
-    assert "at health = 0.1 it is 0 (it does not hold), and was 0.1 (it holds)" in found["help"]
-    assert found["labels"][0]["file"] == "specs/leave.tltl"
+    outcome = tltlc("breaking", "specs", "--against", "v1", "--format", "json")
+    assert (outcome.status, codes(outcome)) == (1, ["error TLT0757"])
+    (diagnostic,) = json.loads(outcome.out)["diagnostics"]
+    assert diagnostic["title"] == "the atom `alive` is judged otherwise"
+    assert "at health = 0.1 it is 0 (it does not hold), and was 0.1 (it holds)" in diagnostic["help"]
+    assert diagnostic["labels"][0]["file"] == "specs/leave.tltl"
     assert codes(tltlc("breaking", ".", "--against", "v1", "--format", "json")) == ["error TLT0757"] * 2
 
 
 @needs_git
-def test_it_finds_the_repository_of_the_file(
+def test_the_repository_is_the_one_that_holds_the_file(
     repository: Path,
     tltlc: Run,  # noqa: F811
     monkeypatch: pytest.MonkeyPatch,
@@ -97,13 +99,13 @@ def test_it_finds_the_repository_of_the_file(
 
 
 @needs_git
-def test_files_that_are_gone_or_new(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_removed_and_added_specs_are_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
     Path("specs/leave.tltl").unlink()
     write(specs__enter="signal door: bool\nspec enter = F !door\n")
-    done = tltlc("breaking", "specs", "--against", "v1")
-    assert done.status == 1
-    assert "error[TLT0752]: the spec `leave` is gone\n  v1:specs/leave.tltl:3:6\n" in done.err
-    assert "note[TLT0752]: the spec `enter` is new\n  specs/enter.tltl:2:6\n" in done.err
+    outcome = tltlc("breaking", "specs", "--against", "v1")
+    assert outcome.status == 1
+    assert "error[TLT0752]: the spec `leave` is gone\n  v1:specs/leave.tltl:3:6\n" in outcome.err
+    assert "note[TLT0752]: the spec `enter` is new\n  specs/enter.tltl:2:6\n" in outcome.err
     assert tltlc("breaking", "specs/leave.tltl", "--against", "v1").status == 1
     neither = tltlc("breaking", "specs/nothing.tltl", "--against", "v1")
     assert neither.status == 3 and "TLT0001" in neither.err
@@ -113,42 +115,42 @@ def test_files_that_are_gone_or_new(repository: Path, tltlc: Run) -> None:  # no
 
 
 @needs_git
-def test_a_spec_that_has_moved_to_another_file(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_spec_that_moved_to_another_file_is_not_breaking(repository: Path, tltlc: Run) -> None:  # noqa: F811
     Path("specs/leave.tltl").rename("specs/leave_2.tltl")
-    done = tltlc("breaking", "specs", "--against", "v1")
+    outcome = tltlc("breaking", "specs", "--against", "v1")
     title = "note[TLT0752]: the spec `leave` has moved here from `v1:specs/leave.tltl`\n  specs/leave_2.tltl:3:6\n"
-    assert (done.status, done.err.count("TLT0752"), title in done.err) == (0, 1, True)
-    assert done.err.endswith("\n0 breaking, 0 changed, 1 compatible\n")
+    assert (outcome.status, outcome.err.count("TLT0752"), title in outcome.err) == (0, 1, True)
+    assert outcome.err.endswith("\n0 breaking, 0 changed, 1 compatible\n")
     write(specs__leave_2=SPEC.replace("keep alive", "keep alive\n    limit 9 steps"))
-    found = tltlc("breaking", "specs", "libs", "--against", "v1", "--format", "json")
-    assert codes(found) == ["note TLT0752", "error TLT0758"]
-    # One that was not asked about may be anywhere.
+    outcome_with_limit = tltlc("breaking", "specs", "libs", "--against", "v1", "--format", "json")
+    assert codes(outcome_with_limit) == ["note TLT0752", "error TLT0758"]
+    # Without the other files, the spec counts as gone.
     assert codes(tltlc("breaking", "specs/leave.tltl", "--against", "v1", "--format", "json")) == ["error TLT0752"]
 
 
 @needs_git
-def test_a_spec_that_is_called_otherwise(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_renamed_spec_is_breaking(repository: Path, tltlc: Run) -> None:  # noqa: F811
     for file in ("leave", "moved"):
         Path("specs/leave.tltl").unlink(missing_ok=True)
         other = SPEC.replace("spec leave", "spec escape") + "spec other = F !door\n"
         write(**{f"specs__{file}": other.replace("keep alive", "keep not not alive")})
-        found = tltlc("breaking", "specs", "--against", "v1", "--format", "json")
-        assert codes(found) == ["error TLT0752", "note TLT0752"]
-        first, second = (each["title"] for each in json.loads(found.out)["diagnostics"])
+        outcome = tltlc("breaking", "specs", "--against", "v1", "--format", "json")
+        assert codes(outcome) == ["error TLT0752", "note TLT0752"]
+        first, second = (diagnostic["title"] for diagnostic in json.loads(outcome.out)["diagnostics"])
         assert (first, second) == ("the spec `leave` is called `escape` now", "the spec `other` is new")
 
 
 @needs_git
-def test_artefacts_do_not_move(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_renamed_artefact_is_breaking(repository: Path, tltlc: Run) -> None:  # noqa: F811
     tltlc("compile", "specs/leave.tltl", "-t", "json", "-o", "build")
     commit("v2")
     Path("build/leave.fspa.json").rename("build/other.fspa.json")
-    found = tltlc("breaking", "build", "--against", "v2", "--format", "json")
-    assert codes(found) == ["error TLT0752", "note TLT0752"]
+    outcome = tltlc("breaking", "build", "--against", "v2", "--format", "json")
+    assert codes(outcome) == ["error TLT0752", "note TLT0752"]
 
 
 @needs_git
-def test_services_are_told_paths_that_they_know(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_annotations_name_paths_of_the_working_tree(repository: Path, tltlc: Run) -> None:  # noqa: F811
     write(specs__leave="signal door: bool\nspec enter = F !door\n")
     (gone, _) = tltlc("breaking", "specs", "--against", "v1", "--format", "github").out.splitlines()
     assert gone.startswith("::error file=specs/leave.tltl,line=1,")
@@ -159,7 +161,7 @@ def test_services_are_told_paths_that_they_know(repository: Path, tltlc: Run) ->
     (run,) = json.loads(tltlc("breaking", "specs/leave.tltl", "--against", "v1", "--format", "sarif").out)["runs"]
     (location,) = run["results"][0]["locations"]
     assert location["physicalLocation"]["artifactLocation"]["uri"] == "specs/leave.tltl"
-    # An error of the old file itself is found in it.
+    # An error in the old file itself is reported at the new file, with the old position in the text.
     write(specs__leave=SPEC.replace("door", "dor", 1))
     commit("v2")
     write(specs__leave=SPEC)
@@ -169,110 +171,118 @@ def test_services_are_told_paths_that_they_know(repository: Path, tltlc: Run) ->
 
 
 @needs_git
-def test_errors_of_the_old_file_are_said_of_the_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_errors_in_the_old_file_name_the_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
     write(specs__leave=SPEC.replace("door", "dor", 1))
     commit("v2")
     write(specs__leave=SPEC)
-    done = tltlc("breaking", "specs", "--against", "v2")
-    assert done.status == 1
-    assert "error[TLT0201]: no predicate `door` here\n  v2:specs/leave.tltl:4:11\n" in done.err
-    assert "tltlc-" not in done.err
+    outcome = tltlc("breaking", "specs", "--against", "v2")
+    assert outcome.status == 1
+    assert "error[TLT0201]: no predicate `door` here\n  v2:specs/leave.tltl:4:11\n" in outcome.err
+    assert "tltlc-" not in outcome.err
 
 
 @needs_git
-def test_libraries_named_on_the_command_line_are_the_old_ones(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_old_files_import_from_the_old_library_folders_of_the_command_line(repository: Path, tltlc: Run) -> None:  # noqa: F811
     write(more__loud="signal noise: ratio\nlet loud = noise > 50 %\n", specs__hush="import loud\nspec hush = G !loud\n")
     commit("v2")
     write(more__loud="signal noise: ratio\nlet loud = noise > 40 %\n")
-    done = tltlc("breaking", "specs/hush.tltl", "--against", "v2", "--library", "more", "--format", "json")
-    assert codes(done) == ["error TLT0753"]
+    outcome = tltlc("breaking", "specs/hush.tltl", "--against", "v2", "--library", "more", "--format", "json")
+    assert codes(outcome) == ["error TLT0753"]
 
 
 @needs_git
-def test_artefacts(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_changed_artefacts_are_compared(repository: Path, tltlc: Run) -> None:  # noqa: F811
     assert tltlc("compile", "specs/leave.tltl", "-t", "json", "-o", "build").status == 0
     commit("v2")
     write(specs__leave=SPEC.replace("keep alive", "keep alive\n    limit 9 steps"))
     assert tltlc("compile", "specs/leave.tltl", "-t", "json", "-o", "build").status == 0
-    done = tltlc("breaking", "build", "--against", "v2", "--format", "json")
-    assert codes(done) == ["error TLT0758"]
-    (label,) = json.loads(done.out)["diagnostics"][0]["labels"]
+    outcome = tltlc("breaking", "build", "--against", "v2", "--format", "json")
+    assert codes(outcome) == ["error TLT0758"]
+    (label,) = json.loads(outcome.out)["diagnostics"][0]["labels"]
     assert label["file"] == "build/leave.fspa.json"
     line = Path(label["file"]).read_text(encoding="utf-8").splitlines()[label["start"]["line"] - 1]
     assert '"leave"' in line[label["start"]["column"] - 1 :]
 
 
 @needs_git
-def test_what_is_no_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
-    for name, way_out in (("v11", "did you mean `v1`?"), ("nonsense", "`git log` and `git tag` list revisions")):
-        done = tltlc("breaking", "specs", "--against", name)
-        assert (done.status, done.out) == (3, "")
-        expected = f"error[TLT0751]: there is no revision and no folder `{name}`\n  help: {way_out}\n"
-        assert done.err == expected
+def test_an_unknown_revision_is_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    for name, suggestion in (("v11", "did you mean `v1`?"), ("nonsense", "`git log` and `git tag` list revisions")):
+        outcome = tltlc("breaking", "specs", "--against", name)
+        assert (outcome.status, outcome.out) == (3, "")
+        expected = f"error[TLT0751]: there is no revision and no folder `{name}`\n  help: {suggestion}\n"
+        assert outcome.err == expected
     assert tltlc("breaking", "specs", "--against", "--output=x").status == 3
 
 
 @needs_git
-def test_a_shallow_clone(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_missing_revision_in_a_shallow_clone_suggests_fetching(
+    repository: Path,
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     write(specs__leave=SPEC.replace("reach door", "require door"))
     commit("second")
     git("clone", "-q", "--depth", "1", repository.as_uri(), "shallow")
     monkeypatch.chdir("shallow")
-    done = tltlc("breaking", "specs", "--against", "HEAD~1")
-    assert done.status == 3
-    assert "help: this clone is shallow: fetch the revision, e.g. `git fetch --unshallow`" in done.err
+    outcome = tltlc("breaking", "specs", "--against", "HEAD~1")
+    assert outcome.status == 3
+    assert "help: this clone is shallow: fetch the revision, e.g. `git fetch --unshallow`" in outcome.err
 
 
 @needs_git
-def test_no_repository(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_file_outside_a_repository_is_reported(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     write(leave="signal door: bool\nspec leave = F door\n")
-    done = tltlc("breaking", "leave.tltl", "--against", "v1")
-    assert done.status == 3
-    assert done.err == (
+    outcome = tltlc("breaking", "leave.tltl", "--against", "v1")
+    assert outcome.status == 3
+    assert outcome.err == (
         f"error[TLT0751]: there is no folder `v1`, and `{tmp_path}` lies in no git repository in which it could be a "
         "revision\n  help: name a folder that is there, or a file of the repository\n"
     )
 
 
 @needs_git
-def test_a_repository_of_another_user(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_repository_of_another_user_suggests_safe_directory(
+    repository: Path,
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setenv("GIT_TEST_ASSUME_DIFFERENT_OWNER", "1")
     monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
     monkeypatch.setenv("GIT_CONFIG_NOSYSTEM", "1")
-    done = tltlc("breaking", "specs", "--against", "v1")
-    assert done.status == 3
-    assert done.err.endswith("help: allow it: `git config --global --add safe.directory FOLDER`\n")
+    outcome = tltlc("breaking", "specs", "--against", "v1")
+    assert outcome.status == 3
+    assert outcome.err.endswith("help: allow it: `git config --global --add safe.directory FOLDER`\n")
 
 
 @needs_git
-def test_in_a_hook(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_git_variables_of_a_hook_are_ignored(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.setenv("GIT_DIR", ".git")
     monkeypatch.setenv("GIT_INDEX_FILE", ".git/index")
     assert tltlc("breaking", "specs", "--against", "HEAD").status == 0
 
 
-def test_no_git(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_missing_git_is_reported(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", str(tmp_path))
     write(leave="signal door: bool\nspec leave = F door\n")
-    done = tltlc("breaking", "leave.tltl", "--against", "v1")
-    assert done.status == 4
-    assert done.err == (
+    outcome = tltlc("breaking", "leave.tltl", "--against", "v1")
+    assert outcome.status == 4
+    assert outcome.err == (
         "error[TLT0730]: comparing with a revision needs `git`, which is not installed\n"
         "  help: install git, or name a folder that holds the old files: `--against DIR`\n"
     )
 
 
-def test_atoms_that_are_called_otherwise(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_renamed_atoms_are_reported(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     old = "signal noise: ratio\nparam most: ratio = 20 %\nspec hush = G calm\n"
     old += "predicate calm in [-1, 1] = when noise < most: 1  otherwise: -1\n"
     write(old__hush=old, hush=old.replace("calm", "quiet").replace("= 20 %", "in [0, 1] = 20 %"))
-    done = tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")
-    (called,) = json.loads(done.out)["diagnostics"]
-    assert (done.status, called["severity"], called["title"]) == (0, "note", "`calm` is called `quiet` now")
+    outcome = tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")
+    (diagnostic,) = json.loads(outcome.out)["diagnostics"]
+    assert (outcome.status, diagnostic["severity"], diagnostic["title"]) == (0, "note", "`calm` is called `quiet` now")
     write(hush=old.replace("most", "greatest"))
     assert codes(tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")) == ["error TLT0756"]
     write(hush=old.replace("calm", "quiet").replace("1  otherwise: -1", "-1  otherwise: 1"))
@@ -296,15 +306,15 @@ IN_PLACE = "the signal `hp` must be supplied now in place of `health`, to `live`
     ("changes", "titles"),
     [
         ({"health": "hp"}, [IN_PLACE]),
-        # Also where a param is called otherwise.
+        # A param may be renamed at the same time.
         ({"health": "hp", "low": "least"}, [IN_PLACE, "the param `low` is called `least` now"]),
-        # Another range is said besides, and so is a predicate that is another one.
+        # A changed range, and a predicate that changed in another way too, are reported as well.
         (
             {"health in [0, 1]": "health in [0, 0.9]", "health": "hp"},
             [IN_PLACE, "the signal `hp` has the range [0, 0.9] now, and had [0, 1]"],
         ),
         ({"= health": "= health / 2", "health": "hp"}, [IN_PLACE, "the atom `alive` is judged otherwise"]),
-        # One that takes the place of two is no other name of both.
+        # A signal that replaces two others is not a rename of both.
         (
             {"min(health, armour)": "min(hp, hp)", "health": "hp"},
             [
@@ -315,11 +325,11 @@ IN_PLACE = "the signal `hp` must be supplied now in place of `health`, to `live`
                 "the atom `strong` is judged otherwise",
             ],
         ),
-        # Both are still there.
+        # Both signals still exist, so this is not a rename.
         ({"= health": "= armour"}, ["the atom `alive` is judged otherwise"]),
     ],
 )
-def test_signals_that_are_called_otherwise(
+def test_renamed_signals_are_breaking(
     changes: dict[str, str],
     titles: list[str],
     tltlc: Run,  # noqa: F811
@@ -331,12 +341,12 @@ def test_signals_that_are_called_otherwise(
     for old, new in changes.items():
         text = text.replace(old, new)
     write(old__live=HURT, live=text)
-    done = tltlc("breaking", "live.tltl", "--against", "old", "--format", "json")
-    assert [each["title"] for each in json.loads(done.out)["diagnostics"]] == titles
-    assert done.status == 1
+    outcome = tltlc("breaking", "live.tltl", "--against", "old", "--format", "json")
+    assert [diagnostic["title"] for diagnostic in json.loads(outcome.out)["diagnostics"]] == titles
+    assert outcome.status == 1
 
 
-def test_a_folder_beside(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_an_old_folder_can_be_compared(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     write(new__leave="signal door: bool\nspec leave = G door\n", old__leave="signal door: bool\nspec leave = F door\n")
     for path, against in (("new", "old"), ("new/leave.tltl", "old"), (tmp_path / "new", tmp_path / "old")):
@@ -347,27 +357,27 @@ def test_a_folder_beside(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyP
     monkeypatch.chdir("new")
     assert tltlc("breaking", "leave.tltl", "--against", "../old").status == 1
     assert tltlc("breaking", ".", "--against", "../old/").status == 1
-    # An old folder in the new one is no part of it.
+    # An old folder inside the new one is not part of it.
     shutil.copytree("../old", "before")
     assert "before" not in tltlc("breaking", ".", "--against", "before").err
 
 
-def test_the_formats(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_github_and_sarif_formats(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     write(new__leave="signal door: bool\nspec leave = G door\n", old__leave="signal door: bool\nspec leave = F door\n")
-    done = tltlc("breaking", "new", "--against", "old", "--format", "github")
-    assert done.out.startswith("::error file=new/leave.tltl,line=2,")
+    outcome = tltlc("breaking", "new", "--against", "old", "--format", "github")
+    assert outcome.out.startswith("::error file=new/leave.tltl,line=2,")
     (run,) = json.loads(tltlc("breaking", "new", "--against", "old", "--format", "sarif").out)["runs"]
-    assert [each["ruleId"] for each in run["results"]] == ["TLT0753", "TLT0758"]
+    assert [result["ruleId"] for result in run["results"]] == ["TLT0753", "TLT0758"]
 
 
-def test_the_shipped_specs_against_themselves(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_shipped_specs_equal_themselves(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(ROOT)
     for folder in ("examples", "stdlib_predicates"):
         shutil.copytree(folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.csv"))
-    done = tltlc("breaking", "examples", "stdlib_predicates", "--against", tmp_path)
-    assert (done.status, done.out) == (0, "")
-    assert done.err.endswith("0 breaking, 0 changed, 0 compatible\n")
+    outcome = tltlc("breaking", "examples", "stdlib_predicates", "--against", tmp_path)
+    assert (outcome.status, outcome.out) == (0, "")
+    assert outcome.err.endswith("0 breaking, 0 changed, 0 compatible\n")
 
 
 @pytest.mark.parametrize(
@@ -403,7 +413,7 @@ def test_the_shipped_specs_against_themselves(tmp_path: Path, tltlc: Run, monkey
         ("spatial", "tolerance: angle = 30 deg", "tolerance: angle", ["error TLT0759"]),
     ],
 )
-def test_a_library_that_has_changed(
+def test_changes_of_a_library_are_reported(
     library: str,
     old: str,
     new: str,
@@ -422,54 +432,62 @@ def test_a_library_that_has_changed(
     assert codes(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")) == found
 
 
-def test_what_a_library_says_of_all_specs(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_changed_declarations_of_a_library_are_reported(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.chdir(tmp_path)
     base = "signal a: bool\nsignal b: bool\nsignal c: bool\nexclusive a, c\n"
     plain = "import base\nlet d = a and b\n"
 
-    def said(old: str, new: str) -> list[tuple[str, str]]:
+    def diagnostics(old: str, new: str) -> list[tuple[str, str]]:
         write(base=base, old__base=base, old__mine=old, mine=new)
-        done = tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")
-        return [(each["severity"], each["title"]) for each in json.loads(done.out)["diagnostics"]]
+        outcome = tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")
+        return [(diagnostic["severity"], diagnostic["title"]) for diagnostic in json.loads(outcome.out)["diagnostics"]]
 
     ruled = f"clock 20 Hz\n{plain}exclusive a, b\n"
-    assert said(plain, ruled) == [
+    assert diagnostics(plain, ruled) == [
         ("error", "`a` and `b` are exclusive now"),
         ("error", "specs are sampled every 0.05 s now, and were sampled by no clock"),
     ]
-    assert said(ruled, plain) == [
+    assert diagnostics(ruled, plain) == [
         ("warning", "`a` and `b` are no longer exclusive"),
         ("error", "specs are sampled by no clock now, and were sampled every 0.05 s"),
     ]
-    assert said(ruled, ruled.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
-    # What a wider group says already is no news.
+    assert diagnostics(ruled, ruled.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
+    # A group that a wider group implies is not reported.
     wide = f"{plain}exclusive a, b, c\n"
     narrow = wide.replace("a, b, c", "a, b")
-    assert said(narrow, wide) == [("error", "`a`, `b` and `c` are exclusive now")]
-    assert said(wide, narrow) == [("warning", "`a`, `b` and `c` are no longer exclusive")]
-    assert said(wide, f"{narrow}exclusive b, c\nexclusive c, a\n") == []
-    # So it is in specs.
+    assert diagnostics(narrow, wide) == [("error", "`a`, `b` and `c` are exclusive now")]
+    assert diagnostics(wide, narrow) == [("warning", "`a`, `b` and `c` are no longer exclusive")]
+    assert diagnostics(wide, f"{narrow}exclusive b, c\nexclusive c, a\n") == []
+    # The same holds for specs.
     spec = "spec s = F (a | b | c)\n"
-    assert said(wide + spec, narrow + spec) == [("warning", "`a`, `b` and `c` are no longer exclusive in `s`")]
-    assert said(narrow + spec, wide + spec) == [("error", "`a`, `b` and `c` are exclusive in `s` now")]
-    # Of what is imported, the file that declares it tells.
-    assert said(plain, "let d = true\n") == [("error", f"the signal `{name}` is gone") for name in "abc"]
+    assert diagnostics(wide + spec, narrow + spec) == [("warning", "`a`, `b` and `c` are no longer exclusive in `s`")]
+    assert diagnostics(narrow + spec, wide + spec) == [("error", "`a`, `b` and `c` are exclusive in `s` now")]
+    # A declaration that was imported is reported for the file that declares it.
+    assert diagnostics(plain, "let d = true\n") == [("error", f"the signal `{name}` is gone") for name in "abc"]
     Path("old/mine.tltl").unlink()
     assert tltlc("breaking", "mine.tltl", "--against", "old").err.endswith("0 breaking, 0 changed, 0 compatible\n")
 
 
-def test_a_library_offers_what_it_imports(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_library_exports_what_it_imports(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     own = "signal noise: ratio\nparam most: ratio = 20 %\npredicate calm in [-1, 1] = clamp(most - noise, -1, 1)\n"
     write(old__mine=f"import base\n{own}", old__base="signal far: length in [0 m, 9 m]\nlet near = far < 3 m\n")
-    # Declarations that move into a file that is imported are still there.
+    # Declarations that move into an imported file still exist.
     write(mine="import base\nimport moved\n", moved=own, base=Path("old/base.tltl").read_text(encoding="utf-8"))
     assert codes(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")) == []
     write(mine=own)
     assert codes(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")) == ["error TLT0759"] * 2
 
 
-def test_signals_that_a_predicate_reads_now(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_predicate_that_reads_more_signals_is_reported(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.chdir(tmp_path)
     signals = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
     write(old__mine=f"{signals}predicate p = 2 * a - 1\n", mine=f"{signals}predicate p = 2 * min(a, b, c) - 1\n")
@@ -479,12 +497,17 @@ def test_signals_that_a_predicate_reads_now(tltlc: Run, tmp_path: Path, monkeypa
 
 
 @pytest.mark.parametrize("arguments", [["-", "--against", "x"], ["a.tltl:b", "--against", "x"], ["a.tltl"]])
-def test_wrong_usage(arguments: list[str], tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_wrong_usage_is_rejected(
+    arguments: list[str],
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.chdir(tmp_path)
     assert tltlc("breaking", *arguments).status == 2
 
 
-def test_nothing_heavy_is_loaded(tmp_path: Path) -> None:
+def test_no_heavy_module_is_imported(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     shutil.copy(EXAMPLE, tmp_path / "old")
     loaded("check", EXAMPLE, folder=tmp_path)

@@ -1,4 +1,5 @@
-"""``tltlc diff`` as its readers see it: texts in ``golden/NAME``, which ``UPDATE_GOLDEN=1`` writes anew, and JSON."""
+"""The output of ``tltlc diff``: texts in ``golden/NAME``, which ``UPDATE_GOLDEN=1`` rewrites, and
+JSON."""
 
 from __future__ import annotations
 
@@ -50,26 +51,26 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], No
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_the_text(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_text_matches_the_golden_file(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     copy(case)
-    done = tltlc(*arguments(case))
+    outcome = tltlc(*arguments(case))
     expected = case / "expected.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
-        expected.write_text(done.out, encoding="utf-8")
-    assert done.out == expected.read_text(encoding="utf-8")
-    assert done.err == ""
-    assert done.status == (0 if case.name in ("equivalent", "no_specs") else 1)
+        expected.write_text(outcome.out, encoding="utf-8")
+    assert outcome.out == expected.read_text(encoding="utf-8")
+    assert outcome.err == ""
+    assert outcome.status == (0 if case.name in ("equivalent", "no_specs") else 1)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_the_document(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_the_document_fits_the_schema(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     copy(case)
-    done = tltlc(*arguments(case), "--format", "json")
-    found = json.loads(done.out)
+    outcome = tltlc(*arguments(case), "--format", "json")
+    document = json.loads(outcome.out)
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
-    jsonschema.validate(found, SCHEMA)
-    assert found["same"] == (done.status == 0)
-    for spec in found["specs"]:
+    jsonschema.validate(document, SCHEMA)
+    assert document["same"] == (outcome.status == 0)
+    for spec in document["specs"]:
         if spec["relation"] is not None:
             sides = spec["only_a"] is not None, spec["only_b"] is not None
             relations = {
@@ -82,37 +83,37 @@ def test_the_document(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_its_tests_pass(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+def test_printed_tests_pass(case: Path, copy, tltlc: Run) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     copy(case)
     out = tltlc(*arguments(case)).out
     blocks = re.findall(r"as a test of ([AB]):\n\n(    test .*?^    })$", out, re.DOTALL | re.MULTILINE)
-    for side, written in blocks:
+    for side, test in blocks:
         file = Path(arguments(case)["AB".index(side) + 1].partition(":")[0])
         pasted = Path("pasted.tltl")
-        pasted.write_text(f"{file.read_text(encoding='utf-8')}\n{written}\n", encoding="utf-8")
+        pasted.write_text(f"{file.read_text(encoding='utf-8')}\n{test}\n", encoding="utf-8")
         assert tltlc("test", pasted).out.splitlines()[-1] == "1 passed, 0 failed"
 
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL, SMALL)
-def test_a_test_tells_the_two_apart(first: Formula, second: Formula) -> None:
-    texts = [f"signal a: bool  signal b: bool  spec s = {write(each, ASCII)}\n" for each in (first, second)]
+def test_a_printed_test_tells_the_two_specs_apart(first: Formula, second: Formula) -> None:
+    texts = [f"signal a: bool  signal b: bool  spec s = {write(formula, ASCII)}\n" for formula in (first, second)]
     (a,), (b,) = map(compile_text, texts)
     pair = diff(a, b)
     for trace in (pair.comparison.only_a, pair.comparison.only_b):
         if trace is None:
             continue
-        written = block(pair, told(pair, trace), "one that tells")
-        if written is None:
+        test = block(pair, told(pair, trace), "one that tells")
+        if test is None:
             assert not a.atoms and not b.atoms
             continue
-        side, lines = written
+        side, lines = test
         results = []
         for source in texts if side == "A" else texts[::-1]:
             try:
                 compiled = compile_source(SourceFile("pasted", source + lines))
             except TltlError:
-                # An atom that the other spec does not have.
+                # The trace has an atom that this spec does not have.
                 continue
             results += [result.passed for result in run_tests(compiled.program, compiled.automata)]
         assert results[0] is True
@@ -125,40 +126,40 @@ def test_a_test_tells_the_two_apart(first: Formula, second: Formula) -> None:
 def test_every_document_fits_the_schema(first: Formula, second: Formula) -> None:
     for clause in ("", "semantics infinite "):
         a, b = (
-            compile_text(f"signal a: bool  signal b: bool  spec s {{ {clause}require {write(each, ASCII)} }}")
-            for each in (first, second)
+            compile_text(f"signal a: bool  signal b: bool  spec s {{ {clause}require {write(formula, ASCII)} }}")
+            for formula in (first, second)
         )
-        found = diff_files(("a", a), ("b", b))
-        jsonschema.validate(document(found), SCHEMA)
-        assert text(found).startswith("A is a\nB is b\n")
+        file_diff = diff_files(("a", a), ("b", b))
+        jsonschema.validate(document(file_diff), SCHEMA)
+        assert text(file_diff).startswith("A is a\nB is b\n")
 
 
-def test_an_artefact_is_the_spec_that_it_was_made_of(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_an_artefact_equals_its_source(tltlc: Run, inside: Path) -> None:  # noqa: F811
     assert tltlc("compile", "hide.tltl", "-t", "json").status == 0
-    done = tltlc("diff", "hide.fspa.json", "hide.tltl")
-    assert (done.status, done.err) == (0, "")
-    assert "B accepts the same traces as A, and nothing else differs" in done.out
+    outcome = tltlc("diff", "hide.fspa.json", "hide.tltl")
+    assert (outcome.status, outcome.err) == (0, "")
+    assert "B accepts the same traces as A, and nothing else differs" in outcome.out
 
 
-def test_what_both_sources_declare_to_be_exclusive(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_exclusive_groups_declared_on_both_sides_restrict_the_traces(tltlc: Run, inside: Path) -> None:  # noqa: F811
     declared = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
     Path("old.tltl").write_text(f"{declared}exclusive a, b, c\nspec s = b\n", encoding="utf-8")
     Path("new.tltl").write_text(f"{declared}exclusive a, b\nspec s = !a\n", encoding="utf-8")
     Path("free.tltl").write_text(f"{declared}exclusive a, c\nspec s = !a\n", encoding="utf-8")
 
-    def said(old: str, new: str) -> tuple[str, list[list[str]] | None]:
+    def relation_and_counterexample(old: str, new: str) -> tuple[str, list[list[str]] | None]:
         (spec,) = json.loads(tltlc("diff", old, new, "--format", "json").out)["specs"]
         return spec["relation"], spec["only_a"]
 
-    assert said("old.tltl", "new.tltl") == ("looser", None)
-    assert said("old.tltl", "free.tltl") == ("incomparable", [["b", "a"]])
+    assert relation_and_counterexample("old.tltl", "new.tltl") == ("looser", None)
+    assert relation_and_counterexample("old.tltl", "free.tltl") == ("incomparable", [["b", "a"]])
 
 
-def test_what_an_artefact_does_not_know_to_be_exclusive(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_exclusive_groups_of_a_source_apply_to_an_artefact(tltlc: Run, inside: Path) -> None:  # noqa: F811
     declared = "signal a: bool\nsignal b: bool\nsignal x in [0, 9]\n"
 
-    def said(spec: str, source: str) -> list[dict[str, object]]:
-        """What is said of the spec as an artefact against the source, and the other way round."""
+    def compared(spec: str, source: str) -> list[dict[str, object]]:
+        """Compare the spec, as an artefact, with the source; in both directions."""
         Path("of.tltl").write_text(spec, encoding="utf-8")
         Path("new.tltl").write_text(source, encoding="utf-8")
         assert tltlc("compile", "of.tltl", "-t", "json").status == 0
@@ -166,7 +167,7 @@ def test_what_an_artefact_does_not_know_to_be_exclusive(tltlc: Run, inside: Path
         return [json.loads(tltlc("diff", *pair, "--format", "json").out)["specs"][0] for pair in sides]
 
     exclusive = f"{declared}exclusive a, b\nspec s = !a\n"
-    there, back = said(f"{declared}exclusive a, b\nspec s = b\n", exclusive)
+    there, back = compared(f"{declared}exclusive a, b\nspec s = b\n", exclusive)
     assert (there["relation"], back["relation"]) == ("looser", "stricter")
     assert there["exclusive"] == [{"atoms": ["a", "b"], "in_a": False, "in_b": True}]
     assert back["exclusive"] == [{"atoms": ["a", "b"], "in_a": True, "in_b": False}]
@@ -175,19 +176,19 @@ def test_what_an_artefact_does_not_know_to_be_exclusive(tltlc: Run, inside: Path
     )
     assert judged_on in tltlc("diff", "s.fspa.json", "new.tltl").out
 
-    # An artefact of both atoms that has no such group was made where they are not exclusive.
-    there, _ = said(f"{declared}spec s = b & (a | !a & X a)\n", exclusive)
+    # An artefact that has both atoms but no such group was compiled without it.
+    there, _ = compared(f"{declared}spec s = b & (a | !a & X a)\n", exclusive)
     assert (there["relation"], there["exclusive"]) == ("incomparable", [])
 
-    # The atom of that name is another one there.
+    # Here the atom of that name is defined differently.
     of_x = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\n"
-    there, _ = said(f"{of_x.format(5)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    there, _ = compared(f"{of_x.format(5)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
     assert (there["relation"], there["exclusive"]) == ("incomparable", [])
-    there, _ = said(f"{of_x.format(6)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    there, _ = compared(f"{of_x.format(6)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
     assert there["relation"] == "looser"
 
 
-def test_atoms_that_two_sources_call_alike_are_not_exclusive_in_both(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_different_atoms_of_the_same_name_share_no_exclusive_group(tltlc: Run, inside: Path) -> None:  # noqa: F811
     text = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\nexclusive a, b\nspec s = {}\n"
     Path("old.tltl").write_text(text.format(5, "b"), encoding="utf-8")
     for number, relation in ((5, "looser"), (6, "incomparable")):
@@ -197,11 +198,11 @@ def test_atoms_that_two_sources_call_alike_are_not_exclusive_in_both(tltlc: Run,
     assert tltlc("diff", "old.tltl", "new.tltl", "--by-name").out.count("B is looser") == 1
 
 
-def test_why_there_is_no_relation(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_a_missing_relation_has_a_reason(tltlc: Run, inside: Path) -> None:  # noqa: F811
     Path("ever.tltl").write_text("signal seen: bool\nspec hide { semantics infinite avoid seen }\n", encoding="utf-8")
-    done = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
-    (spec,) = json.loads(done.out)["specs"]
-    assert (done.status, spec["relation"]) == (1, None)
+    outcome = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
+    (spec,) = json.loads(outcome.out)["specs"]
+    assert (outcome.status, spec["relation"]) == (1, None)
     assert spec["reason"] == (
         "B is of another kind than A: A is about traces that end, B about traces that never end, so no trace is one of "
         "both. To compare what they ask for, give both the same `semantics`."
@@ -209,34 +210,34 @@ def test_why_there_is_no_relation(tltlc: Run, inside: Path) -> None:  # noqa: F8
     assert spec["beginnings"] == {"relation": "equivalent", "only_a": None, "only_b": None}
     text = "signal seen: bool\nspec hide { semantics infinite avoid not seen }\n"
     Path("ever.tltl").write_text(text, encoding="utf-8")
-    done = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
-    (spec,) = json.loads(done.out)["specs"]
+    outcome = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
+    (spec,) = json.loads(outcome.out)["specs"]
     assert spec["beginnings"] == {"relation": "incomparable", "only_a": [[]], "only_b": [["seen"]]}
-    jsonschema.validate(json.loads(done.out), SCHEMA)
+    jsonschema.validate(json.loads(outcome.out), SCHEMA)
     (same,) = json.loads(tltlc("diff", "hide.tltl", "hide.tltl", "--format", "json").out)["specs"]
     assert (same["relation"], same["reason"]) == ("equivalent", None)
 
 
-def test_one_side_names_the_spec_of_both(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_a_spec_named_on_one_side_is_compared_on_both(tltlc: Run, inside: Path) -> None:  # noqa: F811
     Path("two.tltl").write_text("signal seen: bool\nspec show = F seen\nspec hide = G !seen\n", encoding="utf-8")
     assert tltlc("diff", "hide.tltl:hide", "two.tltl").status == 0
     assert tltlc("diff", "two.tltl", "hide.tltl:hide").status == 0
-    # The only spec of a file is meant whatever its name.
+    # A file with a single spec needs no name.
     assert "show and hide\n  B accepts other traces than A" in tltlc("diff", "two.tltl:show", "hide.tltl").out
     assert tltlc("diff", "two.tltl", "hide.tltl").status == 1
     two = tltlc("diff", "hide.tltl", "two.tltl:nothing")
     assert (two.status, two.out) == (2, "")
     Path("three.tltl").write_text("signal seen: bool\nspec a = F seen\nspec b = G seen\n", encoding="utf-8")
-    several = tltlc("diff", "three.tltl", "two.tltl:hide")
-    assert several.status == 2 and "TLT0721" in several.err
+    ambiguous = tltlc("diff", "three.tltl", "two.tltl:hide")
+    assert ambiguous.status == 2 and "TLT0721" in ambiguous.err
 
 
-def test_specs_of_other_names_are_named_as_arguments() -> None:
-    found = FileDiff(STDIN_NAME, "b.tltl", (), ("one", "two"), ("other",))
-    assert "name both, e.g. `-:one` and `b.tltl:other`" in text(found)
+def test_specs_are_named_as_on_the_command_line() -> None:
+    file_diff = FileDiff(STDIN_NAME, "b.tltl", (), ("one", "two"), ("other",))
+    assert "name both, e.g. `-:one` and `b.tltl:other`" in text(file_diff)
 
 
-def test_what_cannot_be_read(tltlc: Run, inside: Path) -> None:  # noqa: F811
+def test_unreadable_files_are_reported(tltlc: Run, inside: Path) -> None:  # noqa: F811
     assert tltlc("diff", "hide.tltl", "gone.tltl").status == 3
     Path("broken.tltl").write_text("spec hide = G !seem\n", encoding="utf-8")
     broken = tltlc("diff", "hide.tltl", "broken.tltl")
@@ -245,7 +246,7 @@ def test_what_cannot_be_read(tltlc: Run, inside: Path) -> None:  # noqa: F811
 
 
 @pytest.mark.parametrize("names", [("cover_and_hide", "branching"), ("navigation", "navigation")])
-def test_it_takes_less_than_three_times_the_calls_of_compiling_both(names: tuple[str, str]) -> None:
+def test_diff_costs_less_than_three_times_compiling_both(names: tuple[str, str]) -> None:
     sources = [SourceFile(name, (ROOT / f"examples/{name}.tltl").read_text(encoding="utf-8")) for name in names]
 
     def compiled() -> None:
@@ -258,5 +259,5 @@ def test_it_takes_less_than_three_times_the_calls_of_compiling_both(names: tuple
         compiled()
         text(diff_files(("a", automata[0]), ("b", automata[1]), one_each=True))
 
-    both()  # the libraries are read
+    both()  # Warm up: read the libraries.
     assert calls(both) < 3 * calls(compiled)

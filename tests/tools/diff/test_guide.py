@@ -1,4 +1,4 @@
-"""The guide to changes is run as its reader would."""
+"""The commands of the guide to changes run as printed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Git trees that nobody makes by ``git add``: their paths lead elsewhere, or are too many."""
+"""Git trees that ``git add`` never makes: their paths lead out of the folder, or there are too many
+of them."""
 
 from __future__ import annotations
 
@@ -23,19 +24,19 @@ PLAIN, FOLDER = b"100644", b"40000"
 
 
 def stored(kind: str, content: bytes) -> bytes:
-    """The name, in hexadecimal, of an object that git stores without a look at it."""
+    """Store an object without git's checks, and return its name in hexadecimal."""
     command = ["git", "hash-object", "-t", kind, "-w", "--stdin", "--literally"]
     return subprocess.run(command, input=content, check=True, capture_output=True).stdout.strip()
 
 
 def tree(*entries: tuple[bytes, bytes, bytes]) -> bytes:
-    """A tree of entries: mode, name, and the object in hexadecimal."""
-    lines = (mode + b" " + name + b"\0" + bytes.fromhex(of.decode()) for mode, name, of in entries)
+    """Store a tree with these entries: mode, name, and the object in hexadecimal."""
+    lines = (mode + b" " + name + b"\0" + bytes.fromhex(object_name.decode()) for mode, name, object_name in entries)
     return stored("tree", b"".join(lines))
 
 
 def revision(name: str, top: bytes) -> str:
-    """A branch whose commit holds a tree."""
+    """Make a branch whose commit has this tree."""
     about = b"author t <t@t> 0 +0000\ncommitter t <t@t> 0 +0000\n\nx\n"
     git("update-ref", f"refs/heads/{name}", stored("commit", b"tree " + top + b"\n" + about).decode())
     return name
@@ -43,7 +44,7 @@ def revision(name: str, top: bytes) -> str:
 
 @pytest.fixture
 def inside(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:  # noqa: F811
-    """Where temporary folders are made; a file of the user lies beside them."""
+    """The folder in which temporary folders are made; a file of the user lies beside them."""
     place = tmp_path / "temporary"
     (place / "deep").mkdir(parents=True)
     (place / "mine.tltl").write_text("my work")
@@ -57,61 +58,61 @@ def files(folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("levels", [1, 2, 5])
 @pytest.mark.parametrize("command", ["breaking", "diff"])
-def test_an_entry_above_the_folder_is_refused(inside: Path, tltlc: Run, levels: int, command: str) -> None:  # noqa: F811
+def test_an_entry_above_the_folder_is_rejected(inside: Path, tltlc: Run, levels: int, command: str) -> None:  # noqa: F811
     top = tree((PLAIN, b"mine.tltl", stored("blob", b"overwritten")))
     for _ in range(levels):
         top = tree((FOLDER, b"..", top))
     name = revision("bad", top)
     before = files(inside)
     if command == "breaking":
-        done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+        outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     else:
-        done = tltlc("diff", f"{name}:specs/leave.tltl", "specs/leave.tltl")
-    assert (done.status, done.out) == (3, "")
+        outcome = tltlc("diff", f"{name}:specs/leave.tltl", "specs/leave.tltl")
+    assert (outcome.status, outcome.out) == (3, "")
     path = "../" * levels + "mine.tltl"
-    assert done.err == (
+    assert outcome.err == (
         f"error[TLT0009]: the revision `bad` holds the path `{path}`, which leads out of its folder\n"
         "  help: use another revision: `git fsck` names the damaged tree, which `git add` does not make\n"
     )
     assert files(inside) == before
 
 
-def test_an_absolute_entry_is_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+def test_an_absolute_entry_is_rejected(inside: Path, tltlc: Run) -> None:  # noqa: F811
     target = inside / "mine.tltl"
     name = revision("bad", tree((PLAIN, str(target).encode(), stored("blob", b"overwritten"))))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
-    assert (done.status, target.read_text()) == (3, "my work")
-    assert "error[TLT0009]" in done.err
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert (outcome.status, target.read_text()) == (3, "my work")
+    assert "error[TLT0009]" in outcome.err
 
 
-def test_an_entry_that_is_a_file_and_a_folder_is_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+def test_an_entry_that_is_a_file_and_a_folder_is_rejected(inside: Path, tltlc: Run) -> None:  # noqa: F811
     blob = stored("blob", b"")
     below = tree((PLAIN, b"b.tltl", blob))
     name = revision("bad", tree((PLAIN, b"a.tltl", blob), (FOLDER, b"a.tltl", below)))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
-    assert done.status == 3
-    assert "two entries for `a.tltl/b.tltl`" in done.err
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert outcome.status == 3
+    assert "two entries for `a.tltl/b.tltl`" in outcome.err
 
 
-def test_names_that_differ_in_capitals_have_a_help_that_is_right(
+def test_names_that_differ_in_case_have_a_fitting_help(
     inside: Path,
     tltlc: Run,  # noqa: F811
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A file system that ignores case, as macOS and Windows have it: the revision is a sound one."""
+    """The revision is sound, but the file system ignores case, as on macOS and Windows."""
     blob = stored("blob", b"")
     name = revision("capitals", tree((PLAIN, b"Leave.tltl", blob), (PLAIN, b"leave.tltl", blob)))
     monkeypatch.setattr("tltlc.io.archive.inside", lambda folder, path, archive: folder / path.lower())
-    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
-    assert done.status == 3
-    assert done.err == (
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert outcome.status == 3
+    assert outcome.err == (
         "error[TLT0009]: the revision `capitals` holds `Leave.tltl` and `leave.tltl`, which the file system here takes "
         "for one path\n"
         "  help: run this on Linux, or name a revision in which the file has another name\n"
     )
 
 
-def test_a_tree_of_billions_of_paths_is_refused(
+def test_a_tree_of_billions_of_paths_is_rejected(
     inside: Path,
     tltlc: Run,  # noqa: F811
     monkeypatch: pytest.MonkeyPatch,
@@ -120,71 +121,71 @@ def test_a_tree_of_billions_of_paths_is_refused(
     for _ in range(10):
         top = tree(*((FOLDER, b"%02d" % number, top) for number in range(10)))
     monkeypatch.setattr(revisions, "REVISION_PATHS", Limit(size=1 << 20, values=1000))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
-    assert (done.status, done.out) == (3, "")
-    assert done.err == (
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
+    assert (outcome.status, outcome.out) == (3, "")
+    assert outcome.err == (
         "error[TLT0764]: the revision `bomb` holds more than 1,000 paths\n"
         "  help: take out the part to compare, and name its folder: `--against DIR`\n"
     )
 
 
-def test_a_tree_of_too_many_specs_is_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_tree_of_too_many_specs_is_rejected(inside: Path, tltlc: Run) -> None:  # noqa: F811
     blob = stored("blob", b"spec a = true\n")
-    many = tree(*((PLAIN, b"%03d.tltl" % number, blob) for number in range(200)))
-    name = revision("bomb", tree(*((FOLDER, b"%03d" % number, many) for number in range(101))))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
-    assert done.status == 3
-    assert "the revision `bomb` holds more than 20,000 specs and artefacts" in done.err
+    folder = tree(*((PLAIN, b"%03d.tltl" % number, blob) for number in range(200)))
+    name = revision("bomb", tree(*((FOLDER, b"%03d" % number, folder) for number in range(101))))
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert outcome.status == 3
+    assert "the revision `bomb` holds more than 20,000 specs and artefacts" in outcome.err
 
 
-def test_specs_that_are_too_large_together_are_refused(inside: Path, tltlc: Run) -> None:  # noqa: F811
+def test_specs_that_are_too_large_together_are_rejected(inside: Path, tltlc: Run) -> None:  # noqa: F811
     blob = stored("blob", bytes(10 << 20))
     name = revision("bomb", tree(*((PLAIN, b"%03d.tltl" % number, blob) for number in range(30))))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
-    assert done.status == 3
-    assert "the revision `bomb` holds more than 256 MiB of specs and artefacts" in done.err
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert outcome.status == 3
+    assert "the revision `bomb` holds more than 256 MiB of specs and artefacts" in outcome.err
 
 
 def nested(name: bytes, levels: int, top: bytes) -> bytes:
-    """A tree in as many folders, each of which has that name."""
+    """Nest a tree in ``levels`` folders of the same name."""
     for _ in range(levels):
         top = tree((FOLDER, name, top))
     return top
 
 
 def doubled(levels: int, names: tuple[bytes, bytes], top: bytes) -> bytes:
-    """A tree of two to the power of ``levels`` paths."""
+    """Return a tree with two to the power of ``levels`` times the paths of ``top``."""
     for _ in range(levels):
         top = tree(*((FOLDER, name, top) for name in names))
     return top
 
 
 @pytest.mark.parametrize("kind", ["empty", "long"])
-def test_folders_without_end_are_refused(inside: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch, kind: str) -> None:  # noqa: F811
-    """Folders without any file, and few paths that are long each: neither is a matter of the number of files."""
+def test_endless_folders_are_rejected(inside: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch, kind: str) -> None:  # noqa: F811
+    """Folders without files, and a few very long paths: counting files would catch neither."""
     monkeypatch.setattr(revisions, "REVISION_PATHS", Limit(size=1 << 20, values=1000))
     if kind == "empty":
         top = doubled(60, (b"a", b"b"), tree())
     else:
         top = doubled(60, (b"a" * 4000, b"b" * 4000), tree((PLAIN, b"x", stored("blob", b""))))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
-    assert (done.status, done.out) == (3, "")
-    what = "paths of more than 1 MiB" if kind == "long" else "more than 1,000 paths"
-    assert f"error[TLT0764]: the revision `bomb` holds {what}" in done.err
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
+    assert (outcome.status, outcome.out) == (3, "")
+    reason = "paths of more than 1 MiB" if kind == "long" else "more than 1,000 paths"
+    assert f"error[TLT0764]: the revision `bomb` holds {reason}" in outcome.err
 
 
-def test_a_path_of_megabytes_is_read_no_further(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reading_stops_in_a_path_of_megabytes(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = io.BytesIO(b"100644 blob 0\t" + bytes([97]) * (50 << 20))
     with pytest.raises(TltlError, match="TLT0764: the revision `bomb` holds a path of more than 1 MiB"):
         list(revisions._listed(stream, "bomb"))
     assert stream.tell() < 2 << 20
 
 
-def test_paths_are_the_same_in_whichever_blocks_they_come() -> None:
+def test_paths_do_not_depend_on_the_blocks_of_the_stream() -> None:
     names = [b"a" * length + b".tltl" for length in (1, 65_000, 65_516, 65_517, 65_518, 200_000, 3)]
     listed = b"".join(b"100644 blob %d\t%s\0" % (place, name) for place, name in enumerate(names))
-    found = list(revisions._listed(io.BytesIO(listed), "v1"))
-    assert [(file.name, file.path.encode()) for file in found] == [(str(i), name) for i, name in enumerate(names)]
+    files = list(revisions._listed(io.BytesIO(listed), "v1"))
+    assert [(file.name, file.path.encode()) for file in files] == [(str(i), name) for i, name in enumerate(names)]
 
 
 @pytest.mark.parametrize(
@@ -196,7 +197,7 @@ def test_paths_are_the_same_in_whichever_blocks_they_come() -> None:
     ],
     ids=["deep", "long", "long part"],
 )
-def test_a_path_that_no_folder_can_hold_is_refused(
+def test_a_path_that_no_folder_can_hold_is_rejected(
     inside: Path,
     tltlc: Run,  # noqa: F811
     name: bytes,
@@ -204,10 +205,10 @@ def test_a_path_that_no_folder_can_hold_is_refused(
     why: str,
 ) -> None:
     top = nested(name, levels, tree((PLAIN, b"leave.tltl", stored("blob", b"spec a = true\n"))))
-    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bad", top))
-    assert (done.status, done.out) == (3, "")
-    assert "error[TLT0009]: the revision `bad` holds the path `dd" in done.err or "`d/d" in done.err
-    assert why in done.err
-    # The name itself is shortened.
-    assert len(done.err) < 700
-    assert "…" in done.err
+    outcome = tltlc("breaking", "specs/leave.tltl", "--against", revision("bad", top))
+    assert (outcome.status, outcome.out) == (3, "")
+    assert "error[TLT0009]: the revision `bad` holds the path `dd" in outcome.err or "`d/d" in outcome.err
+    assert why in outcome.err
+    # The message shortens the name.
+    assert len(outcome.err) < 700
+    assert "…" in outcome.err

@@ -1,4 +1,5 @@
-"""What became of a spec: against the meaning of formulas on all short traces, and as atoms are one or not."""
+"""How two specs relate: checked against the formulas on all short traces, and with atoms that
+differ."""
 
 from __future__ import annotations
 
@@ -54,37 +55,41 @@ def relation_of(only_a: bool, only_b: bool) -> Relation:
 
 @settings(max_examples=150, deadline=None)
 @given(SMALL, SMALL)
-def test_over_finite_traces_as_the_formulas_say(first: Formula, second: Formula) -> None:
+def test_finite_relations_match_the_formulas(first: Formula, second: Formula) -> None:
     a, b = finite(first), finite(second)
-    found = compare(a, b)
-    assert found.relation == relation_of(not is_included(a, b), not is_included(b, a))
-    for trace, accepts, rejects in ((found.only_a, first, second), (found.only_b, second, first)):
-        short = [each for each in all_traces(("a", "b"), 3) if holds(accepts, each) and not holds(rejects, each)]
+    comparison = compare(a, b)
+    assert comparison.relation == relation_of(not is_included(a, b), not is_included(b, a))
+    for trace, accepts, rejects in ((comparison.only_a, first, second), (comparison.only_b, second, first)):
+        witnesses = [
+            candidate
+            for candidate in all_traces(("a", "b"), 3)
+            if holds(accepts, candidate) and not holds(rejects, candidate)
+        ]
         if trace is None:
-            assert not short
+            assert not witnesses
             continue
         assert not trace.cycle
         assert holds(accepts, trace.prefix) and not holds(rejects, trace.prefix)
-        assert len(trace.prefix) <= min(map(len, short), default=len(trace.prefix))
+        assert len(trace.prefix) <= min(map(len, witnesses), default=len(trace.prefix))
 
 
 @settings(max_examples=80, deadline=None)
 @given(SMALL, SMALL)
-def test_on_traces_on_which_a_and_b_never_hold_together(first: Formula, second: Formula) -> None:
+def test_exclusive_atoms_restrict_the_traces(first: Formula, second: Formula) -> None:
     never = always(not_(and_(atom("a"), atom("b"))))
     a, b = finite(first), finite(second)
     sides = (not is_included(finite(and_(one, never)), other) for one, other in ((first, b), (second, a)))
-    found = compare(a, b, exclusive=[Group(("a", "b", "elsewhere"), True, True)])
-    assert found.relation == relation_of(*sides)
-    for trace in (found.only_a, found.only_b):
+    comparison = compare(a, b, exclusive=[Group(("a", "b", "elsewhere"), True, True)])
+    assert comparison.relation == relation_of(*sides)
+    for trace in (comparison.only_a, comparison.only_b):
         assert trace is None or {"a", "b"} not in trace.prefix
 
 
 @settings(max_examples=80, deadline=None)
 @given(SMALL, SMALL)
-def test_over_infinite_traces_as_the_formulas_say(first: Formula, second: Formula) -> None:
-    found = compare(compiled(first), compiled(second))
-    for trace, accepts, rejects in ((found.only_a, first, second), (found.only_b, second, first)):
+def test_infinite_relations_match_the_formulas(first: Formula, second: Formula) -> None:
+    comparison = compare(compiled(first), compiled(second))
+    for trace, accepts, rejects in ((comparison.only_a, first, second), (comparison.only_b, second, first)):
         if trace is not None:
             assert holds_on_lasso(accepts, trace.prefix, trace.cycle)
             assert not holds_on_lasso(rejects, trace.prefix, trace.cycle)
@@ -97,11 +102,13 @@ def test_over_infinite_traces_as_the_formulas_say(first: Formula, second: Formul
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL, SMALL)
-def test_swapping_turns_it_round(first: Formula, second: Formula) -> None:
+def test_swapping_the_specs_swaps_the_relation(first: Formula, second: Formula) -> None:
     a, b = finite(first), finite(second)
-    found, back = compare(a, b), compare(b, a)
-    assert back.relation == SWAPPED[str(found.relation)]
-    lengths = [trace and len(trace.prefix) for trace in (found.only_a, found.only_b, back.only_b, back.only_a)]
+    forward, backward = compare(a, b), compare(b, a)
+    assert backward.relation == SWAPPED[str(forward.relation)]
+    lengths = [
+        trace and len(trace.prefix) for trace in (forward.only_a, forward.only_b, backward.only_b, backward.only_a)
+    ]
     assert lengths[:2] == lengths[2:]
 
 
@@ -111,27 +118,29 @@ def test_a_spec_does_not_differ_from_itself(formula: Formula) -> None:
     assert diff(finite(formula), finite(formula)).is_same
 
 
-def test_traces_of_two_kinds_do_not_relate() -> None:
-    found = compare(one("signal a: bool spec p = F a"), one("signal a: bool spec p { semantics infinite reach a }"))
-    assert (found.relation, found.only_a, found.only_b) == (None, None, None)
-    assert found.beginnings is not None and found.beginnings.relation == "equivalent"
+def test_finite_and_infinite_specs_have_no_relation() -> None:
+    comparison = compare(
+        one("signal a: bool spec p = F a"), one("signal a: bool spec p { semantics infinite reach a }")
+    )
+    assert (comparison.relation, comparison.only_a, comparison.only_b) == (None, None, None)
+    assert comparison.beginnings is not None and comparison.beginnings.relation == "equivalent"
 
 
 @settings(max_examples=80, deadline=None)
 @given(SMALL, SMALL)
-def test_beginnings_of_traces_of_two_kinds_relate(first: Formula, second: Formula) -> None:
+def test_beginnings_of_finite_and_infinite_specs_are_compared(first: Formula, second: Formula) -> None:
     a, b = finite(first), compiled(second)
-    found = compare(a, b).beginnings
-    assert found is not None
-    short = [trace for length in (1, 2, 3) for trace in product(SAMPLES, repeat=length)]
-    for trace, kept, broken in ((found.only_a, a, b), (found.only_b, b, a)):
-        telling = [each for each in short if not is_broken(kept, each) and is_broken(broken, each)]
+    beginnings = compare(a, b).beginnings
+    assert beginnings is not None
+    prefixes = [trace for length in (1, 2, 3) for trace in product(SAMPLES, repeat=length)]
+    for trace, kept, broken in ((beginnings.only_a, a, b), (beginnings.only_b, b, a)):
+        witnesses = [prefix for prefix in prefixes if not is_broken(kept, prefix) and is_broken(broken, prefix)]
         if trace is None:
-            assert not telling
+            assert not witnesses
         else:
             assert not is_broken(kept, trace.prefix) and is_broken(broken, trace.prefix)
-            assert len(trace.prefix) <= min(map(len, telling), default=len(trace.prefix))
-    assert found.relation == relation_of(found.only_a is not None, found.only_b is not None)
+            assert len(trace.prefix) <= min(map(len, witnesses), default=len(trace.prefix))
+    assert beginnings.relation == relation_of(beginnings.only_a is not None, beginnings.only_b is not None)
 
 
 def is_broken(fspa: Fspa, letters: tuple[Letter, ...]) -> bool:
@@ -143,34 +152,34 @@ def is_broken(fspa: Fspa, letters: tuple[Letter, ...]) -> bool:
 
 def test_an_atom_with_another_expression_is_another_atom() -> None:
     a, b = one(NEAR), one(NEAR.replace("1 - distance(x) / close", "(1 - distance(x) / close)^2"))
-    found = compare(a, b)
-    assert (found.relation, found.split) == ("incomparable", ("near(chest)",))
-    assert found.only_a == Trace((frozenset({"near(chest) of A"}),))
-    assert found.only_b == Trace((frozenset({"near(chest) of B"}),))
+    comparison = compare(a, b)
+    assert (comparison.relation, comparison.split) == ("incomparable", ("near(chest)",))
+    assert comparison.only_a == Trace((frozenset({"near(chest) of A"}),))
+    assert comparison.only_b == Trace((frozenset({"near(chest) of B"}),))
     assert compare(a, b, by_name=True).relation == "equivalent"
 
 
 @pytest.mark.parametrize(
     ("old", "new", "is_split", "differ"),
     [
-        ("= 20 m", "= 30 m", False, ["near(chest)", "size"]),  # scaled otherwise
+        ("= 20 m", "= 30 m", False, ["near(chest)", "size"]),  # a different scale
         ("close: length = 1 m", "close: length = 2 m", True, ["near(chest)"]),
-        ("[0 m, inf]", "[0 m, 5 km]", False, ["distance(chest)"]),  # the same at all that both take
+        ("[0 m, inf]", "[0 m, 5 km]", False, ["distance(chest)"]),  # equal on the samples that both ranges allow
         ("[0 m, inf]", "[3 m, inf]", False, ["distance(chest)"]),
         ("entity chest", "entity chest, gate", False, []),
     ],
 )
-def test_params_and_ranges_make_another_atom_where_it_holds_elsewhere(
+def test_params_and_ranges_split_an_atom_if_its_truth_changes(
     old: str, new: str, is_split: bool, differ: list[str]
 ) -> None:
     a, b = one(NEAR), one(NEAR.replace(old, new))
-    found = compare(a, b)
-    assert bool(found.split) == is_split
-    assert (found.relation == "incomparable") == is_split
-    assert [each.name for each in differences(a, b)] == differ
+    comparison = compare(a, b)
+    assert bool(comparison.split) == is_split
+    assert (comparison.relation == "incomparable") == is_split
+    assert [difference.name for difference in differences(a, b)] == differ
 
 
-def test_ranges_that_have_nothing_in_common_make_another_atom() -> None:
+def test_disjoint_ranges_split_an_atom() -> None:
     text = "signal x: number in [{}]  predicate high in [-1, 1] = clamp(x - 10, -1, 1)  spec up = F high"
     assert compare(one(text.format("0, 9")), one(text.format("11, 20"))).split == ("high",)
 
@@ -180,28 +189,28 @@ REAL = [
     frozenset(THRESHOLDS[name] for name, holds in zip(THRESHOLDS, (x > 0.75, x > 0.25, x < 0.5), strict=True) if holds)
     for x in (0.0, 0.3, 0.6, 0.8)
 ]
-"""Of the eight letters over these atoms of one signal those that samples give."""
+"""The letters over these atoms that samples of the one signal can give; four of eight."""
 
 
 @settings(max_examples=80, deadline=None)
 @given(formulas(atoms=tuple(THRESHOLDS), max_leaves=4), formulas(atoms=tuple(THRESHOLDS), max_leaves=4))
-def test_real_traces_alone_count(first: Formula, second: Formula) -> None:
+def test_only_letters_of_real_samples_count(first: Formula, second: Formula) -> None:
     lets = "".join(f"let {name} = {atom}\n" for name, atom in THRESHOLDS.items())
-    a, b = (one(f"signal x in [0, 1]\n{lets}spec s = {ascii_text(each)}") for each in (first, second))
-    found = compare(a, b, real=True)
-    sides = [is_told_apart(a, b), is_told_apart(b, a)]
-    assert found.relation == relation_of(*sides)
-    for trace in (found.only_a, found.only_b):
+    a, b = (one(f"signal x in [0, 1]\n{lets}spec s = {ascii_text(formula)}") for formula in (first, second))
+    comparison = compare(a, b, real=True)
+    sides = [has_real_counterexample(a, b), has_real_counterexample(b, a)]
+    assert comparison.relation == relation_of(*sides)
+    for trace in (comparison.only_a, comparison.only_b):
         known = {atom.name for atom in (*a.atoms, *b.atoms)}
         assert trace is None or set(trace.prefix) <= {letter & known for letter in REAL}
 
 
-def is_told_apart(a: Fspa, b: Fspa) -> bool:
-    """Whether real letters lead to where the one accepts and the other does not."""
+def has_real_counterexample(a: Fspa, b: Fspa) -> bool:
+    """Whether a word of real letters is accepted by ``a`` and rejected by ``b``."""
     queue = [(0, 0)]
-    for both in queue:
+    for pair in queue:
         for letter in REAL:
-            target = after(a, both[0], letter), after(b, both[1], letter)
+            target = after(a, pair[0], letter), after(b, pair[1], letter)
             if a.states[target[0]].accepting and not b.states[target[1]].accepting:
                 return True
             if target not in queue:
@@ -214,22 +223,22 @@ def after(fspa: Fspa, state: int, letter: Letter) -> int:
     return next(edge.target for edge in fspa.edges_from(state) if guard_holds(edge.guard, truth))
 
 
-def test_a_greater_threshold_is_stricter() -> None:
+def test_a_higher_threshold_is_stricter() -> None:
     param = "signal fuel in [0, 100]  param low in [0, 50] = {}  spec s = G fuel > low"
-    found = compare(one(param.format(20)), one(param.format(30)), real=True)
-    assert found.relation == "stricter"
-    assert found.impossible == ((("fuel > low of B", True), ("fuel > low of A", False)),)
-    # Where a signal is another thing in B, nothing is known of samples.
+    comparison = compare(one(param.format(20)), one(param.format(30)), real=True)
+    assert comparison.relation == "stricter"
+    assert comparison.impossible == ((("fuel > low of B", True), ("fuel > low of A", False)),)
+    # If the signal's range differs in B, nothing is known about the samples.
     other = param.replace("signal fuel in [0, 100]", "signal fuel in [200, 300]").replace("[0, 50]", "[200, 299]")
     assert not compare(one(param.format(20)), one(other.format(250)), real=True).impossible
 
 
-def test_many_thresholds_are_as_one() -> None:
+def test_forty_thresholds_are_compared_within_the_work_limit() -> None:
     def keeps(least: float) -> Fspa:
         numbers = range(40)
         signals = "".join(f"signal x{number} in [0, 1]\n" for number in numbers)
         return one(f"{signals}spec s {{ {' '.join(f'keep x{number} > {least}' for number in numbers)} }}")
 
-    found = compare(keeps(0.1), keeps(0.2), real=True, work=200_000)
-    assert found.relation == "stricter"
-    assert len(found.impossible) == 40
+    comparison = compare(keeps(0.1), keeps(0.2), real=True, work=200_000)
+    assert comparison.relation == "stricter"
+    assert len(comparison.impossible) == 40

@@ -1,4 +1,5 @@
-"""``tltlc diff REV:FILE``: a file as it was in a revision of git, with the imports that it had there."""
+"""``tltlc diff REV:FILE``: a file as it was in a revision of git, with the imports of that
+revision."""
 
 from __future__ import annotations
 
@@ -22,17 +23,17 @@ def relation(done: Outcome) -> str:
     return str(spec["relation"])
 
 
-def test_a_file_since_a_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_file_is_compared_with_its_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
     assert tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl").status == 0
     write(specs__leave=SPEC.replace("keep alive", "keep alive\n    avoid door and not alive"))
     write(libs__mine=LIBRARY.replace("= health", "= health - 10 %"))
-    done = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl", "--format", "json")
-    # The import is the old one, too.
-    assert (done.status, relation(done), json.loads(done.out)["a"]) == (1, "stricter", "v1:specs/leave.tltl")
+    outcome = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl", "--format", "json")
+    # The old file imports the old library.
+    assert (outcome.status, relation(outcome), json.loads(outcome.out)["a"]) == (1, "stricter", "v1:specs/leave.tltl")
     assert relation(tltlc("diff", "specs/leave.tltl", "HEAD:specs/leave.tltl:leave", "--format", "json")) == "looser"
 
 
-def test_between_revisions(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_two_revisions_are_compared(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     write(specs__exit=SPEC.replace("    keep alive\n", ""), specs__leave="spec other = F true\n")
     commit("v2")
     assert tltlc("compile", "specs/exit.tltl", "-t", "json", "-o", "specs").status == 0
@@ -44,7 +45,7 @@ def test_between_revisions(repository: Path, tltlc: Run, monkeypatch: pytest.Mon
         assert relation(tltlc("diff", "v1:leave.tltl", new, "--format", "json")) == "looser"
 
 
-def test_what_is_not_there(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_missing_files_and_revisions_are_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
     gone = tltlc("diff", "v1:leave.tltl", "specs/leave.tltl")
     assert (gone.status, gone.out) == (3, "")
     assert gone.err == (
@@ -52,7 +53,7 @@ def test_what_is_not_there(repository: Path, tltlc: Run) -> None:  # noqa: F811
         "  help: name a file that was there, by its path from the current folder\n"
     )
     assert "there is no revision and no folder `v9`" in tltlc("diff", "v9:specs/leave.tltl", "-").err
-    # A file of now that is called so is meant itself.
+    # A file in the working tree with exactly this name takes precedence.
     write(**{"v1:leave": "spec other = true\n"})
     assert tltlc("diff", "v1:leave.tltl", "v1:leave.tltl:other").status == 0
     write(specs__leave=SPEC.replace("door", "dor", 1))
@@ -62,14 +63,14 @@ def test_what_is_not_there(repository: Path, tltlc: Run) -> None:  # noqa: F811
     assert "\n  v2:specs/leave.tltl:4:11\n" in broken.err
 
 
-def test_a_branch_that_is_called_like_a_file(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_branch_named_like_a_file_is_a_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
     git("branch", "same")
     Path("same").write_text("a file")
     assert tltlc("diff", "same:specs/leave.tltl", "specs/leave.tltl").status == 0
     assert tltlc("breaking", "specs", "--against", "same").status == 0
     Path("other").write_text("a file")
-    done = tltlc("breaking", "specs", "--against", "other")
-    assert "error[TLT0751]: `other` is a file, and neither a folder nor a revision\n" in done.err
+    outcome = tltlc("breaking", "specs", "--against", "other")
+    assert "error[TLT0751]: `other` is a file, and neither a folder nor a revision\n" in outcome.err
 
 
 @pytest.mark.parametrize(
@@ -80,45 +81,51 @@ def test_a_branch_that_is_called_like_a_file(repository: Path, tltlc: Run) -> No
         ("folder", "`folder` names something in git that is no commit", "name the commit that holds it"),
     ],
 )
-def test_what_is_no_commit(repository: Path, tltlc: Run, name: str, title: str, way_out: str) -> None:  # noqa: F811
+def test_an_object_that_is_no_commit_is_reported(
+    repository: Path,  # noqa: F811
+    tltlc: Run,  # noqa: F811
+    name: str,
+    title: str,
+    way_out: str,
+) -> None:
     git("tag", "blob", "HEAD:specs/leave.tltl")
     git("tag", "folder", "HEAD^{tree}")
-    done = tltlc("breaking", "specs", "--against", name)
-    assert (done.status, done.err) == (3, f"error[TLT0751]: {title}\n  help: {way_out}\n")
+    outcome = tltlc("breaking", "specs", "--against", name)
+    assert (outcome.status, outcome.err) == (3, f"error[TLT0751]: {title}\n  help: {way_out}\n")
 
 
 @pytest.mark.parametrize("lost", [True, False])
-def test_a_file_that_git_cannot_give(repository: Path, tltlc: Run, lost: bool) -> None:  # noqa: F811
+def test_a_lost_or_damaged_file_is_reported(repository: Path, tltlc: Run, lost: bool) -> None:  # noqa: F811
     command = ["git", "rev-parse", "HEAD:specs/leave.tltl"]
     name = subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
     place = Path(".git/objects", name[:2], name[2:])
     place.unlink()
     if not lost:
         place.write_bytes(b"")
-    done = tltlc("diff", "HEAD:specs/leave.tltl", "specs/leave.tltl")
+    outcome = tltlc("diff", "HEAD:specs/leave.tltl", "specs/leave.tltl")
     title = "git does not give `specs/leave.tltl` of the revision `HEAD`"
-    assert (done.status, f"error[TLT0751]: {title}\n  help: fetch it, or take it" in done.err) == (3, True)
+    assert (outcome.status, f"error[TLT0751]: {title}\n  help: fetch it, or take it" in outcome.err) == (3, True)
 
 
-def test_a_file_outside_of_the_repository(repository: Path, tltlc: Run) -> None:  # noqa: F811
-    done = tltlc("diff", "HEAD:../../x.tltl", "specs/leave.tltl")
+def test_a_file_outside_the_repository_is_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    outcome = tltlc("diff", "HEAD:../../x.tltl", "specs/leave.tltl")
     outside = repository.absolute().parents[1]
-    assert f"`{outside}` lies in no git repository in which it could be a revision\n" in done.err
+    assert f"`{outside}` lies in no git repository in which it could be a revision\n" in outcome.err
 
 
-def test_a_repository_that_git_cannot_use(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_a_damaged_repository_is_reported(repository: Path, tltlc: Run) -> None:  # noqa: F811
     Path(".git/HEAD").unlink()
-    done = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl")
-    assert f"error[TLT0751]: git cannot use the repository of `{repository.absolute()}`\n" in done.err
+    outcome = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl")
+    assert f"error[TLT0751]: git cannot use the repository of `{repository.absolute()}`\n" in outcome.err
 
 
-def test_a_repository_without_files_of_now(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_the_git_folder_itself_is_reported(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(repository / ".git")
-    done = tltlc("breaking", ".", "--against", "HEAD")
-    assert "belongs to git itself, and holds no files of now" in done.err
+    outcome = tltlc("breaking", ".", "--against", "HEAD")
+    assert "belongs to git itself, and holds no files of now" in outcome.err
 
 
-def test_a_repository_whose_name_ends_in_a_line_end(
+def test_a_repository_whose_name_ends_in_a_line_break_works(
     repository: Path,  # noqa: F811
     tltlc: Run,  # noqa: F811
     monkeypatch: pytest.MonkeyPatch,
@@ -129,11 +136,11 @@ def test_a_repository_whose_name_ends_in_a_line_end(
     assert tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl").status == 0
 
 
-def test_links_lead_where_they_led_in_the_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
+def test_links_are_followed_within_the_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
     Path("specs/link.tltl").symlink_to("leave.tltl")
     Path("specs/chain.tltl").symlink_to("link.tltl")
     Path("shortcut").symlink_to("specs")
-    # Of these, git prints no file, and the lines below must not be taken for another link's.
+    # Git prints no file for these links. The output for the next link must not be taken for theirs.
     Path("specs/dangling.tltl").symlink_to("nowhere.tltl")
     Path("specs/loop.tltl").symlink_to("loop.tltl")
     Path("specs/outside.tltl").symlink_to("/nowhere\nblob 0123456789")
@@ -145,14 +152,14 @@ def test_links_lead_where_they_led_in_the_revision(repository: Path, tltlc: Run)
     Path("specs/link.tltl").symlink_to("stricter.tltl")
     for old in ("link", "chain"):
         for folder in ("specs", "shortcut"):
-            done = tltlc("diff", f"v2:{folder}/{old}.tltl", f"specs/{old}.tltl", "--format", "json")
-            assert relation(done) == "looser"
+            outcome = tltlc("diff", f"v2:{folder}/{old}.tltl", f"specs/{old}.tltl", "--format", "json")
+            assert relation(outcome) == "looser"
     assert relation(tltlc("diff", "v2:specs/user.tltl", "specs/user.tltl", "--format", "json")) == "equivalent"
     for other in ("dangling", "loop", "outside"):
         assert "TLT0751" in tltlc("diff", f"v2:specs/{other}.tltl", "specs/leave.tltl").err
 
 
-def test_a_link_from_outside_stands_for_the_file_in_the_repository(
+def test_a_link_from_outside_leads_to_the_file_in_the_repository(
     repository: Path,  # noqa: F811
     tltlc: Run,  # noqa: F811
     tmp_path_factory: pytest.TempPathFactory,

@@ -1,4 +1,4 @@
-"""Samples at which two atoms differ."""
+"""Samples on which two atoms differ."""
 
 from __future__ import annotations
 
@@ -26,41 +26,41 @@ def of(one: Fspa, other: Fspa) -> Apart | None:
 
 @settings(max_examples=60, deadline=None)
 @given(TENTHS, TENTHS)
-def test_a_threshold_that_moves_is_found(first: float, second: float) -> None:
+def test_a_sample_is_found_for_a_moved_threshold(first: float, second: float) -> None:
     assume(first != second)
     one, other = above(first), above(second)
-    found = of(one, other)
-    assert found is not None and found.is_judged_otherwise
-    sample = dict(found.sample)
-    for fspa, value in zip((one, other), found.values, strict=True):
-        # What is said is what the monitor of each computes.
+    difference = of(one, other)
+    assert difference is not None and difference.is_judged_otherwise
+    sample = dict(difference.sample)
+    for fspa, value in zip((one, other), difference.values, strict=True):
+        # The reported values are the values that each monitor computes.
         monitor = Monitor(fspa)
         monitor.step(sample)
         assert monitor.values == (value,)
 
 
-def test_a_scale_that_changes_is_no_other_judgement() -> None:
-    found = of(above(5), above(5, scale="20"))
-    assert found is not None and not found.is_judged_otherwise
+def test_another_scale_changes_values_but_no_truth() -> None:
+    difference = of(above(5), above(5, scale="20"))
+    assert difference is not None and not difference.is_judged_otherwise
     assert of(above(5), above(5)) is None
 
 
-def test_a_range_alone_changes_no_value_that_both_take() -> None:
+def test_another_range_changes_no_common_value() -> None:
     assert of(above(5), above(5, low=-3, high=30)) is None
 
 
-def test_an_atom_without_a_value() -> None:
+def test_equal_atoms_have_no_sample() -> None:
     def atom(body: str) -> Fspa:
         (fspa,) = compile_text(f"signal x in [0, 1]  predicate p in [-1, 1] = {body}  spec s = F p")
         return fspa
 
-    found = of(atom("1 - x"), atom("when x > 0: 1 - x otherwise: 1"))
-    assert found is None
+    difference = of(atom("1 - x"), atom("when x > 0: 1 - x otherwise: 1"))
+    assert difference is None
     one, other = atom("x"), atom("x")
     assert of(one, other) is None
 
 
-def test_of_a_bool_only_true_and_false_are_tried() -> None:
+def test_only_true_and_false_are_tried_for_a_bool() -> None:
     def atom(body: str) -> Fspa:
         (fspa,) = compile_text(f"signal x: bool  predicate p in [-1, 1] = {body}  spec s = F p")
         return fspa

@@ -1,1 +1,1 @@
-"""One module per language; each has ``RUNNERS``, and is found by its place alone."""
+"""One module per language; each defines ``RUNNERS``, and ``runners()`` imports all of them."""

@@ -1,6 +1,7 @@
-"""C99 and C++17, by GNU's compilers with every warning an error.
+"""C99 and C++17, compiled by GNU's compilers with every warning an error.
 
-A monitor alone is optimized and has sanitizers.  Of all monitors together, C is optimized and C++ has sanitizers.
+The program of a single monitor is built with ``-O1`` and sanitizers. The program of all monitors
+together is built with ``-O1`` in C, and with sanitizers in C++.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ C = ("gcc", "-x", "c", "-std=c99")
 CPP = ("g++", "-x", "c++", "-std=c++17")
 _SOURCE = ("-DTLTL_MAIN", "{name}_monitor.h", "-o", "{name}_c", "-lm")
 
-# Each trace has a process of its own, since a program begins with variables that no other has changed.
+# Each trace runs in a child process, so that every run starts with unchanged variables.
 _DRIVER = r"""
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
@@ -47,7 +48,7 @@ int main(int argc, char **argv) {
 
 
 def linked(compiler: Sequence[str], folder: Path, names: Sequence[str]) -> None:
-    """The program ``monitors``: the headers in one unit, side by side."""
+    """Build the program ``monitors`` from all headers, included in one translation unit."""
     lines = ["#define TLTL_MAIN"]
     for name in names:
         lines += [f"#define main main_of_{name}", f'#include "{name}_monitor.h"', "#undef main"]
@@ -75,7 +76,7 @@ RUNNERS = (
         build=(*CPP, "-O1", *STRICT, *SANITIZED, *_SOURCE),
         run=("./{name}_c",),
         build_all=partial(linked, (*CPP, *STRICT, *SANITIZED)),
-        # To look for leaks takes longer than all else that a program does; those alone are looked through.
+        # Detecting leaks takes longer than the rest of the run, so only the programs of single monitors do it.
         run_all=("env", "ASAN_OPTIONS=detect_leaks=0", "./monitors"),
         tools=("g++",),
     ),

@@ -1,4 +1,4 @@
-"""C# 6, by Mono's compiler with warnings as errors."""
+"""C# 6, compiled by Mono's compiler with warnings as errors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ internal static class Monitors
 
 
 def assembled(folder: Path, names: Sequence[str]) -> None:
-    """``monitors.exe``, one assembly of all monitors."""
+    """Build ``monitors.exe``, one assembly with all monitors."""
     cases = [f'            case "{name}": return Tltl.{name}_monitor_program.Main(rest);' for name in names]
     (folder / "monitors.cs").write_text(_DRIVER.replace("@@cases@@", "\n".join(cases)))
     sources = ["monitors.cs", *(f"{name}_monitor.cs" for name in names)]

@@ -1,4 +1,5 @@
-"""Godot 4, where its program is called ``godot4``; Godot 3 (``gdscript3``) speaks for it where there is none."""
+"""Godot 4, if a program ``godot4`` is installed; otherwise Godot 3 (``gdscript3``) stands in for
+it."""
 
 from __future__ import annotations
 

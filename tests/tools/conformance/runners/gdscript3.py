@@ -1,4 +1,5 @@
-"""Godot 3, which speaks for Godot 4, too: the two scripts differ in a few lines, and no test has Godot 4."""
+"""Godot 3. It also stands in for Godot 4, which is not installed where the tests run; the two
+scripts differ in a few lines."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from pathlib import Path
 
 from tests.tools.conformance.runner import Runner
 
-# It takes no locale C.
+# Godot does not accept the locale C.
 _ENGINE = ("env", "LANG=en", "godot3-server", "--path", ".", "-s")
 
 _DRIVER = """extends SceneTree
@@ -31,7 +32,8 @@ _START = "func _init() -> void:\n\tquit(_run(_arguments()))\n"
 
 
 def gathered(folder: Path, names: Sequence[str]) -> None:
-    """``monitors.gd``, and the scripts of the programs without what makes them end the engine."""
+    """Write ``monitors.gd``, and a copy of each program without the code that makes it quit the
+    engine."""
     (folder / "project.godot").touch()
     (folder / "monitors.gd").write_text(_DRIVER)
     for name in names:

@@ -1,4 +1,4 @@
-"""JavaScript by Node, whose ``exp``, ``tanh`` and ``pow`` are not those of the C library."""
+"""JavaScript, run by Node, whose ``exp``, ``tanh`` and ``pow`` differ from the C library's."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ for (let i = 0; i + 1 < words.length; i += 2) {
 
 
 def gathered(folder: Path, names: Sequence[str]) -> None:
-    """``monitors.mjs``, and the modules, which also export what their programs run."""
+    """Write ``monitors.mjs``, and a copy of each module that also exports its ``main``."""
     (folder / "monitors.mjs").write_text(_DRIVER)
     for name in names:
         module = (folder / f"{name}_monitor.mjs").read_text(encoding="utf-8")

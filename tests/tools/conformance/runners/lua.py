@@ -1,4 +1,5 @@
-"""Lua by two interpreters; newer versions have no ``tanh``, and LuaJIT has its own powers."""
+"""Lua, run by two interpreters. Newer versions have no ``tanh``, and LuaJIT computes powers
+differently."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ leave(0)
 
 
 def gathered(folder: Path, names: Sequence[str]) -> None:
-    """``monitors.lua``, which runs files of other names as well."""
+    """Write ``monitors.lua``, which runs the monitors' files."""
     (folder / "monitors.lua").write_text(_DRIVER)
 
 

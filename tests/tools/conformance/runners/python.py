@@ -1,4 +1,5 @@
-"""Python alone, without what lies beside it or is installed."""
+"""Python in isolated mode: without user site-packages, environment variables or modules beside the
+script."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ for name, path in zip(words[::2], words[1::2]):
 
 
 def gathered(folder: Path, names: Sequence[str]) -> None:
-    """``monitors.py``, which imports the modules."""
+    """Write ``monitors.py``, which imports the monitors' modules."""
     (folder / "monitors.py").write_text(_DRIVER)
 
 

@@ -27,7 +27,7 @@ fn main() {
 
 
 def linked(folder: Path, names: Sequence[str]) -> None:
-    """The program ``monitors``, one crate of all monitors."""
+    """Build the program ``monitors``, one crate with all monitors."""
     lines = ["#![allow(non_snake_case)]", "", *(f"mod {name}_monitor;" for name in names)]
     cases = [f'            Some("{name}") => {name}_monitor::program::run(rest),' for name in names]
     (folder / "monitors.rs").write_text("\n".join(lines) + "\n" + _DRIVER.replace("@@cases@@", "\n".join(cases)))
