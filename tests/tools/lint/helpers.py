@@ -1,4 +1,4 @@
-"""Lints a text as the command does, without the file that it would stand in."""
+"""Lint a text as the command does, without a file."""
 
 from __future__ import annotations
 
@@ -18,39 +18,40 @@ APART = PLACES + "exclusive at(x), at(y)\n"
 _HEAD = "spec s {\n    limit 9 steps\n    judge at goal\n    "
 
 
-def found(text: str, **options: object) -> tuple[Finding, ...]:
-    """What is to be said of a text."""
+def findings_in(text: str, **options: object) -> tuple[Finding, ...]:
+    """Return the findings of the linter in a text."""
     return lint(SourceFile("example.tltl", text), CompileOptions(**options))  # type: ignore[arg-type]
 
 
 def codes(text: str, **options: object) -> list[str]:
-    """The codes of what is to be said of a text, in order."""
-    return [each.diagnostic.code for each in found(text, **options)]
+    """Return the codes of the findings in a text, in order."""
+    return [finding.diagnostic.code for finding in findings_in(text, **options)]
 
 
 def marked(text: str, code: str) -> list[str]:
-    """What the remarks with a code point at first."""
-    labels = [each.diagnostic.labels[0] for each in found(text) if each.diagnostic.code == code]
+    """Return the text at the first label of each finding with this code."""
+    labels = [finding.diagnostic.labels[0] for finding in findings_in(text) if finding.diagnostic.code == code]
     return [label.source.slice(label.span) for label in labels]
 
 
 def remarks(check: Callable[[View], Iterable[Remark]], text: str) -> tuple[SpecView, list[Remark]]:
-    """The spec of a text, and what one rule has to say of it, whatever others say."""
+    """Return the spec of a text, and the remarks of one rule, regardless of the other rules."""
     view = view_of(SourceFile("example.tltl", text), CompileOptions())
     (spec,) = view.specs
     return spec, list(dict.fromkeys(check(view)))
 
 
-def mended(text: str) -> Fixed:
-    """A text with all its fixes."""
+def apply_fixes(text: str) -> Fixed:
+    """Return a text with all fixes applied."""
     return fix(SourceFile("example.tltl", text))
 
 
 def block(*clauses: str, before: str = SIGNALS) -> str:
-    """A spec of these clauses that has a limit and says when it is judged, so that nothing is said of that."""
+    """Return a spec of these clauses. It has a limit and a `judge at`, so that no rule reports
+    their absence."""
     return before + _HEAD + "\n    ".join(clauses) + "\n}\n"
 
 
-def of(code: str, *clauses: str, before: str = SIGNALS) -> list[str]:
-    """What a rule points at in a spec of these clauses."""
+def marked_in_block(code: str, *clauses: str, before: str = SIGNALS) -> list[str]:
+    """Return the text at the first label of each finding with this code, in a spec of these clauses."""
     return marked(block(*clauses, before=before), code)

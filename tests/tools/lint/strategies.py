@@ -1,4 +1,4 @@
-"""Small formulas and specs as they are written, and the traces that there are for them."""
+"""Random small formulas and specs as source text, with all their short traces."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SMALL = written(["a", "b", "c"])
 
 
 class World(NamedTuple):
-    """Declarations, atoms that can be made of them, and all short traces of those."""
+    """Declarations, the atoms that can be formed from them, and all short traces of these atoms."""
 
     before: str
     atoms: tuple[str, ...]
@@ -40,14 +40,16 @@ class World(NamedTuple):
 _FREE = subsets(["a", "b", "c"])
 _BELOW = ({"x < 5", "x < 7"}, {"x > 3", "x < 5", "x < 7"}, {"x > 3", "x < 7"})
 _RANGED = (*_BELOW, {"x > 3", "x > 5", "x < 7"}, {"x > 3", "x > 5"})
-"""What holds for x = 3, 4, 5, 6 and 7: one value of each kind."""
+"""The atoms that hold for x = 3, 4, 5, 6 and 7: one value from each region."""
 
 FREE = World(SIGNALS, ("a", "b", "c"), Traces(_FREE))
-EXCLUSIVE = World(SIGNALS + "exclusive a, b\n", FREE.atoms, Traces([each for each in _FREE if not {"a", "b"} <= each]))
+EXCLUSIVE = World(
+    SIGNALS + "exclusive a, b\n", FREE.atoms, Traces([letter for letter in _FREE if not {"a", "b"} <= letter])
+)
 RANGED = World(
     RANGES,
     ("a", "x > 3", "x > 5", "x < 5", "x < 7"),
-    Traces([each | truth for each in _RANGED for truth in (set(), {"a"})]),
+    Traces([letter | truth for letter in _RANGED for truth in (set(), {"a"})]),
 )
 
 
@@ -55,9 +57,9 @@ RANGED = World(
 def specs(
     draw: st.DrawFn, *clauses: str, worlds: Sequence[World] = (FREE, EXCLUSIVE, RANGED), most: int = 3
 ) -> tuple[World, str]:
-    """A spec of one clause to ``most``: ``clauses`` with formulas in place of ``{}``."""
+    """A spec of one to ``most`` clauses, taken from ``clauses`` with formulas in place of ``{}``."""
     world = draw(st.sampled_from(worlds))
     chosen = draw(st.lists(st.sampled_from(clauses), min_size=1, max_size=most))
     formulas = written(world.atoms)
-    filled = [each.format(*(f"({draw(formulas)})" for _ in range(each.count("{}")))) for each in chosen]
+    filled = [template.format(*(f"({draw(formulas)})" for _ in range(template.count("{}")))) for template in chosen]
     return world, block(*filled, before=world.before)

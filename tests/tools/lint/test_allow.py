@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.calls import calls
-from tests.tools.lint.helpers import codes, mended
+from tests.tools.lint.helpers import apply_fixes, codes
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.pipeline import CompileOptions
@@ -31,14 +31,14 @@ BEFORE = "signal seen: bool\n"
         "        then (seen implies heard)  // tltlc: allow TLT0412\n}",
         "signal heard: bool\nspec go {\n    limit 9 steps\n    reach seen\n        then (seen implies heard)\n"
         "}  // tltlc: allow TLT0412",
-        # A rule whose findings are errors can be silenced; the compiler cannot.
+        # A rule that reports errors can be silenced. The compiler cannot.
         "signal x in [0, 50]\npredicate never in [-1, 0] = -x / 50\n"
         "spec go {\n    limit 9 steps\n    reach never or seen  // tltlc: allow TLT0416\n}",
         # Empty lines do not matter.
         "signal heard: bool\n// tltlc: allow TLT0419\n\nspec hide { avoid seen or heard }",
     ],
 )
-def test_what_is_allowed_is_not_said(text: str) -> None:
+def test_allowed_findings_are_not_reported(text: str) -> None:
     assert codes(BEFORE + text) == []
 
 
@@ -56,7 +56,7 @@ def test_what_is_allowed_is_not_said(text: str) -> None:
         ("// tltlc: allow TLT0427, TLT0418\nspec hide = G !seen", []),
     ],
 )
-def test_what_is_allowed_elsewhere_is_said(text: str, expected: list[str]) -> None:
+def test_findings_allowed_elsewhere_are_reported(text: str, expected: list[str]) -> None:
     assert codes(BEFORE + text) == expected
 
 
@@ -71,7 +71,7 @@ def test_what_is_allowed_elsewhere_is_said(text: str, expected: list[str]) -> No
         ("limit 9 steps\n    reach (seen implies heard)\n    // ALLOW\n", []),
     ],
 )
-def test_a_comment_speaks_of_the_clauses_on_its_line(clauses: str, expected: list[str]) -> None:
+def test_a_comment_applies_to_the_clauses_on_its_line(clauses: str, expected: list[str]) -> None:
     text = f"{BEFORE}signal heard: bool\nspec go {{\n    {clauses}}}\n"
     assert codes(text.replace("ALLOW", "tltlc: allow TLT0412")) == expected
 
@@ -79,24 +79,24 @@ def test_a_comment_speaks_of_the_clauses_on_its_line(clauses: str, expected: lis
 @pytest.mark.parametrize(
     "head", ["spec go {  // ALLOW", "spec go  // ALLOW\n{", "spec go\n// ALLOW\n{", "// ALLOW\nspec go {"]
 )
-def test_at_the_head_of_a_spec_for_all_of_it(head: str) -> None:
+def test_a_comment_at_the_head_of_a_spec_applies_to_the_whole_spec(head: str) -> None:
     text = f"{BEFORE}signal heard: bool\n{head}\n    limit 9 steps\n    reach (seen implies heard)\n}}\n"
     assert codes(text.replace("ALLOW", "tltlc: allow TLT0412")) == []
 
 
-def test_at_the_head_of_a_file_for_all_of_it() -> None:
+def test_a_comment_at_the_head_of_a_file_applies_to_the_whole_file() -> None:
     specs = "signal seen: bool\nspec a { avoid seen }\n\nspec b { limit 3 steps avoid seen }\nspec c { reach seen }\n"
     assert codes(specs) == ["TLT0419", "TLT0420", "TLT0419"]
     assert codes(f"// A game.\n// tltlc: allow TLT0419\n\n{specs}") == ["TLT0420"]
 
 
-def test_warnings_of_the_compiler_are_silenced_as_well() -> None:
+def test_warnings_of_the_compiler_can_be_silenced() -> None:
     text = "signal seen: bool\n{}spec odd = F (seen or not seen)\n"
     assert codes(text.format("")) == ["TLT0411"]
     assert codes(text.format("// tltlc: allow TLT0411\n")) == []
 
 
-def test_a_library_allows_what_is_in_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_library_allows_its_own_findings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     jumpy = "signal x in [0, 9]\n{}predicate p = when x < 5: x / 9 - 1 otherwise: 1\n"
     library = Path("jumpy.tltl")
@@ -107,31 +107,31 @@ def test_a_library_allows_what_is_in_it(tmp_path: Path, monkeypatch: pytest.Monk
     assert codes("import jumpy\nspec s = F p") == []
 
 
-def test_a_comment_in_vain_is_removed() -> None:
+def test_an_unused_comment_is_removed() -> None:
     text = "signal seen: bool\n// tltlc: allow TLT0421\nspec hide = G !seen // tltlc: allow TLT0419\n"
-    assert mended(text).source.text == "signal seen: bool\nspec hide = G !seen\n"
+    assert apply_fixes(text).source.text == "signal seen: bool\nspec hide = G !seen\n"
 
 
-def test_a_comment_of_which_nothing_is_needed_is_removed() -> None:
+def test_a_comment_whose_codes_are_all_unused_is_removed() -> None:
     text = "signal seen: bool\n// tltlc: allow TLT0418, TLT0421\nspec hide = G !seen\n"
-    fixed = mended(text)
+    fixed = apply_fixes(text)
     assert fixed.source.text == "signal seen: bool\nspec hide = G !seen\n"
     assert len(fixed.fixed) == 2
 
 
-def test_a_comment_that_is_needed_for_something_stays() -> None:
+def test_a_comment_with_a_used_code_is_kept() -> None:
     text = "signal seen: bool\n// tltlc: allow TLT0419, TLT0421\nspec hide { avoid seen }\n"
-    assert mended(text).source.text == text
+    assert apply_fixes(text).source.text == text
     assert codes(text) == ["TLT0427"]
 
 
 @pytest.mark.parametrize("clauses", ["keep seen\n    avoid seen\n    reach seen", "reach true or seen"])
-def test_what_no_rule_could_judge_is_not_in_vain(clauses: str) -> None:
+def test_a_comment_is_not_unused_if_its_rule_could_not_run(clauses: str) -> None:
     head = f"{BEFORE}signal heard: bool\nlet used = heard\nspec s {{\n    limit 9 steps\n    "
     text = f"{head}{clauses} implies (heard or not heard)  // tltlc: allow TLT0412 as it is\n}}\n"
     assert set(codes(text)) & {"TLT0410", "TLT0411"} and "TLT0427" not in codes(text)
-    assert mended(text).source.text == text.replace("let used = heard\n", "")
-    # Beside that spec, comments are judged as ever.
+    assert apply_fixes(text).source.text == text.replace("let used = heard\n", "")
+    # Comments on other specs are still checked.
     aside = f"{text}// tltlc: allow TLT0412\nspec t = F seen\n"
     assert "TLT0427" in codes(aside)
 
@@ -147,30 +147,30 @@ LINES = (
 
 
 @pytest.mark.parametrize(("text", "what"), LINES, ids=[what for _, what in LINES])
-def test_the_work_of_comments_grows_with_the_text(text: str, what: str) -> None:
+def test_the_work_for_comments_is_linear(text: str, what: str) -> None:
     def work(number: int) -> int:
-        written = text.format(
+        source = text.format(
             codes="TLT0421 TLT0420 " * number,
             comments="// tltlc: allow TLT0421\n" * number,
             lets=" ".join(f"let l{index} = F a" for index in range(number)),
             lines="".join(f"let l{index} = F a // tltlc: allow TLT0421, TLT0420\n" for index in range(number)),
         )
-        view = view_of(SourceFile("example.tltl", written), CompileOptions())
-        spans = [each.span for each in view.module.declarations]
-        said = [Finding(Diagnostic("TLT0421", "unused", (Label(view.source, span),))) for span in spans]
-        return calls(lambda: silenced(view, said))
+        view = view_of(SourceFile("example.tltl", source), CompileOptions())
+        spans = [declaration.span for declaration in view.module.declarations]
+        findings = [Finding(Diagnostic("TLT0421", "unused", (Label(view.source, span),))) for span in spans]
+        return calls(lambda: silenced(view, findings))
 
     assert work(800) < 2.5 * work(400), what
 
 
-def test_each_comment_that_silences_the_same_is_needed() -> None:
+def test_every_comment_for_the_same_finding_counts_as_used() -> None:
     comments = "// tltlc: allow TLT0419\n" * 2
     assert codes(f"{comments}{BEFORE}{comments}spec hide {{ avoid seen }}  // tltlc: allow TLT0419") == []
 
 
-def test_a_comment_within_a_statement_speaks_of_all_around_it() -> None:
+def test_a_comment_within_a_statement_applies_to_the_enclosing_statements() -> None:
     text = f"{BEFORE}signal heard: bool\nspec go {{\n    limit 9 steps\n    reach (seen implies heard)  // ALLOW\n}}\n"
-    found = text.replace("ALLOW", "tltlc: allow TLT0412, TLT0412 TLT0411")
-    assert [each.diagnostic.title for each in lint(SourceFile("example.tltl", found))] == [
+    source = text.replace("ALLOW", "tltlc: allow TLT0412, TLT0412 TLT0411")
+    assert [finding.diagnostic.title for finding in lint(SourceFile("example.tltl", source))] == [
         "this allows TLT0411, which is not found here"
     ]

@@ -1,4 +1,4 @@
-"""Fixes: what they leave of a text, and that they change the meaning of nothing."""
+"""Fixes: the text that they leave, and that they never change the meaning of a spec."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import tltlc
 from tests.calls import calls
-from tests.tools.lint.helpers import codes, found, mended
+from tests.tools.lint.helpers import apply_fixes, codes, findings_in
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.tools.lint.rule import Edit
@@ -42,8 +42,8 @@ MORE = "signal x in [0, 9]\nspec s = F more(x, 1, 1)\n"
         ("signal a: bool\r\nsignal b: bool\r\nspec s = F a\r\n", "signal a: bool\r\nspec s = F a\r\n"),
     ],
 )  # fmt: skip
-def test_what_is_left(before: str, after: str) -> None:
-    assert mended(before).source.text == after
+def test_fixes_produce_the_expected_text(before: str, after: str) -> None:
+    assert apply_fixes(before).source.text == after
 
 
 NO_LIMIT = "// tltlc: allow TLT0419\n"
@@ -53,14 +53,14 @@ BLOCK = "spec s {\n    reach a\n}\n"
 @pytest.mark.parametrize(
     ("before", "after"),
     [
-        # Without the first declaration, the comment would speak of the whole file.
+        # Without the first declaration, the comment would apply to the whole file.
         ("import core\nsignal a: bool\n" + BLOCK, "signal a: bool\n" + BLOCK),
         ("import core\n" + NO_LIMIT + BLOCK + "signal a: bool\n", None),
         (
             "signal b: bool\nsignal c: bool\n" + NO_LIMIT + BLOCK + "signal a: bool\n",
             "signal c: bool\n" + NO_LIMIT + BLOCK + "signal a: bool\n",
         ),
-        # A comment goes with the one declaration that it speaks of, and does not pass to the next one.
+        # A comment on a single declaration is removed with it, and does not apply to the next one.
         (
             "signal a: bool\n" + NO_LIMIT + "signal b: bool\n" + BLOCK,
             "signal a: bool\n" + BLOCK,
@@ -69,35 +69,35 @@ BLOCK = "spec s {\n    reach a\n}\n"
             "signal a: bool\nsignal b: bool\n" + NO_LIMIT + BLOCK,
             "signal a: bool\n" + NO_LIMIT + BLOCK,
         ),
-        # It stays, too, where it stands in the documentation of what goes.
+        # A comment is also kept if it is inside the documentation of a removed declaration.
         ("/// Old.\n" + NO_LIMIT + "import core\nsignal a: bool\n" + BLOCK, NO_LIMIT + "signal a: bool\n" + BLOCK),
         (
             "/// Old.\n" + NO_LIMIT + "/// Older.\nsignal b: bool\nsignal a: bool\n" + BLOCK,
             NO_LIMIT + "signal a: bool\n" + BLOCK,
         ),
-        # Of two statements of one line one stays.
+        # One of the two statements on the line stays.
         (
             "signal a: bool\n/// Old.\n" + NO_LIMIT + "signal b: bool " + BLOCK,
             "signal a: bool\n" + NO_LIMIT + BLOCK,
         ),
-        # A comment on the whole file stays one.
+        # A comment on the whole file still applies to the whole file.
         (NO_LIMIT + "signal b: bool\nsignal a: bool\n" + BLOCK, NO_LIMIT + "signal a: bool\n" + BLOCK),
     ],
 )
 def test_no_fix_changes_what_a_comment_allows(before: str, after: str | None) -> None:
-    assert mended(before).source.text == (before if after is None else after)
+    assert apply_fixes(before).source.text == (before if after is None else after)
 
 
-def test_a_part_of_a_clause_is_left_to_the_author() -> None:
+def test_a_duplicate_within_a_formula_is_not_fixed() -> None:
     text = "signal a: bool\nspec s = F a & F a\n"
     assert codes(text) == ["TLT0425"]
-    assert mended(text).source.text == text
+    assert apply_fixes(text).source.text == text
 
 
-def test_what_was_fixed_is_told() -> None:
-    fixed = mended("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
-    assert [each.title for each in fixed.fixed] == ["nothing uses the let `c`", "nothing uses the signal `b`"]
-    assert [each.diagnostic.code for each in fixed.left] == ["TLT0419"]
+def test_fixed_and_remaining_findings_are_listed() -> None:
+    fixed = apply_fixes("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
+    assert [finding.title for finding in fixed.fixed] == ["nothing uses the let `c`", "nothing uses the signal `b`"]
+    assert [finding.diagnostic.code for finding in fixed.left] == ["TLT0419"]
 
 
 DECLARATIONS = {
@@ -119,7 +119,7 @@ FORMULAS = ("F a", "G b", "soon", "at(b)", "F near_to(x)", "F n > 3", "G few", "
 
 @st.composite
 def modules(draw: st.DrawFn) -> str:
-    """A file of all the declarations, in some order, and specs that use some of them."""
+    """A file with all the declarations in some order, and specs that use some of them."""
     order = draw(st.permutations(list(DECLARATIONS)))
     gaps = draw(st.lists(st.sampled_from(["\n", "\n\n", "\n\n\n", " \n"]), min_size=len(order), max_size=len(order)))
     formulas = draw(st.lists(st.sampled_from(FORMULAS), min_size=1, max_size=4))
@@ -140,7 +140,7 @@ PIECES = (
 
 @st.composite
 def commented(draw: st.DrawFn) -> str:
-    """A file with documentation, comments, and comments that allow something, in all places."""
+    """A file with documentation, remarks and allow comments in all places."""
     order = draw(st.permutations(PIECES))
     lines = st.lists(st.sampled_from(("/// Documented.", "// tltlc: a remark", "", *ALLOWS)), max_size=3)
     text = ""
@@ -151,43 +151,46 @@ def commented(draw: st.DrawFn) -> str:
 
 
 def remarks(text: str) -> set[tuple[str, str, str]]:
-    """What is said of a text: the code, the title, and the words it is about."""
-    said = [each.diagnostic for each in found(text)]
-    return {(each.code, each.title, each.labels[0].source.slice(each.labels[0].span)) for each in said}
+    """The code and title of each finding, and the text that it labels."""
+    diagnostics = [finding.diagnostic for finding in findings_in(text)]
+    return {
+        (diagnostic.code, diagnostic.title, diagnostic.labels[0].source.slice(diagnostic.labels[0].span))
+        for diagnostic in diagnostics
+    }
 
 
 @settings(deadline=None, max_examples=25)
 @given(commented())
-def test_fixes_keep_every_comment_that_allows_something(text: str) -> None:
-    """What was silenced stays silenced."""
+def test_fixes_reveal_no_silenced_finding(text: str) -> None:
+    """A finding that was silenced before the fixes is silenced after them."""
     silenced = remarks(text.replace("// tltlc: allow", "// tltlc, allow")) - remarks(text)
-    after = remarks(mended(text).source.text)
+    after = remarks(apply_fixes(text).source.text)
     assert not silenced & after
 
 
 @settings(deadline=None)
 @given(modules())
-def test_fixes_change_the_automaton_of_no_spec_and_leave_nothing_to_fix(text: str) -> None:
-    fixed = mended(text)
+def test_fixes_keep_all_automata_and_leave_nothing_to_fix(text: str) -> None:
+    fixed = apply_fixes(text)
     assert not any(finding.fix for finding in fixed.left)
-    assert mended(fixed.source.text).source == fixed.source
+    assert apply_fixes(fixed.source.text).source == fixed.source
     _, problems = parse(fixed.source)
     assert not problems
     before, after = tltlc.compile_text(text), tltlc.compile_text(fixed.source.text)
     assert [(f.states, f.edges, f.atoms, f.signals, f.judge) for f in before] == [
         (f.states, f.edges, f.atoms, f.signals, f.judge) for f in after
     ]
-    # A comment that says nothing to the linter stays, unless it stands behind what goes.
+    # An ordinary comment stays, unless it is on the line of a removed declaration.
     assert fixed.source.text.count("// A comment of its own.") == 1
 
 
-def test_the_work_of_comments_above_one_line_grows_with_the_text() -> None:
+def test_the_work_for_comments_above_one_line_is_linear() -> None:
     def work(number: int) -> int:
         comments = "// tltlc: allow TLT0418\n" * number
         lets = " ".join(f"let l{index} = F a" for index in range(number))
         source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a\n{comments}{lets}\n")
         module, _ = parse(source)
-        edits = [Edit(each.span, "") for each in module.declarations[2:]]
+        edits = [Edit(declaration.span, "") for declaration in module.declarations[2:]]
         return calls(lambda: keeping_scopes(module, edits))
 
     assert work(400) < 2.5 * work(200)

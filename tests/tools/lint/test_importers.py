@@ -1,4 +1,4 @@
-"""Which names of a file other files use."""
+"""Find the names of a file that other files use."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NAMES = st.lists(st.sampled_from(["a", "b", "ab", "ba"]), min_size=1, max_size=5
         "let x = a\nimport\n\ngame",
     ],
 )
-def test_what_a_file_imports(text: str) -> None:
+def test_imports_are_found(text: str) -> None:
     assert words("x.tltl", text).imports == {"game"}
 
 
@@ -36,15 +36,15 @@ def test_what_a_file_imports(text: str) -> None:
     "text",
     ["// import game", '"import game"', 'test "import" for game', "reimport game", "import // game", '"\nx game'],
 )
-def test_what_is_no_import(text: str) -> None:
+def test_texts_without_an_import_have_none(text: str) -> None:
     assert "game" not in words("x.tltl", text).imports
 
 
 @given(st.lists(NAMES, max_size=6), NAMES)
-def test_every_end_of_a_name_is_used(names: list[str], asked: str) -> None:
+def test_every_suffix_of_a_name_counts_as_used(names: list[str], asked: str) -> None:
     used = used_elsewhere("game.tltl", [words("x.tltl", f"import game\n{' '.join(names)}")])
-    ends = {".".join(name.split(".")[first:]) for name in names for first in range(name.count(".") + 1)}
-    assert (asked in used) == (asked in ends)
+    suffixes = {".".join(name.split(".")[first:]) for name in names for first in range(name.count(".") + 1)}
+    assert (asked in used) == (asked in suffixes)
 
 
 def test_names_count_along_a_chain_of_imports() -> None:
@@ -57,21 +57,21 @@ def test_names_count_along_a_chain_of_imports() -> None:
     assert [name in used for name in ("near", "far", "b.far", "e")] == [True, True, True, False]
 
 
-def test_the_ends_of_a_long_name_are_not_stored() -> None:
+def test_the_suffixes_of_a_long_name_are_not_stored() -> None:
     text = "import game\n" + ".".join("a" * 3_000)
-    found = words("x.tltl", text)
-    used = used_elsewhere("game.tltl", [found])
-    assert sum(map(len, found.names)) <= len(text)
+    file_words = words("x.tltl", text)
+    used = used_elsewhere("game.tltl", [file_words])
+    assert sum(map(len, file_words.names)) <= len(text)
     assert ".".join("a" * 2_000) in used
     assert 3 not in used
 
 
-def test_comments_that_speak_of_imports_cost_no_time() -> None:
+def test_comments_that_mention_imports_take_linear_time() -> None:
     text = '"// import\\n" * 2_000_000'
     assert soon(f"from tltlc.tools.lint.importers import words; print(words('x.tltl', {text}))").startswith("Words")
 
 
-def test_what_a_neighbour_uses_stays(tmp_path: Path) -> None:
+def test_a_name_used_by_a_neighbouring_file_is_kept(tmp_path: Path) -> None:
     text = "signal game.seen: bool\nsignal game.heard: bool\nsignal near: bool\nspec calm = F near\n"
     used = used_elsewhere("calm.tltl", [words("x.tltl", "import calm as c\nspec x = F c.game.seen")])
     fixed = fix(SourceFile("calm.tltl", text), None, {}, used)

@@ -1,4 +1,4 @@
-"""What fixes do with comments and documentation."""
+"""How fixes treat comments and documentation."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.tools.lint.helpers import codes, mended
+from tests.tools.lint.helpers import apply_fixes, codes
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Comment
@@ -19,15 +19,15 @@ SPEC = "spec s = F a\n"
 @pytest.mark.parametrize(
     ("before", "after"),
     [
-        # What documents it, goes with it, and does not come to document what follows.
+        # Documentation is removed with its declaration, and does not become documentation of the next one.
         ("/// Old.\n// A remark.\nlet r = a\n/// New.\n", "/// New.\n"),
         ("/// Old.\n\n// A remark.\n\n/// Older.\nlet r = a\n", ""),
         ("// A remark.\n/// Old.\nlet r = a\n", "// A remark.\n"),
         ("// Of b.\nsignal b: bool  // of b\n// Of a.\n", "// Of b.\n// Of a.\n"),
     ],
 )
-def test_documentation(before: str, after: str) -> None:
-    assert mended(f"signal a: bool\n{before}{SPEC}").source.text == f"signal a: bool\n{after}{SPEC}"
+def test_documentation_is_removed_with_its_declaration(before: str, after: str) -> None:
+    assert apply_fixes(f"signal a: bool\n{before}{SPEC}").source.text == f"signal a: bool\n{after}{SPEC}"
 
 
 @pytest.mark.parametrize(
@@ -38,13 +38,13 @@ def test_documentation(before: str, after: str) -> None:
         ("import core (less,  // of less\n    more)\nsignal x in [0, 9]\nspec s = F more(x, 1, 1)\n", "TLT0422"),
     ],
 )
-def test_an_item_stays_where_a_comment_would_go_with_it(text: str, code: str) -> None:
+def test_an_item_whose_removal_would_drop_a_comment_is_kept(text: str, code: str) -> None:
     assert codes(text) == [code]
-    assert mended(text).source.text == text
+    assert apply_fixes(text).source.text == text
 
 
 class _Comments(Sequence[Comment]):
-    """The comments of a text, which count how many of them are looked at."""
+    """The comments of a text; counts how often one of them is accessed."""
 
     def __init__(self, text: str) -> None:
         self._comments = parse(SourceFile("example.tltl", text))[0].comments
@@ -58,7 +58,7 @@ class _Comments(Sequence[Comment]):
         return self._comments[index]
 
 
-def test_of_many_comments_few_are_looked_at() -> None:
+def test_only_a_few_of_many_comments_are_accessed() -> None:
     text = "".join(f"// Of a{number}.\nsignal a{number}: bool\n" for number in range(500))
     comments = _Comments(text)
     start = text.index("signal a300")

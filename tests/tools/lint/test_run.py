@@ -1,4 +1,4 @@
-"""Linting a whole file."""
+"""Linting of whole files."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from tests.tools.lint.helpers import APART, block, codes, found
+from tests.tools.lint.helpers import APART, block, codes, findings_in
 from tltlc.core.source import SourceFile
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.rule import Remark
@@ -16,15 +16,15 @@ NO_TRACE, NO_GOAL = "TLT0410", "TLT0414"
 IMPOSSIBLE = block("reach at(x) and at(y)", before=APART)
 
 
-def told(text: str, levels: Mapping[str, str]) -> dict[str, str]:
-    """Lint a text with these levels; return the severity of each code."""
-    found = lint(SourceFile("a.tltl", text), levels=levels)
-    return {each.diagnostic.code: each.diagnostic.severity for each in found}
+def severities(text: str, levels: Mapping[str, str]) -> dict[str, str]:
+    """Lint a text with these levels, and return the severity of each code."""
+    reported = lint(SourceFile("a.tltl", text), levels=levels)
+    return {finding.diagnostic.code: finding.diagnostic.severity for finding in reported}
 
 
-def test_a_message_is_left_out_where_a_rule_says_more_and_counts_as_much() -> None:
-    assert told(IMPOSSIBLE, {}).keys() & {NO_TRACE, NO_GOAL} == {NO_GOAL}
-    assert told(IMPOSSIBLE, {NO_TRACE: "error", NO_GOAL: "error"}).keys() & {NO_TRACE, NO_GOAL} == {NO_GOAL}
+def test_a_message_is_dropped_if_an_equally_severe_rule_is_more_specific() -> None:
+    assert severities(IMPOSSIBLE, {}).keys() & {NO_TRACE, NO_GOAL} == {NO_GOAL}
+    assert severities(IMPOSSIBLE, {NO_TRACE: "error", NO_GOAL: "error"}).keys() & {NO_TRACE, NO_GOAL} == {NO_GOAL}
 
 
 @pytest.mark.parametrize(
@@ -35,14 +35,14 @@ def test_a_message_is_left_out_where_a_rule_says_more_and_counts_as_much() -> No
         (IMPOSSIBLE, {NO_GOAL: "allow"}),
     ],
 )
-def test_a_silenced_rule_stands_for_no_other_message(text: str, levels: Mapping[str, str]) -> None:
-    assert told(text, levels).keys() & {NO_TRACE, NO_GOAL} == {NO_TRACE}
+def test_a_silenced_rule_supersedes_no_message(text: str, levels: Mapping[str, str]) -> None:
+    assert severities(text, levels).keys() & {NO_TRACE, NO_GOAL} == {NO_TRACE}
 
 
-def test_an_error_stays_where_a_warning_says_more() -> None:
-    found = told(IMPOSSIBLE, {NO_TRACE: "error"})
-    assert found[NO_TRACE] == "error"
-    assert found[NO_GOAL] == "warning"
+def test_an_error_is_kept_beside_a_more_specific_warning() -> None:
+    reported = severities(IMPOSSIBLE, {NO_TRACE: "error"})
+    assert reported[NO_TRACE] == "error"
+    assert reported[NO_GOAL] == "warning"
 
 
 @pytest.mark.parametrize(
@@ -61,13 +61,13 @@ def test_long_formulas_are_linted(formula: str) -> None:
 
 
 class _Rule:
-    """A rule that says something of each declaration, and counts how often it is asked what it supersedes."""
+    """A rule that reports each declaration, and counts how often ``supersedes`` is read."""
 
     code, severity = "TLT0432", "warning"
     asked = 0
 
     def check(self, view: View) -> list[Remark]:
-        return [Remark("odd", (view.label(each.span),), "mend it") for each in view.module.declarations]
+        return [Remark("odd", (view.label(declaration.span),), "mend it") for declaration in view.module.declarations]
 
     @property
     def supersedes(self) -> tuple[str, ...]:
@@ -75,8 +75,8 @@ class _Rule:
         return ("TLT0410",)
 
 
-def test_a_rule_is_asked_once_what_it_supersedes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_supersedes_is_read_once_per_rule(monkeypatch: pytest.MonkeyPatch) -> None:
     rule = _Rule()
     monkeypatch.setattr("tltlc.tools.lint.run.rules", lambda: (rule,))
-    assert len(found("".join(f"signal a{number}: bool\n" for number in range(100)))) == 100
+    assert len(findings_in("".join(f"signal a{number}: bool\n" for number in range(100)))) == 100
     assert rule.asked == 1

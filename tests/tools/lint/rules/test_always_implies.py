@@ -1,4 +1,4 @@
-"""TLT0435: how far `always` reaches before `implies`."""
+"""TLT0435: an `always` before `implies` covers the left side only."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from tests.tools.lint.helpers import SIGNALS, codes, found, marked
+from tests.tools.lint.helpers import SIGNALS, codes, findings_in, marked
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
 
@@ -21,17 +21,18 @@ from tltlc.pipeline import compile_text
         ("F c and (always a implies F b)", "always a", "always (a implies F b)"),
     ],
 )
-def test_what_ends_before_implies(formula: str, condition: str, meant: str) -> None:
+def test_an_always_that_ends_before_implies_is_reported(formula: str, condition: str, meant: str) -> None:
     text = f"{SIGNALS}spec s = {formula}"
     assert marked(text, "TLT0435") == [condition]
-    (said,) = (each.diagnostic.help for each in found(text) if each.diagnostic.code == "TLT0435")
-    shown, as_it_is = re.findall("`([^`]*)`", said or "")
-    assert shown == meant
-    # What is shown is another formula; and with the brackets that are shown it is the same, and nothing is said.
+    (help_text,) = (finding.diagnostic.help for finding in findings_in(text) if finding.diagnostic.code == "TLT0435")
+    suggestion, bracketed = re.findall("`([^`]*)`", help_text or "")
+    assert suggestion == meant
+    # The suggestion is a different formula. With the brackets of the second suggestion, the formula is the
+    # same and no longer reported.
     part = formula.partition("and (")[2].rstrip(")") or formula
-    quiet = part.replace(condition, as_it_is.partition(")")[0].lstrip("(").join("()"))
-    ours, theirs, same = compile_text(f"{SIGNALS}spec s = {part}\nspec t = {shown}\nspec u = {quiet}")
-    assert are_equivalent(ours, same) and not are_equivalent(ours, theirs)
+    quiet = part.replace(condition, bracketed.partition(")")[0].lstrip("(").join("()"))
+    original, suggested, same = compile_text(f"{SIGNALS}spec s = {part}\nspec t = {suggestion}\nspec u = {quiet}")
+    assert are_equivalent(original, same) and not are_equivalent(original, suggested)
     assert "TLT0435" not in codes(f"{SIGNALS}spec s = {quiet}")
 
 
@@ -48,5 +49,5 @@ def test_what_ends_before_implies(formula: str, condition: str, meant: str) -> N
         "always a and (b implies c)",
     ],
 )
-def test_what_seems_to_be_meant(formula: str) -> None:
+def test_formulas_that_are_clear_are_not_reported(formula: str) -> None:
     assert "TLT0435" not in codes(f"{SIGNALS}spec s = {formula}")

@@ -1,11 +1,11 @@
-"""TLT0416: atoms with one truth."""
+"""TLT0416: atoms that are always true or always false."""
 
 from __future__ import annotations
 
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import block, codes, found, remarks
+from tests.tools.lint.helpers import block, codes, findings_in, remarks
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import constant_atom
 
@@ -27,20 +27,24 @@ from tltlc.tools.lint.rules import constant_atom
         ("[-1, 1] = min(x / 10 - 0.5, 0.5 - x / 10)", ["never"]),
     ],
 )
-def test_atoms_with_one_truth(predicate: str, expected: list[str]) -> None:
+def test_constant_atoms_are_reported(predicate: str, expected: list[str]) -> None:
     before = f"signal x in [0, 10]\npredicate p in {predicate}\n"
-    titles = [e.diagnostic.title for e in found(block("reach p", before=before)) if e.diagnostic.code == "TLT0416"]
-    assert titles == [f"`p` {each} holds" for each in expected]
+    titles = [
+        finding.diagnostic.title
+        for finding in findings_in(block("reach p", before=before))
+        if finding.diagnostic.code == "TLT0416"
+    ]
+    assert titles == [f"`p` {frequency} holds" for frequency in expected]
 
 
-def test_an_atom_is_named_once_in_a_file() -> None:
+def test_an_atom_is_reported_once_per_file() -> None:
     before = "signal x in [0, 10]\npredicate p in [-1, 0] = -x / 10\n"
     assert codes(before + "spec one = F p\nspec two = G !p\n") == ["TLT0416"]
 
 
 @given(PREDICATES)
-def test_no_value_of_the_signal_tells_otherwise(predicate: Predicate) -> None:
-    _, told = remarks(constant_atom.check, block("reach p", before=predicate.declared))
-    for remark in told:
+def test_reported_atoms_are_constant_on_all_values(predicate: Predicate) -> None:
+    _, reported = remarks(constant_atom.check, block("reach p", before=predicate.declared))
+    for remark in reported:
         truths = {value > 0 for value in predicate.values()}
         assert truths == {remark.title == "`p` always holds"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tests.tools.lint.helpers import SIGNALS, block, found, of
+from tests.tools.lint.helpers import SIGNALS, block, findings_in, marked_in_block
 from tltlc.automaton.compare import are_equivalent
 
 
@@ -23,8 +23,10 @@ from tltlc.automaton.compare import are_equivalent
         ("reach a then b then c", []),
     ],
 )
-def test_nexts_that_count(clause: str, expected: list[str]) -> None:
-    assert [each.rstrip() for each in of("TLT0418", clause, before="clock 10 Hz\n" + SIGNALS)] == expected
+def test_repeated_nexts_are_reported(clause: str, expected: list[str]) -> None:
+    assert [
+        marked_text.rstrip() for marked_text in marked_in_block("TLT0418", clause, before="clock 10 Hz\n" + SIGNALS)
+    ] == expected
 
 
 @pytest.mark.parametrize(
@@ -42,10 +44,12 @@ def test_nexts_that_count(clause: str, expected: list[str]) -> None:
         "require X X all x in (k, l): near(x)",
     ],
 )
-def test_the_time_in_seconds_asks_for_the_same(clause: str, clock: str) -> None:
+def test_the_suggested_time_in_seconds_is_equivalent(clause: str, clock: str) -> None:
     before = f"clock {clock}\nentity k, l\nsignal near(e): bool\n{SIGNALS}"
     text = block(clause, before=before)
-    (help_,) = (each.diagnostic.help or "" for each in found(text) if each.diagnostic.code == "TLT0418")
-    offered = help_.split("`")[1]
-    ours, theirs = (tltlc.compile_text(each)[0] for each in (text, block(f"require {offered}", before=before)))
-    assert are_equivalent(ours, theirs)
+    (help_,) = (finding.diagnostic.help or "" for finding in findings_in(text) if finding.diagnostic.code == "TLT0418")
+    suggestion = help_.split("`")[1]
+    original, suggested = (
+        tltlc.compile_text(source)[0] for source in (text, block(f"require {suggestion}", before=before))
+    )
+    assert are_equivalent(original, suggested)

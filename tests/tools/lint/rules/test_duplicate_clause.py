@@ -1,4 +1,4 @@
-"""TLT0425: clauses that stand twice."""
+"""TLT0425: clauses that occur twice."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.calls import calls
-from tests.tools.lint.helpers import SIGNALS, mended, of
+from tests.tools.lint.helpers import SIGNALS, apply_fixes, marked_in_block
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.rules.duplicate_clause import RULE
@@ -21,19 +21,19 @@ from tltlc.tools.lint.run import view_of
         (("require F a and G b", "reach c", "reach a"), ["reach a"]),
         (("reach a", "reach b", "reach a", "reach b", "reach a"), ["reach a", "reach b", "reach a"]),
         (("require F a and F a",), ["F a"]),
-        # What comes to the same in another form is implied.
+        # A clause that is equivalent but written differently counts as implied, not as a duplicate.
         (("reach a and b", "reach b and a"), []),
         (("reach a", "keep a"), []),
     ],
 )
-def test_clauses_that_stand_twice(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert of("TLT0425", *clauses) == expected
+def test_duplicate_clauses_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
+    assert marked_in_block("TLT0425", *clauses) == expected
 
 
-def test_the_first_of_them_stays() -> None:
+def test_the_first_of_two_duplicates_is_kept() -> None:
     before = SIGNALS + "spec s {\n    limit 9 steps\n"
     twice = before + "    reach a then b then c\n    avoid b // once\n    keep not b // twice\n}\n"
-    assert mended(twice).source.text == before + "    reach a then b then c\n    avoid b // once\n}\n"
+    assert apply_fixes(twice).source.text == before + "    reach a then b then c\n    avoid b // once\n}\n"
 
 
 @pytest.mark.parametrize(
@@ -48,16 +48,16 @@ def test_the_first_of_them_stays() -> None:
 def test_a_clause_that_decides_when_the_spec_is_judged_is_not_removed(clauses: tuple[str, ...]) -> None:
     lines = "\n    ".join(("limit 9 steps", *clauses))
     text = f"{SIGNALS}spec s {{\n    {lines}\n}}\n"
-    before, after = (tltlc.compile_text(each)[0] for each in (text, mended(text).source.text))
+    before, after = (tltlc.compile_text(source)[0] for source in (text, apply_fixes(text).source.text))
     assert before.judge == after.judge == "goal"
 
 
-def test_what_stands_twice_beside_such_a_clause_is_removed() -> None:
+def test_a_duplicate_beside_such_a_clause_is_removed() -> None:
     text = "signal a: bool\nspec s {\n    limit 9 steps\n    require a\n    require F[0,0] a\n    require a\n}\n"
-    assert mended(text).source.text == text.replace("    require a\n}", "}")
+    assert apply_fixes(text).source.text == text.replace("    require a\n}", "}")
 
 
-def test_the_work_grows_with_the_clauses() -> None:
+def test_the_work_is_linear_in_the_clauses() -> None:
     def work(clauses: int) -> int:
         view = view_of(SourceFile("a.tltl", f"{SIGNALS}spec s {{\n{'    avoid a' * clauses}\n}}"), CompileOptions())
         return calls(lambda: list(RULE.check(view)))

@@ -1,11 +1,11 @@
-"""TLT0414: goals that ask for exclusive atoms."""
+"""TLT0414: goals that require exclusive atoms at the same step."""
 
 from __future__ import annotations
 
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import APART, PLACES, of, remarks
+from tests.tools.lint.helpers import APART, PLACES, marked_in_block, remarks
 from tests.tools.lint.strategies import EXCLUSIVE, World, specs
 from tltlc.tools.lint.file_view import inner
 from tltlc.tools.lint.goals import goals
@@ -25,21 +25,21 @@ from tltlc.tools.lint.rules import exclusive_goal
         ("reach at(x) or at(y)", []),
     ],
 )
-def test_goals_that_are_exclusive(clause: str, expected: list[str]) -> None:
-    assert of("TLT0414", clause, before=APART) == expected
-    assert of("TLT0414", clause, before=PLACES) == []
-    assert of("TLT0410", clause, before=APART) == []
+def test_goals_of_exclusive_atoms_are_reported(clause: str, expected: list[str]) -> None:
+    assert marked_in_block("TLT0414", clause, before=APART) == expected
+    assert marked_in_block("TLT0414", clause, before=PLACES) == []
+    assert marked_in_block("TLT0410", clause, before=APART) == []
 
 
-def test_the_compilers_warning_stays_where_it_says_something_else() -> None:
-    assert of("TLT0410", "reach at(x) and at(y)", "reach at(z)", "avoid at(z)", before=APART) != []
+def test_the_warning_of_the_compiler_stays_if_it_has_another_reason() -> None:
+    assert marked_in_block("TLT0410", "reach at(x) and at(y)", "reach at(z)", "avoid at(z)", before=APART) != []
 
 
 @given(specs("reach {} and {}", "reach {} then ({} and {})", "require F ({} & {})", worlds=[EXCLUSIVE], most=1))
-def test_no_step_meets_the_goal(drawn: tuple[World, str]) -> None:
+def test_no_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(exclusive_goal.check, text)
-    for remark in told:
-        (goal,) = (each for each in goals(spec) if inner(each.tree).span == remark.labels[0].span)
+    spec, reported = remarks(exclusive_goal.check, text)
+    for remark in reported:
+        (goal,) = (candidate for candidate in goals(spec) if inner(candidate.tree).span == remark.labels[0].span)
         formula = goal.formula()
         assert formula and not any(world.traces.ever(formula))

@@ -1,17 +1,17 @@
-"""TLT0429: what speaks of the first step alone."""
+"""TLT0429: formulas that apply to the first step only."""
 
 from __future__ import annotations
 
 import pytest
 
 import tltlc
-from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, found, of
+from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, findings_in, marked_in_block
 from tltlc.automaton.compare import are_equivalent
 
 
-def test_what_speaks_of_the_first_step() -> None:
-    assert of("TLT0429", "require a and not b") == ["require a and not b"]
-    assert of("TLT0429", "require a implies F b", "require true", "keep a", "require X a") == []
+def test_clauses_about_the_first_step_are_reported() -> None:
+    assert marked_in_block("TLT0429", "require a and not b") == ["require a and not b"]
+    assert marked_in_block("TLT0429", "require a implies F b", "require true", "keep a", "require X a") == []
     assert "TLT0429" not in codes(f"{SIGNALS}spec s = a")
 
 
@@ -30,23 +30,25 @@ def test_what_speaks_of_the_first_step() -> None:
         ("eventually a and b until c", [], ""),
     ],
 )
-def test_what_stands_behind_a_temporal_word_and_is_outside_of_it(
-    formula: str, expected: list[str], way_out: str
-) -> None:
-    assert of("TLT0429", f"require {formula}") == expected
-    told = [each.diagnostic for each in found(f"{SIGNALS}spec s = {formula}") if each.diagnostic.code == "TLT0429"]
-    assert [each.help for each in told] == [f"both together are `{way_out}`" for _ in expected]
-    for each in told:
-        # What is shown is another formula, which compiles.
-        ours, theirs = tltlc.compile_text(f"{SIGNALS}spec s = {formula}\nspec t = {way_out}")
-        assert each.severity == "note" and not are_equivalent(ours, theirs)
+def test_operands_outside_a_temporal_operator_are_reported(formula: str, expected: list[str], way_out: str) -> None:
+    assert marked_in_block("TLT0429", f"require {formula}") == expected
+    diagnostics = [
+        finding.diagnostic
+        for finding in findings_in(f"{SIGNALS}spec s = {formula}")
+        if finding.diagnostic.code == "TLT0429"
+    ]
+    assert [diagnostic.help for diagnostic in diagnostics] == [f"both together are `{way_out}`" for _ in expected]
+    for diagnostic in diagnostics:
+        # The suggestion compiles, and is a different formula.
+        original, suggested = tltlc.compile_text(f"{SIGNALS}spec s = {formula}\nspec t = {way_out}")
+        assert diagnostic.severity == "note" and not are_equivalent(original, suggested)
 
 
 @pytest.mark.parametrize(
     ("formula", "way_out"),
     [
         ("a and b", "at every step is `keep a and b`, at some step `reach a and b`"),
-        # As a goal it would be met by a not holding.
+        # As a goal, it would be met as soon as `a` is false.
         ("a implies b", "at every step is `keep a implies b`"),
         ("(a implies b)", "at every step is `keep a implies b`"),
         ("(a implies b) and (b -> c)", "at every step is `keep (a implies b) and (b -> c)`"),
@@ -54,7 +56,7 @@ def test_what_stands_behind_a_temporal_word_and_is_outside_of_it(
         ("a and (a -> b)", "at every step is `keep a and (a -> b)`, at some step `reach a and (a -> b)`"),
     ],
 )
-def test_what_is_named_is_no_goal_that_is_met_by_nothing(formula: str, way_out: str) -> None:
+def test_the_suggestion_is_no_goal_that_a_false_condition_meets(formula: str, way_out: str) -> None:
     text = block("reach c", f"require {formula}", before=SIGNALS + PLACES)
-    (said,) = (each for each in found(text) if each.diagnostic.code == "TLT0429")
-    assert said.diagnostic.help == way_out
+    (finding,) = (candidate for candidate in findings_in(text) if candidate.diagnostic.code == "TLT0429")
+    assert finding.diagnostic.help == way_out

@@ -1,11 +1,11 @@
-"""TLT0417: goals without a slope."""
+"""TLT0417: goals whose value gives no gradient."""
 
 from __future__ import annotations
 
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import block, of, remarks
+from tests.tools.lint.helpers import block, marked_in_block, remarks
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import flat_goal
 
@@ -25,13 +25,13 @@ from tltlc.tools.lint.rules import flat_goal
         (("reach alive and full",), ["alive", "full"]),
     ],
 )
-def test_goals_without_a_slope(clauses: tuple[str, ...], expected: list[str]) -> None:
+def test_flat_goals_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
     before = "import stealth\nsignal a: bool signal b: bool\npredicate full in [0, 1] = max(0, 2 * health - 1)\n"
-    assert of("TLT0417", *clauses, before=before) == expected
+    assert marked_in_block("TLT0417", *clauses, before=before) == expected
 
 
 @given(PREDICATES)
-def test_the_value_is_0_where_the_atom_does_not_hold_and_it_may_not_hold(predicate: Predicate) -> None:
-    _, told = remarks(flat_goal.check, block("reach p", before=predicate.declared))
-    for _ in told:
+def test_a_reported_atom_is_0_wherever_it_is_false(predicate: Predicate) -> None:
+    _, reported = remarks(flat_goal.check, block("reach p", before=predicate.declared))
+    for _ in reported:
         assert min(predicate.values()) == 0

@@ -1,4 +1,4 @@
-"""TLT0433: of `a until b` at some step, or at no step, b alone is asked for."""
+"""TLT0433: `a until b` as a goal or below `avoid`, where only `b` matters."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from tltlc.tools.lint.rules import idle_until
         ("avoid (a or c) until b", "avoid b"),
     ],
 )
-def test_the_first_half_has_no_say(clause: str, same: str) -> None:
+def test_an_until_whose_first_operand_is_irrelevant_is_reported(clause: str, same: str) -> None:
     assert "TLT0433" in codes(spec(clause))
-    written, simple = (compile_text(spec(each))[0] for each in (clause, same))
-    assert are_equivalent(written, simple)
+    original, simplified = (compile_text(spec(source_clause))[0] for source_clause in (clause, same))
+    assert are_equivalent(original, simplified)
 
 
 @pytest.mark.parametrize(
     "clause",
     ["reach (a until b) then c", "require a until b", "reach a and (c until b)", "reach a weak_until b", "avoid b"],
 )
-def test_where_it_has_one(clause: str) -> None:
+def test_an_until_whose_first_operand_matters_is_not_reported(clause: str) -> None:
     assert "TLT0433" not in codes(spec(clause))
 
 
@@ -43,11 +43,11 @@ def test_where_it_has_one(clause: str) -> None:
         ("reach a until b", "require a until b"),
     ],
 )
-def test_what_is_offered_has_a_goal_where_the_clause_has_one(clause: str, offered: str) -> None:
+def test_the_suggestion_is_judged_at_the_same_time(clause: str, offered: str) -> None:
     (remark,) = remarks(idle_until.check, spec(clause))[1]
     assert remark.help == f"say `{offered}`"
-    written, other = (compile_text(spec(each))[0] for each in (clause, offered))
-    assert written.judge == other.judge
+    original, suggested = (compile_text(spec(source_clause))[0] for source_clause in (clause, offered))
+    assert original.judge == suggested.judge
 
 
 def spec(clause: str) -> str:
@@ -55,10 +55,10 @@ def spec(clause: str) -> str:
 
 
 @given(specs("reach {} until {}", "avoid {} until {}", "reach {} then ({} until {})", worlds=[FREE], most=1))
-def test_what_is_said_of_the_clause_is_the_same(drawn: tuple[World, str]) -> None:
+def test_the_simplified_clause_is_equivalent(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(idle_until.check, text)
-    for remark in told:
+    spec, reported = remarks(idle_until.check, text)
+    for remark in reported:
         span = remark.labels[0].span
         _, goal = remark.labels[0].message.split("`")[1].split(" ", 1)
         same, _ = remarks(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")

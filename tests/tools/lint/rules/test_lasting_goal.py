@@ -1,4 +1,4 @@
-"""TLT0434: a bounded `always` is no goal that lasts."""
+"""TLT0434: a bounded `always` as a goal can be met in a single step."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def spec(*clauses: str) -> str:
         ("reach (c and b) or (always for 3 s a)", "always for 3 s a"),
     ],
 )
-def test_one_step_meets_the_goal(clause: str, expected: str) -> None:
+def test_a_reported_goal_is_met_in_one_step(clause: str, expected: str) -> None:
     assert marked(spec(clause), "TLT0434") == [expected]
     (fspa,) = compile_text(spec(clause))
     monitor = Monitor(fspa)
@@ -39,7 +39,7 @@ def test_one_step_meets_the_goal(clause: str, expected: str) -> None:
 
 
 @pytest.mark.parametrize("clause", ["reach b then (always for 3 s a)", "require b then c then (always for 3 s a)"])
-def test_of_a_chain_it_is_the_last_goal(clause: str) -> None:
+def test_the_last_goal_of_a_chain_is_reported(clause: str) -> None:
     assert marked(spec(clause), "TLT0434") == ["always for 3 s a"]
 
 
@@ -57,11 +57,11 @@ def test_of_a_chain_it_is_the_last_goal(clause: str) -> None:
         ("semantics infinite", "reach (always for 3 s a)"),
     ],
 )
-def test_where_more_is_asked_for_or_less_is_said(clauses: tuple[str, ...]) -> None:
+def test_specs_that_take_the_time_or_ask_for_less_are_not_reported(clauses: tuple[str, ...]) -> None:
     assert "TLT0434" not in codes(spec(*clauses))
 
 
-def test_the_way_out_without_a_signal_takes_the_time() -> None:
+def test_the_suggested_next_makes_the_goal_take_the_time() -> None:
     (fspa,) = compile_text(spec("reach (always for 3 s a) and (next after 29 steps true)"))
     monitor = Monitor(fspa)
     assert [monitor.step({"a": True}).done for _ in range(30)] == [False] * 29 + [True]
@@ -71,8 +71,8 @@ LASTING = "(always for 3 steps {} and {})"
 
 
 @given(specs(f"reach {LASTING}", f"reach {LASTING} and {{}}", f"require F ({LASTING} | {{}})", worlds=[FREE], most=1))
-def test_some_play_of_one_step_meets_it(drawn: tuple[World, str]) -> None:
+def test_some_trace_of_one_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(lasting_goal.check, text)
-    for _ in told:
+    spec, reported = remarks(lasting_goal.check, text)
+    for _ in reported:
         assert world.traces.satisfying(spec.spec.formula)[0]

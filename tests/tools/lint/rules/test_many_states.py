@@ -1,10 +1,10 @@
-"""TLT0423: automata that are far larger than their specs read."""
+"""TLT0423: automata that are far larger than their specs suggest."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.tools.lint.helpers import block, found, of
+from tests.tools.lint.helpers import block, findings_in, marked_in_block
 
 
 @pytest.mark.parametrize(
@@ -17,17 +17,17 @@ from tests.tools.lint.helpers import block, found, of
         (("reach a", "reach b", "reach c"), []),
     ],
 )
-def test_the_longest_bound_is_to_blame(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert of("TLT0423", *clauses) == expected
+def test_the_longest_bound_is_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
+    assert marked_in_block("TLT0423", *clauses) == expected
 
 
-def test_what_is_as_long_as_its_automaton_is_no_surprise() -> None:
-    assert of("TLT0423", f"reach {' then '.join('abc' * 40)}") == []
+def test_a_long_spec_with_a_large_automaton_is_not_reported() -> None:
+    assert marked_in_block("TLT0423", f"reach {' then '.join('abc' * 40)}") == []
 
 
-def test_without_a_bound_the_parts_multiply() -> None:
+def test_without_a_bound_the_goals_are_reported() -> None:
     before = "".join(f"signal {name}: bool\n" for name in "abcdefg")
     text = block(*(f"reach {name}" for name in "abcdefg"), before=before)
-    (remark,) = (each.diagnostic for each in found(text) if each.diagnostic.code == "TLT0423")
+    (remark,) = (finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0423")
     assert [label.source.slice(label.span) for label in remark.labels] == ["reach a", "reach b", "reach c", "reach d"]
     assert "exclusive" in (remark.help or "")

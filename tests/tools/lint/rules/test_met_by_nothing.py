@@ -1,4 +1,4 @@
-"""TLT0412: goals that are met by what does not hold."""
+"""TLT0412: goals that a false condition meets."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import RANGES, block, codes, found, marked, of, remarks
+from tests.tools.lint.helpers import RANGES, block, codes, findings_in, marked, marked_in_block, remarks
 from tests.tools.lint.strategies import World, specs
 from tests.tools.lint.traces import both
 from tltlc.logic.formula import TRUE, Formula, atom
@@ -46,12 +46,12 @@ EXAMPLES = Path(__file__).parents[4] / "examples"
         ("require not F (a -> b)", []),
         ("reach a iff b", []),
         ("reach (a iff b) or c", ["(a iff b) or c"]),
-        # Without c both a and b are to hold.
+        # If `c` is false, both `a` and `b` must hold.
         ("reach (a iff b) and (b or c)", []),
     ],
 )
-def test_goals_that_are_implications(clause: str, expected: list[str]) -> None:
-    assert of("TLT0412", clause) == expected
+def test_goals_that_a_false_condition_meets_are_reported(clause: str, expected: list[str]) -> None:
+    assert marked_in_block("TLT0412", clause) == expected
 
 
 @pytest.mark.parametrize(
@@ -67,14 +67,14 @@ def test_goals_that_are_implications(clause: str, expected: list[str]) -> None:
         (("reach F a implies b", "keep F a"), False),
     ],
 )
-def test_what_the_other_clauses_ask_counts(clauses: tuple[str, ...], is_found: bool) -> None:
-    assert bool(of("TLT0412", *clauses)) == is_found
+def test_the_other_clauses_are_taken_into_account(clauses: tuple[str, ...], is_found: bool) -> None:
+    assert bool(marked_in_block("TLT0412", *clauses)) == is_found
 
 
-def test_a_condition_that_is_kept_is_not_to_blame() -> None:
+def test_a_condition_that_is_kept_is_not_reported() -> None:
     text = block("reach a implies (b or not c)", "keep a")
-    (said,) = (each.diagnostic for each in found(text) if each.diagnostic.code == "TLT0412")
-    assert [label.message for label in said.labels] == ["can be met without `b`"]
+    (diagnostic,) = (finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0412")
+    assert [label.message for label in diagnostic.labels] == ["can be met without `b`"]
 
 
 @pytest.mark.parametrize(
@@ -86,8 +86,8 @@ def test_a_condition_that_is_kept_is_not_to_blame() -> None:
         ("reach x > 5 implies y > 3", ["x > 5 implies y > 3"]),
     ],
 )
-def test_what_comparisons_say_of_each_other_counts(clause: str, expected: list[str]) -> None:
-    assert of("TLT0412", clause, before=RANGES) == expected
+def test_relations_between_comparisons_are_taken_into_account(clause: str, expected: list[str]) -> None:
+    assert marked_in_block("TLT0412", clause, before=RANGES) == expected
 
 
 def test_the_papers_formula_as_it_is_printed() -> None:
@@ -97,18 +97,19 @@ def test_the_papers_formula_as_it_is_printed() -> None:
 
 
 @given(specs("reach {}", "reach {} implies {}", "reach {} then ({} or {})", "keep {}", "avoid {}"))
-def test_some_trace_meets_the_goal_while_what_it_awaits_does_not_hold(drawn: tuple[World, str]) -> None:
+def test_some_trace_meets_a_reported_goal_while_the_atoms_are_false(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(met_by_nothing.check, text)
+    spec, reported = remarks(met_by_nothing.check, text)
     satisfying = world.traces.satisfying(spec.spec.formula)
-    for remark in told:
-        around = [goal for goal in goals(spec) if goal.tree.span.covers(remark.labels[0].span)]
-        met = [world.traces.ever(goal.formula() or TRUE, without=list(failing(remark, spec))) for goal in around]
+    for remark in reported:
+        enclosing = [goal for goal in goals(spec) if goal.tree.span.covers(remark.labels[0].span)]
+        met = [world.traces.ever(goal.formula() or TRUE, without=list(failing(remark, spec))) for goal in enclosing]
         assert any(any(both(traces, satisfying)) for traces in met)
 
 
 def failing(remark: Remark, spec: SpecView) -> Iterator[Formula]:
-    """What a remark says need not hold: the conditions of implications, or atoms that it lists."""
+    """Yield the formulas that may be false according to a remark: conditions of implications, or
+    atoms that it lists."""
     trees = {part.tree.span: part.formula() for clause in spec.formulas() for part in clause.parts()}
     for label in remark.labels:
         formula = trees[label.span]

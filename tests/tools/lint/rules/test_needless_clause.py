@@ -7,7 +7,7 @@ from hypothesis import given
 
 import tltlc
 from tests.calls import calls
-from tests.tools.lint.helpers import APART, PLACES, RANGES, SIGNALS, found, of, remarks
+from tests.tools.lint.helpers import APART, PLACES, RANGES, SIGNALS, findings_in, marked_in_block, remarks
 from tests.tools.lint.strategies import World, specs
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
@@ -34,24 +34,24 @@ from tltlc.tools.lint.run import view_of
         (("reach a", "avoid x + y > 13 and x < 4"), []),
         (("reach a", "avoid x > 3 and x < 5"), []),
         (("reach a", "keep b or not c"), []),
-        # Of what the compiler says of the whole spec nothing more is said.
+        # The compiler already warns that the whole spec is always satisfied.
         (("reach b or not b",), []),
     ],
 )
-def test_clauses_that_nothing_breaks(clauses: tuple[str, ...], expected: list[str]) -> None:
-    assert of("TLT0430", *clauses, before=RANGES) == expected
+def test_clauses_that_no_trace_breaks_are_reported(clauses: tuple[str, ...], expected: list[str]) -> None:
+    assert marked_in_block("TLT0430", *clauses, before=RANGES) == expected
 
 
-def test_what_is_exclusive_cannot_be_broken() -> None:
-    assert of("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=APART) == ["avoid at(x) and at(y)"]
-    assert of("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=PLACES) == []
+def test_a_clause_that_exclusive_atoms_satisfy_is_reported() -> None:
+    assert marked_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=APART) == ["avoid at(x) and at(y)"]
+    assert marked_in_block("TLT0430", "reach at(z)", "avoid at(x) and at(y)", before=PLACES) == []
 
 
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
-def test_no_trace_breaks_it(drawn: tuple[World, str]) -> None:
+def test_no_trace_breaks_a_reported_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(needless_clause.check, text)
-    for remark in told:
+    spec, reported = remarks(needless_clause.check, text)
+    for remark in reported:
         (formula,) = (part.formula for part in spec.spec.parts if part.span == remark.labels[0].span)
         assert world.traces.satisfying(formula) == world.traces.every
 
@@ -67,17 +67,20 @@ def test_no_trace_breaks_it(drawn: tuple[World, str]) -> None:
         (("avoid a", "reach (b or not b) require F (c or not c)"), True),
     ],
 )
-def test_what_makes_a_clause_a_goal_is_said_where_it_may_be_left_out(clauses: tuple[str, ...], judged: bool) -> None:
+def test_the_help_names_judge_if_removing_the_clause_would_change_it(clauses: tuple[str, ...], judged: bool) -> None:
     *_, needless = clauses
     text = f"{SIGNALS}spec s {{ limit 9 steps {' '.join(clauses)} }}"
-    told = [each.diagnostic for each in found(text) if each.diagnostic.code == "TLT0430"]
-    ours, theirs = (tltlc.compile_text(each)[0] for each in (text, text.replace(needless, "")))
-    assert (ours.judge != theirs.judge) == judged
-    # Of several the last says it, without which the spec would have no goal.
-    assert ["`judge at goal`" in (each.help or "") for each in told] == [*[False] * (len(told) - 1), judged]
+    diagnostics = [finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0430"]
+    original, changed = (tltlc.compile_text(source)[0] for source in (text, text.replace(needless, "")))
+    assert (original.judge != changed.judge) == judged
+    # Of several clauses, only the last has the hint: removing it too would leave the spec without a goal.
+    assert ["`judge at goal`" in (diagnostic.help or "") for diagnostic in diagnostics] == [
+        *[False] * (len(diagnostics) - 1),
+        judged,
+    ]
 
 
-def test_the_work_grows_with_the_clauses() -> None:
+def test_the_work_is_linear_in_the_clauses() -> None:
     def work(clauses: int) -> int:
         text = f"{SIGNALS}spec s {{ reach b\n{'    keep a or not a' * clauses}\n}}"
         view = view_of(SourceFile("a.tltl", text), CompileOptions())

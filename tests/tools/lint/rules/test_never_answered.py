@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.tools.lint.helpers import APART, block, codes, of, remarks
+from tests.tools.lint.helpers import APART, block, codes, marked_in_block, remarks
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
 from tltlc.tools.lint.rules import never_answered
@@ -27,28 +27,28 @@ from tltlc.tools.lint.rules import never_answered
         ("keep at(z) iff (at(x) implies at(y))", []),
     ],
 )
-def test_implications_that_are_never_answered(clause: str, expected: list[str]) -> None:
-    assert of("TLT0432", "reach at(z)", clause, before=APART) == expected
+def test_implications_of_exclusive_atoms_are_reported(clause: str, expected: list[str]) -> None:
+    assert marked_in_block("TLT0432", "reach at(z)", clause, before=APART) == expected
 
 
-def test_an_implication_is_told_beside_the_contradiction_that_it_makes() -> None:
+def test_an_implication_is_reported_beside_the_contradiction_that_it_causes() -> None:
     text = block("reach at(x)", "reach at(z)", "require always (at(x) implies at(y))", before=APART)
     assert {code for code in codes(text) if code != "TLT0415"} == {"TLT0410", "TLT0432"}
 
 
-def test_a_clause_that_can_never_be_met_forbids_more_than_one_side() -> None:
+def test_a_clause_that_is_impossible_is_reported_as_a_contradiction_only() -> None:
     clause = "keep (!at(x) -> at(x)) and at(y)"
-    assert of("TLT0432", clause, before=APART) == []
-    assert of("TLT0410", clause, before=APART) != []
-    assert of("TLT0432", "keep (!at(x) -> at(x)) and not at(y)", before=APART) == ["!at(x) -> at(x)"]
+    assert marked_in_block("TLT0432", clause, before=APART) == []
+    assert marked_in_block("TLT0410", clause, before=APART) != []
+    assert marked_in_block("TLT0432", "keep (!at(x) -> at(x)) and not at(y)", before=APART) == ["!at(x) -> at(x)"]
 
 
 @given(specs("keep {} implies {}", "require G ({} -> {})", "require {} implies {}", most=1))
-def test_no_step_has_both_sides_and_some_step_has_each(drawn: tuple[World, str]) -> None:
+def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(never_answered.check, text)
-    for remark in told:
-        trees = {each.tree.span: each for _, clause in spec.clauses("keep", "require") for each in clause.parts()}
+    spec, reported = remarks(never_answered.check, text)
+    for remark in reported:
+        trees = {part.tree.span: part for _, clause in spec.clauses("keep", "require") for part in clause.parts()}
         formula = trees[remark.labels[0].span].formula()
         assert formula and not any(world.traces.ever(and_(*formula.args)))
         assert all(any(world.traces.ever(side)) for side in formula.args)

@@ -1,4 +1,4 @@
-"""TLT0424: what speaks of the last step alone."""
+"""TLT0424: formulas that constrain only the last step."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tltlc
-from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, found, marked, of, remarks
+from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, findings_in, marked, marked_in_block, remarks
 from tests.tools.lint.strategies import FREE, SMALL, World, specs
 from tltlc.automaton.compare import are_equivalent
 from tltlc.automaton.finite.build import build
@@ -55,12 +55,12 @@ CLAUSES = (
         ("reach a", []),
     ],
 )
-def test_what_speaks_of_the_last_step(clause: str, expected: list[str]) -> None:
-    assert of("TLT0424", clause) == expected
-    assert of("TLT0424", clause, "semantics infinite") == []
+def test_formulas_about_the_last_step_are_reported(clause: str, expected: list[str]) -> None:
+    assert marked_in_block("TLT0424", clause) == expected
+    assert marked_in_block("TLT0424", clause, "semantics infinite") == []
 
 
-def test_a_good_clause_is_not_blamed_for_one_that_speaks_of_the_last_step() -> None:
+def test_another_clause_is_not_blamed_for_one_about_the_last_step() -> None:
     before = "signal a: bool signal b: bool\n"
     assert codes(block("reach a", "keep b until a", before=before)) == ["TLT0424"]
     assert codes(block("reach a", "require b until a", before=before)) == ["TLT0413"]
@@ -68,11 +68,11 @@ def test_a_good_clause_is_not_blamed_for_one_that_speaks_of_the_last_step() -> N
 
 @settings(deadline=None)
 @given(st.sampled_from(["keep", "avoid", "reach", "require G", "require F"]), SMALL)
-def test_what_speaks_of_the_last_step_can_be_said_of_it_alone(clause: str, formula: str) -> None:
-    """Where the rule speaks of a whole clause, the automaton looks at the last sample of a trace and at no other."""
+def test_a_reported_clause_depends_on_the_last_step_only(clause: str, formula: str) -> None:
+    """If the rule reports a whole clause, its automaton depends on the last sample of a trace only."""
     text = block(f"{clause} ({formula})")
     (spec,) = compile_source(SourceFile("example.tltl", text)).program.specs
-    labels = [each.diagnostic.labels[0] for each in found(text) if each.diagnostic.code == "TLT0424"]
+    labels = [finding.diagnostic.labels[0] for finding in findings_in(text) if finding.diagnostic.code == "TLT0424"]
     start = text.index(clause)
     for label in labels:
         if label.span.start != start or " U " in formula:
@@ -83,9 +83,11 @@ def test_what_speaks_of_the_last_step_can_be_said_of_it_alone(clause: str, formu
         assert are_equivalent(build(spec), same)
 
 
-def test_what_is_said_of_all_entities_is_said_once() -> None:
-    assert of("TLT0424", "require all e in (x, y): G F at(e)", before=PLACES) == ["G F"]
-    assert of("TLT0412", "require all e in (x, y): F (at(z) -> at(e))", before=PLACES) == ["at(z) -> at(e)"]
+def test_a_quantified_formula_is_reported_once() -> None:
+    assert marked_in_block("TLT0424", "require all e in (x, y): G F at(e)", before=PLACES) == ["G F"]
+    assert marked_in_block("TLT0412", "require all e in (x, y): F (at(z) -> at(e))", before=PLACES) == [
+        "at(z) -> at(e)"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -93,18 +95,18 @@ def test_what_is_said_of_all_entities_is_said_once() -> None:
     [
         ("reach always a", "; once is `reach a`"),
         ("reach always (a and (b -> c))", "; once is `reach a and (b -> c)`"),
-        # As a goal it would be met by a not holding.
+        # As a goal, it would be met as soon as `a` is false.
         ("reach always (a implies b)", ""),
         ("keep F ((a -> b) and (b -> c))", ""),
         ("avoid G (a -> b)", "; once is `reach not (a -> b)`"),
     ],
 )
-def test_what_is_named_is_no_goal_that_is_met_by_nothing(clause: str, goal: str) -> None:
-    (said,) = (each for each in found(block(clause)) if each.diagnostic.code == "TLT0424")
-    assert (said.diagnostic.help or "").partition(" say `semantics infinite`")[2] == goal
+def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goal: str) -> None:
+    (finding,) = (candidate for candidate in findings_in(block(clause)) if candidate.diagnostic.code == "TLT0424")
+    assert (finding.diagnostic.help or "").partition(" say `semantics infinite`")[2] == goal
 
 
-def test_lets_are_looked_at_where_all_specs_are_finite() -> None:
+def test_lets_are_checked_if_all_specs_are_finite() -> None:
     text = "signal a: bool let often = G F a spec s = often"
     assert marked(text, "TLT0424") == ["G F"]
     assert codes(f"{text} spec t {{ semantics infinite limit 9 steps judge at limit require often }}") == []
@@ -112,20 +114,20 @@ def test_lets_are_looked_at_where_all_specs_are_finite() -> None:
 
 
 @given(specs(*CLAUSES, worlds=[FREE], most=1))
-def test_a_part_that_speaks_of_the_last_step_can_be_said_of_it_alone(drawn: tuple[World, str]) -> None:
-    """In place of the part, what it asks of the last step makes the same spec."""
+def test_a_reported_part_depends_on_the_last_step_only(drawn: tuple[World, str]) -> None:
+    """Replacing the part by its condition on the last step gives an equivalent spec."""
     world, text = drawn
-    spec, told = remarks(recurrence.check, text)
-    for part in last_steps(spec, told):
+    spec, reported = remarks(recurrence.check, text)
+    for part in last_steps(spec, reported):
         awaited = text[part.operand.span.start : part.operand.span.end]
         alone = f"{text[: part.span.start]}(F ((N false) & ({awaited}))){text[part.span.end :]}"
         same, _ = remarks(recurrence.check, alone)
         assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)
 
 
-def last_steps(spec: SpecView, told: list[Remark]) -> Iterator[Unary]:
-    """The `eventually` and `always` whose words remarks end with."""
-    ends = {remark.labels[0].span.end for remark in told}
+def last_steps(spec: SpecView, reported: list[Remark]) -> Iterator[Unary]:
+    """Yield the `eventually` and `always` at whose operator the label of a remark ends."""
+    ends = {remark.labels[0].span.end for remark in reported}
     for formula in spec.formulas():
         for part in formula.parts():
             if isinstance(part.tree, Unary) and part.tree.op in ("F", "G") and part.tree.op_span.end in ends:

@@ -20,13 +20,13 @@ from tltlc.tools.lint.rules import short_limit
         ("limit 3 steps keep a", False),
     ],
 )
-def test_limits_that_are_too_short(clauses: str, is_found: bool) -> None:
+def test_limits_that_are_too_short_are_reported(clauses: str, is_found: bool) -> None:
     assert ("TLT0428" in codes(f"{SIGNALS}spec s {{ {clauses} }}")) == is_found
 
 
 @given(st.integers(1, 4), specs("reach {} then {}", "require X {}", "require {} U ({} then {})"))
-def test_no_trace_within_the_limit_satisfies_the_spec(limit: int, drawn: tuple[World, str]) -> None:
+def test_no_trace_within_the_limit_satisfies_a_reported_spec(limit: int, drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, told = remarks(short_limit.check, text.replace("limit 9 steps", f"limit {limit} steps"))
-    for _ in told:
+    spec, reported = remarks(short_limit.check, text.replace("limit 9 steps", f"limit {limit} steps"))
+    for _ in reported:
         assert not any(world.traces.satisfying(spec.spec.formula)[:limit])

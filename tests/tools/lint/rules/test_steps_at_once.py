@@ -1,4 +1,4 @@
-"""TLT0415: goals at several places at one step."""
+"""TLT0415: goals at several places that one step can meet."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 
 import tltlc
-from tests.tools.lint.helpers import APART, PLACES, block, found, of, remarks
+from tests.tools.lint.helpers import APART, PLACES, block, findings_in, marked_in_block, remarks
 from tests.tools.lint.strategies import World, specs
 from tests.tools.lint.traces import Traces
 from tltlc.tools.lint.rules import steps_at_once
@@ -22,14 +22,14 @@ from tltlc.tools.lint.rules import steps_at_once
         (("reach at(x) then at(y)",), PLACES, False),
         (("reach at(x) then at(y)", "reach at(z)"), APART, True),
         (("reach at(x) or at(y)",), PLACES, False),
-        # Exclusive, these would be no farther from their goals.
+        # Exclusive atoms would not make the distance to the goal longer here.
         (("keep at(x)", "require N eventually at(y)"), PLACES, False),
         (("avoid next not at(x)", "require N at(x) until at(z)"), PLACES, False),
         (("reach at(x)", "reach d(y) < 3 m"), PLACES, False),
     ],
 )
-def test_goals_that_may_be_met_at_one_step(clauses: tuple[str, ...], before: str, is_found: bool) -> None:
-    assert ("s" in of("TLT0415", *clauses, before=before)) == is_found
+def test_goals_that_one_step_may_meet_are_reported(clauses: tuple[str, ...], before: str, is_found: bool) -> None:
+    assert ("s" in marked_in_block("TLT0415", *clauses, before=before)) == is_found
 
 
 @pytest.mark.parametrize(
@@ -42,11 +42,11 @@ def test_goals_that_may_be_met_at_one_step(clauses: tuple[str, ...], before: str
         ("reach at(x)", "reach at(y)", "keep at(x)"),
     ],
 )
-def test_what_is_kept_is_no_goal_beside_another(clauses: tuple[str, ...]) -> None:
-    assert of("TLT0415", *clauses, before=PLACES) == []
+def test_a_condition_that_is_kept_is_not_a_second_goal(clauses: tuple[str, ...]) -> None:
+    assert marked_in_block("TLT0415", *clauses, before=PLACES) == []
 
 
-def test_the_advice_to_exclude_never_makes_a_spec_impossible() -> None:
+def test_the_suggested_exclusive_never_makes_a_spec_impossible() -> None:
     for clauses in (
         ("reach at(x) and at(y)",),
         ("reach all e in (x, y): at(e)",),
@@ -54,7 +54,11 @@ def test_the_advice_to_exclude_never_makes_a_spec_impossible() -> None:
         ("reach at(x)", "reach at(y)", "reach at(x) and at(y)"),
         ("reach at(x) and at(y) and at(z)",),
     ):
-        helps = [e.diagnostic.help for e in found(block(*clauses, before=PLACES)) if e.diagnostic.code == "TLT0415"]
+        helps = [
+            finding.diagnostic.help
+            for finding in findings_in(block(*clauses, before=PLACES))
+            if finding.diagnostic.code == "TLT0415"
+        ]
         assert [text for text in helps if "exclusive" in (text or "")] == []
         assert [text for text in helps if " then " in (text or "")]
 
@@ -62,29 +66,30 @@ def test_the_advice_to_exclude_never_makes_a_spec_impossible() -> None:
 @pytest.mark.parametrize(
     "clauses",
     [
-        # Between steps that are longer, the way from the start and the longest one stay as they are.
+        # Exclusive atoms would lengthen some steps in between, but neither the shortest way from the start
+        # nor the longest distance.
         ("reach at(x) then at(y)", "require G (at(z) -> F at(x))"),
         ("reach at(x)", "require X F at(z)"),
         ("reach at(x) then at(z)", "reach at(x) or at(y)"),
     ],
 )
-def test_nothing_is_said_where_exclusive_would_lengthen_nothing(clauses: tuple[str, ...]) -> None:
-    assert of("TLT0415", *clauses, before=PLACES) == []
+def test_goals_are_not_reported_if_exclusive_would_lengthen_nothing(clauses: tuple[str, ...]) -> None:
+    assert marked_in_block("TLT0415", *clauses, before=PLACES) == []
 
 
-def test_atoms_of_different_predicates_are_not_said_to_exclude_each_other() -> None:
+def test_atoms_of_different_predicates_are_not_declared_exclusive() -> None:
     before = PLACES + "signal seen(e): bool\n"
     helps = [
-        each.diagnostic.help
-        for each in found(block("reach at(x)", "reach at(y)", "reach seen(x)", "reach seen(y)", before=before))
-        if each.diagnostic.code == "TLT0415"
+        finding.diagnostic.help
+        for finding in findings_in(block("reach at(x)", "reach at(y)", "reach seen(x)", "reach seen(y)", before=before))
+        if finding.diagnostic.code == "TLT0415"
     ]
-    asked = [re.search("`exclusive (.*)`", text or "") for text in helps]
-    assert [match and match[1] for match in asked] == ["at(x), at(y)", "seen(x), seen(y)"]
+    matches = [re.search("`exclusive (.*)`", text or "") for text in helps]
+    assert [match and match[1] for match in matches] == ["at(x), at(y)", "seen(x), seen(y)"]
 
 
-def test_exclusive_atoms_make_the_way_longer() -> None:
-    """What the rule says of progress: with the declaration that it asks for, the spec has more steps."""
+def test_exclusive_atoms_make_the_spec_longer() -> None:
+    """As the rule says: with the suggested declaration, the spec has more steps of progress."""
     clauses = ("reach at(x)", "reach at(y)")
     (joint,) = tltlc.compile_text(block(*clauses, before=PLACES))
     (apart,) = tltlc.compile_text(block(*clauses, before=APART))
@@ -95,10 +100,10 @@ NEAR = World("entity x, y, z\nsignal at(e): bool\nsignal b: bool\n", ("at(x)", "
 
 
 @given(specs("reach {}", "reach at(x)", "reach at(y) then {}", "require {}", "keep {}", worlds=[NEAR]))
-def test_with_what_it_asks_for_the_way_is_longer_and_there_still_is_one(drawn: tuple[World, str]) -> None:
+def test_the_suggested_exclusive_lengthens_the_spec_and_keeps_it_possible(drawn: tuple[World, str]) -> None:
     _, text = drawn
-    spec, told = remarks(steps_at_once.check, text)
-    for remark in told:
+    spec, reported = remarks(steps_at_once.check, text)
+    for remark in reported:
         excluded = re.search("`(exclusive .*)`", remark.help)
         if excluded:
             (apart,) = tltlc.compile_text(f"{excluded[1]}\n{text}")

@@ -1,4 +1,4 @@
-"""TLT0421: declarations that nothing uses."""
+"""TLT0421: declarations that are not used."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from tests.tools.lint.helpers import block, codes, marked
         "signal x: length in [0 m, 9 m]\nparam most: length in [1 m, 4 m] = 3 m\nspec s = F x > most",
     ],
 )
-def test_what_is_used(text: str) -> None:
+def test_used_declarations_are_not_reported(text: str) -> None:
     assert not {"TLT0421", "TLT0422"}.intersection(codes(text))
 
 
-def test_what_is_used_by_what_is_not_used_goes_with_the_next_look() -> None:
+def test_a_declaration_used_only_by_an_unused_one_is_reported_in_the_next_run() -> None:
     text = "signal a: bool\nsignal b: bool\nlet c = F b\nspec s = F a\n"
     assert marked(text, "TLT0421") == ["c"]
 
 
-def test_a_level_or_a_tag_of_the_same_name_is_no_use() -> None:
+def test_a_level_or_tag_of_the_same_name_is_no_use() -> None:
     text = block("level vault", "tag quick", "reach a", before="signal vault: bool signal quick: bool signal a: bool\n")
     assert marked(text, "TLT0421") == ["vault", "quick"]

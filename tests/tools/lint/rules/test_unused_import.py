@@ -1,4 +1,4 @@
-"""TLT0422: imports of which nothing is used."""
+"""TLT0422: imports that are not used."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tltlc.tools.lint.rules.unused_import import RULE
 from tltlc.tools.lint.run import view_of
 
 
-def test_an_import_may_count_without_being_named(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_an_import_of_a_clock_counts_as_used(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rules.tltl").write_text("clock 10 Hz\n")
     (tmp_path / "idle.tltl").write_text("signal z: bool\n")
     assert codes("import rules\nimport idle\nsignal a: bool\nspec s { limit 3 s reach a }") == ["TLT0422"]
 
 
-def test_an_import_counts_where_it_narrows_what_another_file_declares(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_an_import_that_narrows_a_signal_counts_as_used(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "wide.tltl").write_text("signal x: number\npredicate big = clamp((x - 50) / 100, -1, 1)\n")
     (tmp_path / "narrow.tltl").write_text("signal x in [0, 60]\nlet other = x > 5\n")
@@ -27,7 +27,7 @@ def test_an_import_counts_where_it_narrows_what_another_file_declares(tmp_path, 
     assert codes(text.format("another")) == ["TLT0422"]
 
 
-def test_each_file_behind_an_import_is_looked_at_once(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_each_imported_file_is_visited_once(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     text = "import m0\nsignal a: bool\nspec s { limit 3 steps reach a }"
 
@@ -41,7 +41,7 @@ def test_each_file_behind_an_import_is_looked_at_once(tmp_path, monkeypatch) -> 
     assert work(20) < 3 * work(10)
 
 
-def test_many_imports_of_one_file(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_the_work_is_linear_in_the_imports_of_one_file(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "many.tltl").write_text(f"entity {', '.join(f'e{i}' for i in range(100))}\nsignal at(x): bool\n")
 
@@ -49,14 +49,14 @@ def test_many_imports_of_one_file(tmp_path, monkeypatch) -> None:  # type: ignor
         lines = "".join(f"import many as m{i}\n" for i in range(imports))
         text = f"{lines}spec s {{ limit 3 steps reach m7.at(m7.e0) }}"
         view = view_of(SourceFile("example.tltl", text), CompileOptions())
-        found = list(RULE.check(view))
-        assert len(found) == imports - 1
+        reported = list(RULE.check(view))
+        assert len(reported) == imports - 1
         return calls(lambda: list(RULE.check(view)))
 
     assert work(200) < 3 * work(100)
 
 
-def test_names_behind_as_with_dots(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_import_aliases_may_contain_dots(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rules.tltl").write_text("signal z: bool\nsignal y: bool\n")
     spec = "spec s { limit 3 steps reach a.b.z }"
