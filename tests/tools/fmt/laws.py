@@ -1,4 +1,5 @@
-"""What holds of the layout of any text, and trees without what the layout may change."""
+"""Properties of the layout that hold for any text; and trees without the parts that the layout may
+change."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ STEPS = (None, "step", "steps")
 
 
 def check(text: str, style: str) -> str:
-    """Assert every law of a text without errors, and return it formatted."""
+    """Assert all properties for a text without errors, and return the formatted text."""
     before = read(text)
     formatted = format_text(text, style)
     after = read(formatted)
@@ -26,7 +27,7 @@ def check(text: str, style: str) -> str:
     assert lines[-1] == ""
     assert not formatted or (lines[0] and lines[-2])
     assert all(line == line.rstrip() for line in lines)
-    # What is longer than a line is a comment, or holds a word that is.
+    # A line is too long only if it has a comment or a very long word.
     if not any(places for _, places in allowed.spoken_of(before)):
         assert all(len(line) <= 100 or "//" in line or len(max(line.split(), key=len)) > 40 for line in lines)
     assert "\n\n\n" not in formatted
@@ -35,19 +36,19 @@ def check(text: str, style: str) -> str:
 
 
 def read(text: str) -> tree.Module:
-    module, found = parse(SourceFile("a.tltl", text))
-    assert found == ()
+    module, diagnostics = parse(SourceFile("a.tltl", text))
+    assert diagnostics == ()
     return module
 
 
 def spoken_of(module: tree.Module) -> list[set[int] | None]:
-    """The clauses and declarations that each comment speaks of which allows something, those within others left out.
+    """For each allow comment, the clauses and declarations that it applies to, without nested ones.
 
-    They are known by their numbers; None is the whole file.
+    They are given by their numbers; None stands for the whole file.
     """
     numbers = {span: number for number, span in enumerate(allowed.statements(module))}
-    blocks = [each.span for each in module.declarations if isinstance(each, tree.SpecDecl)]
-    found: list[set[int] | None] = []
+    blocks = [declaration.span for declaration in module.declarations if isinstance(declaration, tree.SpecDecl)]
+    targets: list[set[int] | None] = []
     for _, places in allowed.spoken_of(module):
         whole = [place for place in places or () if place in blocks]
         outer = [
@@ -55,12 +56,12 @@ def spoken_of(module: tree.Module) -> list[set[int] | None]:
             for place in places or ()
             if place in whole or not any(block.start <= place.start < block.end for block in whole)
         ]
-        found.append(None if places is None else {numbers[place] for place in outer})
-    return found
+        targets.append(None if places is None else {numbers[place] for place in outer})
+    return targets
 
 
 def shape(node: object) -> object:
-    """A tree without spans, where a bound is the samples that it covers."""
+    """A tree without spans, in which a bound is replaced by the samples that it covers."""
     if isinstance(node, tuple):
         return tuple(shape(item) for item in node)
     if not hasattr(node, "__match_args__"):

@@ -1,4 +1,4 @@
-"""Random texts of the language, word by word, from a generator that knows its grammar."""
+"""Random texts of the language, generated word by word along the grammar."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from random import Random
 
 NAMES = ["a", "b", "near", "x", "in", "at", "as", "step", "expect", "within", "for", "after", "s", "m", "position.x"]
-"""Names, most of which mean something elsewhere."""
+"""Names, most of which are keywords or units in other places."""
 
 PREFIXES = {
     **dict.fromkeys(("not", "!", "¬"), ()),
@@ -25,12 +25,12 @@ ALLOWING = [*GAPS, " // tltlc: allow TLT0412\n", "\n// tltlc: allow TLT0425\n"]
 
 
 def module(random: Random, gaps: Sequence[str] = GAPS) -> str:
-    """The text of a module without errors."""
+    """Return the text of a module without errors."""
     return join(random, [word for _ in range(random.randint(0, 4)) for word in declaration(random)], gaps)
 
 
 def join(random: Random, words: list[str], gaps: Sequence[str] = GAPS) -> str:
-    """The words with blanks, lines and comments between them; a word may hold a blank of its own."""
+    """Join the words with blanks, line breaks and comments; a word may contain a blank itself."""
     return "".join(random.choice(gaps) + word for word in words) + random.choice(gaps)
 
 
@@ -95,7 +95,7 @@ def item(random: Random) -> list[str]:
 
 
 def formula(random: Random, depth: int) -> list[str]:
-    """A formula that may stand anywhere: what could end differently is in brackets."""
+    """Return a formula that fits anywhere: a part that could end differently is in brackets."""
     match random.randrange(9) if depth else 0:
         case 0:
             return atom(random)
@@ -164,7 +164,7 @@ def names(random: Random) -> list[str]:
 
 
 def commas(items: Sequence[str | list[str]], sign: str = ",") -> list[str]:
-    """The items with a sign between them."""
+    """Return the items with a sign between them."""
     words: list[str] = []
     for place, item_ in enumerate(items):
         words += [sign] * bool(place) + ([item_] if isinstance(item_, str) else item_)

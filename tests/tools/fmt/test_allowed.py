@@ -1,4 +1,4 @@
-"""Layout does not change what comments allow, nor what the linter says."""
+"""Formatting changes neither what allow comments apply to nor what the linter reports."""
 
 from __future__ import annotations
 
@@ -42,33 +42,33 @@ def _declarations(random: Random) -> Iterator[str]:
             yield f"spec s{number} {{ {' '.join(clauses)} keep b or c }}"
 
 
-def _said(text: str) -> list[tuple[str, int]]:
-    """The codes of what the linter has to say, each with the number of the clause or declaration."""
+def _reported(text: str) -> list[tuple[str, int]]:
+    """The codes that the linter reports, each with the number of the clause or declaration."""
     view = view_of(SourceFile("a.tltl", text), CompileOptions())
     spans = statements(view.module)
-    found = [(each.diagnostic.code, each.diagnostic.labels[0].span.start) for each in findings(view)]
-    return [(code, sum(span.start <= start for span in spans)) for code, start in found]
+    reported = [(finding.diagnostic.code, finding.diagnostic.labels[0].span.start) for finding in findings(view)]
+    return [(code, sum(span.start <= start for span in spans)) for code, start in reported]
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_lint_says_the_same_of_the_layout(random: Random, style: str) -> None:
+def test_lint_reports_the_same_after_formatting(random: Random, style: str) -> None:
     tokens = [token for text in _declarations(random) for token in tokenize(text).tokens if token.text]
-    # A number stands beside its unit.
+    # A number must stay next to its unit.
     words = [f"{token.text} steps" if token.text == "9" else token.text for token in tokens if token.type != "UNIT"]
     text = join(random, words, GAPS)
-    assert _said(format_text(text, style)) == _said(text)
+    assert _reported(format_text(text, style)) == _reported(text)
 
 
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        (  # What shares a line goes on sharing one.
+        (  # Clauses that share a line stay on one line.
             f"spec s {{\n limit 9 steps   reach a->b {ALLOW} TLT0412\n keep c keep d }}",
             f"spec s {{\n    limit 9 steps reach a implies b  {ALLOW} TLT0412\n    keep c\n    keep d\n}}\n",
         ),
         (f"signal a:bool signal b:bool {ALLOW} TLT0421", f"signal a: bool signal b: bool  {ALLOW} TLT0421\n"),
-        (  # It speaks of the whole spec already.
+        (  # The comment applies to the whole spec already.
             f"spec s {{\n keep a\n reach a->b }} {ALLOW} TLT0412",
             f"spec s {{\n    keep a\n    reach a implies b\n}}  {ALLOW} TLT0412\n",
         ),
@@ -78,11 +78,11 @@ def test_lint_says_the_same_of_the_layout(random: Random, style: str) -> None:
         ),
     ],
 )
-def test_what_an_allowing_comment_speaks_of(text: str, expected: str) -> None:
+def test_allow_comments_keep_their_targets(text: str, expected: str) -> None:
     assert check(f"signal x: bool\n{text}", "words") == f"signal x: bool\n{expected}"
 
 
-def test_what_cannot_be_laid_out_so_stays_as_it_is() -> None:
+def test_a_text_that_cannot_be_formatted_safely_is_kept() -> None:
     long = "a_name_of_forty_characters_it_has_indeed"
     text = f"spec s {{\n   keep {long} keep {long} and !{long}  {ALLOW} TLT0412\n  keep !e\n\n\n }}"
     rest = "signal e: bool\nspec t = not e\n"
@@ -90,7 +90,7 @@ def test_what_cannot_be_laid_out_so_stays_as_it_is() -> None:
     assert check(f"{rest}{text}\nspec u=!e", "words") == f"{rest}{kept}\nspec u = not e\n"
 
 
-def test_the_work_of_comments_above_one_line_grows_with_the_text() -> None:
+def test_the_work_for_comments_above_one_line_is_linear() -> None:
     def work(number: int) -> int:
         comments = "// tltlc: allow TLT0418\n" * number
         lets = " ".join(f"let l{index} = F a" for index in range(number))

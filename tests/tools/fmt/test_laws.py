@@ -1,4 +1,4 @@
-"""The layout keeps trees and comments, and formatting twice is formatting once."""
+"""Formatting keeps the tree and the comments, and formatting twice gives the same as once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EVERYTHING = (ROOT / "tests" / "grammar" / "everything.tltl").read_text(encoding
 
 
 def _texts() -> dict[str, str]:
-    """The files of the repository that have no syntax errors."""
+    """The ``.tltl`` files of the repository that have no syntax errors."""
     texts: dict[str, str] = {}
     for path in sorted(ROOT.rglob("*.tltl")):
         inside = path.relative_to(ROOT)
@@ -40,7 +40,7 @@ TEXTS = _texts()
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_every_file_of_the_repository(style: str) -> None:
+def test_all_files_of_the_repository_are_formatted_correctly(style: str) -> None:
     assert len(TEXTS) > 100
     for name, text in TEXTS.items():
         try:
@@ -51,20 +51,20 @@ def test_every_file_of_the_repository(style: str) -> None:
 
 @settings(max_examples=400, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_random_modules(random: Random, style: str) -> None:
+def test_random_modules_are_formatted_correctly(random: Random, style: str) -> None:
     check(random_texts.module(random), style)
 
 
 @settings(max_examples=400, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_comments_allow_the_same_as_before(random: Random, style: str) -> None:
+def test_random_allow_comments_keep_their_targets(random: Random, style: str) -> None:
     check(random_texts.module(random, random_texts.ALLOWING), style)
 
 
 @settings(max_examples=200, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
-def test_comments_between_any_two_words(random: Random, style: str) -> None:
-    # A number stands beside its unit.
+def test_comments_between_any_two_words_are_kept(random: Random, style: str) -> None:
+    # A number must stay next to its unit.
     words = [token for token in tokenize(EVERYTHING).tokens if token.text]
     text = "".join((" " if word.type == "UNIT" else random.choice(random_texts.GAPS)) + word.text for word in words)
     check(text, style)

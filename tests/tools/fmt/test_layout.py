@@ -1,4 +1,4 @@
-"""The layout by examples: what stands in the source, and what is written."""
+"""The layout by examples: a source text and its formatted text."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_layout(case: str) -> None:
+def test_examples_are_laid_out(case: str) -> None:
     text, expected = CASES[case]
     assert check(text, "words") == expected
 
@@ -82,7 +82,7 @@ def test_layout(case: str) -> None:
 LONG = "a_name_of_thirty_characters_at"
 
 
-def test_long_expressions_are_broken_at_their_loosest_operators() -> None:
+def test_long_expressions_break_at_their_weakest_operators() -> None:
     text = f"spec s {{ require {LONG} and {LONG} or not {LONG} and p until {LONG} implies all x in (a, b): near(x) }}"
     assert check(text, "letters") == (
         "spec s {\n"
@@ -94,7 +94,7 @@ def test_long_expressions_are_broken_at_their_loosest_operators() -> None:
     )
 
 
-def test_what_is_long_in_brackets_stands_on_lines_of_its_own() -> None:
+def test_long_bracketed_parts_are_put_on_lines_of_their_own() -> None:
     text = (
         f"spec s = G({LONG} -> F(f({LONG}, {LONG}, {LONG}, p) & p)) & clamp(min({LONG}, {LONG}, x - {LONG}), -1, 1) > 0"
     )
@@ -121,7 +121,7 @@ def test_what_is_long_in_brackets_stands_on_lines_of_its_own() -> None:
     )
 
 
-def test_what_ends_a_line_with_brackets_leaves_room_for_what_follows() -> None:
+def test_a_line_ending_in_brackets_leaves_room_for_the_rest() -> None:
     text = f"predicate p = clamp(min({LONG}, {LONG}, 1 - a * a_b_c), -1 + {LONG}, 1)"
     assert max(map(len, check(text, "words").split("\n"))) <= 100
     short = LONG[:20]
@@ -130,7 +130,7 @@ def test_what_ends_a_line_with_brackets_leaves_room_for_what_follows() -> None:
     )
 
 
-def test_long_heads_and_lists() -> None:
+def test_long_heads_and_lists_are_broken() -> None:
     text = f"entity {', '.join([LONG] * 4)}\npredicate p({LONG}: length, {LONG}: length, {LONG}: length) in [0, 1] = 1"
     assert check(text, "words") == (
         f"entity {LONG}, {LONG},\n"
@@ -145,8 +145,8 @@ def test_long_heads_and_lists() -> None:
 
 def test_the_guide_shows_the_layout() -> None:
     page = (ROOT / "docs" / "guides" / "formatting.md").read_text(encoding="utf-8")
-    (shown,) = re.findall(r"^```tltl\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    assert check(shown, "words") == shown
+    (example,) = re.findall(r"^```tltl\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    assert check(example, "words") == example
 
 
 @pytest.mark.parametrize(
@@ -161,13 +161,13 @@ def test_the_guide_shows_the_layout() -> None:
     ],
     ids=lambda text: text[:25],
 )
-def test_what_the_grammar_lets_through_is_laid_out_however_deep(text: str) -> None:
+def test_deeply_nested_texts_are_formatted(text: str) -> None:
     formatted = format_text(text)
     assert len(formatted) < 1 << 17
     assert format_text(formatted) == formatted
 
 
-def test_a_text_with_errors_is_none() -> None:
+def test_a_text_with_errors_is_rejected() -> None:
     with pytest.raises(TltlError) as failure:
         format_text("spec s = F (\nspec t { keep }")
     assert [diagnostic.code for diagnostic in failure.value.diagnostics] == ["TLT0101", "TLT0101"]

@@ -1,4 +1,4 @@
-"""The four styles: spellings, bounds, and that a formula means the same in each."""
+"""The four styles: their spellings and bounds; a formula means the same in each style."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ BOUNDS = [
     ("G[1 s, 2 s] (p)", "G[1 s, 2 s](p)", "[][1 s, 2 s](p)", "□[1 s, 2 s](p)"),
     ("G[0,2 s] p", "G[0,2 s] p", "[][0,2 s] p", "□[0,2 s] p"),
 ]
-"""Bounds in words, letters, symbols and Unicode; in each row, all four are one formula."""
+"""Bounds in words, letters, symbols and Unicode; the four cells of a row are the same formula."""
 
 
 def formula(text: str) -> object:
     source = f"clock 3 Hz  signal p: bool  spec s = {text}"
-    module, found = parse(SourceFile("a", source))
-    assert not found
-    program, found = resolve(module, ResolveOptions())
-    assert not found
+    module, diagnostics = parse(SourceFile("a", source))
+    assert not diagnostics
+    program, diagnostics = resolve(module, ResolveOptions())
+    assert not diagnostics
     return program.specs[0].formula
 
 
-def test_the_styles_are_those_of_projects() -> None:
+def test_the_styles_equal_those_of_the_project_file() -> None:
     assert tuple(STYLES) == FORMATTINGS
 
 
@@ -60,7 +60,7 @@ def test_the_styles_are_those_of_projects() -> None:
         ("unicode", "(◇a) ∧ ¬□b ∨ ○c ⇔ N d ⇒ ⊤ 𝒰 ⊥ W a R b M c ≤ 3"),
     ],
 )
-def test_operators(style: str, expected: str) -> None:
+def test_operators_are_written_in_each_style(style: str, expected: str) -> None:
     text = format_text(f"spec s = {OPERATORS}", style)
     assert " ".join(text.split()) == f"spec s = {expected}"
     for other in STYLES:
@@ -68,16 +68,16 @@ def test_operators(style: str, expected: str) -> None:
 
 
 @pytest.mark.parametrize("row", BOUNDS, ids=lambda row: row[0])
-def test_bounds(row: tuple[str, ...]) -> None:
-    for written in row:
+def test_bounds_are_written_in_each_style(row: tuple[str, ...]) -> None:
+    for spelling in row:
         for style, expected in zip(STYLES, row, strict=True):
-            assert check(f"spec s = {written}", style) == f"spec s = {expected}\n"
-        assert formula(written) == formula(row[0])
+            assert check(f"spec s = {spelling}", style) == f"spec s = {expected}\n"
+        assert formula(spelling) == formula(row[0])
 
 
 @pytest.mark.parametrize("name", ["x", "in", "at", "as", "for", "within", "after", "step", "expect", "s", "m", "steps"])
 @pytest.mark.parametrize("style", STYLES)
-def test_names_that_mean_something_elsewhere(name: str, style: str) -> None:
+def test_contextual_keywords_work_as_names(name: str, style: str) -> None:
     text = (
         f"signal {name}: bool\n"
         f"spec a = F {name} & G[0,3] {name} & !X {name} & {name} U F within 2 steps {name}\n"
@@ -87,18 +87,18 @@ def test_names_that_mean_something_elsewhere(name: str, style: str) -> None:
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.tltl")), ids=lambda path: path.name)
-def test_the_examples_compile_to_the_same_automata(path: Path) -> None:
+def test_formatted_examples_compile_to_the_same_automata(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     before = compile_text(text)
     for style in STYLES:
         assert compile_text(format_text(text, style)) == before
 
 
-def test_it_takes_no_more_calls_than_two_parses() -> None:
+def test_formatting_costs_less_than_two_parses() -> None:
     names = ("branching", "platformer", "puzzle", "racing", "robot_sorting")
     text = "".join((ROOT / "examples" / f"{name}.tltl").read_text(encoding="utf-8") for name in names) * 2
     assert text.count("\n") > 400
 
-    format_text(text)  # the tables of the grammar are read
+    format_text(text)  # Warm up: read the tables of the grammar.
     # Measured: 1.37.
     assert calls(lambda: format_text(text)) < 2 * calls(lambda: parse(SourceFile("a", text)))

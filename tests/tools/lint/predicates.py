@@ -1,4 +1,4 @@
-"""Random predicates over one signal as they are written, and their values."""
+"""Random predicates over one signal: their source text and their values."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ _VALUES = tuple(step / 8 for step in range(81))
 
 
 class Predicate(NamedTuple):
-    """A predicate as it is written, and its value for a value of x."""
+    """The source text of a predicate, and a function from x to its value."""
 
     text: str
     value: Callable[[float], float]
 
     @property
     def declared(self) -> str:
-        """Its declaration, as p."""
+        """The declaration of this predicate as ``p``."""
         return f"{BEFORE}predicate p in [-1, 1] = clamp({self.text}, -1, 1)\n"
 
     def values(self) -> list[float]:
-        """Its values for many values of x, both ends among them."""
+        """Its values for many values of x, including both ends of the range."""
         return [max(-1.0, min(1.0, self.value(x))) for x in _VALUES]
 
 
@@ -34,11 +34,11 @@ _LINES = st.builds(
 )
 
 
-def _least(one: Predicate, other: Predicate) -> Predicate:
+def _minimum(one: Predicate, other: Predicate) -> Predicate:
     return Predicate(f"min({one.text}, {other.text})", lambda x: min(one.value(x), other.value(x)))
 
 
-def _greatest(one: Predicate, other: Predicate) -> Predicate:
+def _maximum(one: Predicate, other: Predicate) -> Predicate:
     return Predicate(f"max({one.text}, {other.text})", lambda x: max(one.value(x), other.value(x)))
 
 
@@ -50,8 +50,8 @@ def _split(one: Predicate, other: Predicate, border: int) -> Predicate:
 PREDICATES = st.recursive(
     _LINES,
     lambda inner: (
-        st.builds(_least, inner, inner)
-        | st.builds(_greatest, inner, inner)
+        st.builds(_minimum, inner, inner)
+        | st.builds(_maximum, inner, inner)
         | st.builds(_split, inner, inner, st.integers(0, 10))
     ),
     max_leaves=3,

@@ -1,4 +1,4 @@
-"""Fixes that can be taken at once, as editors and the playground offer them."""
+"""Fixes that editors and the playground offer for single findings."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tltlc.tools.lint.scopes import after, keeping_scopes
 
 
 def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    module, found = parse(source)
-    return (*found, *resolve(module)[1])
+    module, syntax_errors = parse(source)
+    return (*syntax_errors, *resolve(module)[1])
 
 
 def offers(text: str) -> list[Offer]:
@@ -43,28 +43,28 @@ def offers(text: str) -> list[Offer]:
         ("signal a: bool\nspec x = F a &", {}),
     ],
 )
-def test_fixes_of_errors(text: str, expected: dict[str, str]) -> None:
+def test_fixes_of_errors_are_offered(text: str, expected: dict[str, str]) -> None:
     source = SourceFile("x.tltl", text)
-    assert {each.fix.title: after(source, each.fix.edits).text for each in offers(text)} == expected
+    assert {offer.fix.title: after(source, offer.fix.edits).text for offer in offers(text)} == expected
 
 
-def test_what_leaves_as_much_to_be_mended_is_not_offered() -> None:
-    # Its import would not have it either.
+def test_a_fix_that_leaves_as_many_errors_is_not_offered() -> None:
+    # The errors stay the same after every edit, so no fix helps.
     source = SourceFile("x.tltl", "spec x = F alive")
-    told = errors(source)
-    assert told[0].fixes
-    assert list(of_errors(told, source, lambda _: told)) == []
+    diagnostics = errors(source)
+    assert diagnostics[0].fixes
+    assert list(of_errors(diagnostics, source, lambda _: diagnostics)) == []
 
 
-def test_a_fix_is_named_by_what_it_does() -> None:
+def test_a_fix_is_titled_by_what_it_does() -> None:
     source = SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a")
-    assert [each.fix.title for each in of_findings(lint(source), parse(source)[0])] == [
+    assert [offer.fix.title for offer in of_findings(lint(source), parse(source)[0])] == [
         "Remove the import",
         "Remove it",
     ]
 
 
-def test_a_fix_keeps_the_comments_that_allow_something() -> None:
+def test_a_fix_keeps_allow_comments() -> None:
     allow = "// tltlc: allow TLT0419\n"
     source = SourceFile("x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    reach a\n}}\n")
     (offer,) = of_findings(lint(source), parse(source)[0])
@@ -74,22 +74,22 @@ def test_a_fix_keeps_the_comments_that_allow_something() -> None:
 def test_the_same_fix_of_many_findings_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[Sequence[Edit]] = []
 
-    def noted(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
+    def recorded(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
         tried.append(edits)
         return keeping_scopes(module, edits)
 
-    monkeypatch.setattr("tltlc.tools.lint.fixes.keeping_scopes", noted)
+    monkeypatch.setattr("tltlc.tools.lint.fixes.keeping_scopes", recorded)
     source = SourceFile("example.tltl", f"// tltlc: allow{' TLT0421' * 50}\nsignal a: bool\nspec s = F a\n")
     view = view_of(source, CompileOptions())
-    found = [each for each in findings(view) if each.diagnostic.code == "TLT0427"]
-    assert (len(list(of_findings(found, view.module))), len(tried)) == (50, 1)
+    comment_findings = [finding for finding in findings(view) if finding.diagnostic.code == "TLT0427"]
+    assert (len(list(of_findings(comment_findings, view.module))), len(tried)) == (50, 1)
 
 
-def test_after_some_fixes_no_more_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_more_fixes_are_tried_after_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.tools.lint.fixes.WORK", {"fixes tried": 5})
-    many = 9
-    lets = "".join(f"let l{number} = F a\n" for number in range(many))
+    count = 9
+    lets = "".join(f"let l{number} = F a\n" for number in range(count))
     source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a  // tltlc: allow TLT0420\n{lets}")
     view = view_of(source, CompileOptions())
-    found = [each for each in findings(view) if each.diagnostic.code == "TLT0421"]
-    assert (len(found), len(list(of_findings(found, view.module)))) == (many, 5)
+    unused_findings = [finding for finding in findings(view) if finding.diagnostic.code == "TLT0421"]
+    assert (len(unused_findings), len(list(of_findings(unused_findings, view.module)))) == (count, 5)

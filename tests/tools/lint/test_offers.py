@@ -1,4 +1,4 @@
-"""What the fixes of errors do to a text: over all golden messages, and over what people write by mistake."""
+"""The fixes of errors, applied to all golden error messages and to typical mistakes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ signal turn: angle in [0 rad, 4 rad]
 signal pace: speed in [0 m/s, 9 m/s]
 let both(p, q) = p and q
 """
-MEANT = {
+CORRECTIONS = {
     # Brackets around one operand of `then`.
     "keep a and b then c": ["keep (a and b) then c", "keep a and (b then c)"],
     "keep a then b and c": ["keep a then (b and c)", "keep (a then b) and c"],
@@ -49,7 +49,7 @@ MEANT = {
     "reach F a then b then c": [],
     "reach G a then F b": ["reach (G a) then (F b)"],
     "require a then all x in (key, chest): F at(x)": ["require a then (all x in (key, chest): F at(x))"],
-    # What holds always or never.
+    # Comparisons that are always true or always false.
     "keep coins < 0": ["keep false"],
     "reach coins > 60": ["reach false"],
     "avoid coins >= 0": ["avoid true"],
@@ -57,7 +57,7 @@ MEANT = {
     "require not coins < 0 and a": ["require not false and a"],
     "keep 1 < 2 implies a": ["keep true implies a"],
     "keep hp > 50": ["keep hp > 50 %"],
-    # Signs from elsewhere.
+    # Operators from other languages.
     "reach ~a": ["reach not a"],
     "keep a|~b": ["keep a|not b"],
     "keep ~(a | b)": ["keep not(a | b)"],
@@ -103,7 +103,7 @@ MEANT = {
     "keep width > 3 s": [],
     "keep turn > 90": [],
     "keep coins > 3 m": ["keep coins > 3"],
-    # Operators that stick to a name.
+    # Operators without a space before a name.
     "reach Fa": ["reach F a"],
     "require !Fa": ["require !F a"],
     "require Fat(key)": ["require F at(key)"],
@@ -118,7 +118,7 @@ MEANT = {
     "reach a then any x in (key, chest): at(x), b": ["reach a then (any x in (key, chest): at(x)) then b"],
     "reach not all x in (key, chest): at(x), b": [],
     "avoid any x in (key, chest): at(x), a": ["avoid (any x in (key, chest): at(x)) or a"],
-    # Names and words.
+    # Names and keywords.
     "keep aliev": ["keep alive"],
     "kepe a": ["keep a"],
     "keep NOT a": ["keep not a"],
@@ -166,19 +166,22 @@ MEANT = {
     "keep all x in (key, chest): at(x) and reach a": [],
     "keep coins is more than 3": ["keep coins > 3"],
 }  # fmt: skip
-"""Mistakes in a clause, and what the fixes make of it that leave no error; none where it is not clear what is meant."""
+"""Clauses with a mistake, and the clauses that the offered fixes produce without errors.
+
+The list is empty where the intention is unclear.
+"""
 
 
 def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    module, said = parse(source)
-    return tuple(each for each in (*said, *resolve(module)[1]) if each.severity == "error")
+    module, syntax_errors = parse(source)
+    return tuple(diagnostic for diagnostic in (*syntax_errors, *resolve(module)[1]) if diagnostic.severity == "error")
 
 
 def all_fixes(source: SourceFile) -> Iterator[tuple[Diagnostic, Fix]]:
-    """Every fix of an error of a text, whether it would be offered or not."""
-    for each in errors(source):
-        for fix in each.fixes:
-            yield each, fix
+    """Yield every fix of an error in a text, offered or not."""
+    for diagnostic in errors(source):
+        for fix in diagnostic.fixes:
+            yield diagnostic, fix
 
 
 def offers(source: SourceFile) -> list[Offer]:
@@ -190,7 +193,8 @@ def in_spec(clause: str) -> SourceFile:
 
 
 def check(source: SourceFile) -> None:
-    """Edits lie in the text and do not overlap; each fix that is offered leaves fewer errors."""
+    """Assert that edits are within the text and do not overlap, and that each offered fix reduces
+    the errors."""
     for diagnostic, fix in all_fixes(source):
         if diagnostic.labels[0].source == source:
             spans = sorted((edit.span.start, edit.span.end) for edit in fix.edits)
@@ -204,20 +208,22 @@ def check(source: SourceFile) -> None:
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case.name)
-def test_fixes_of_golden_messages(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fixes_of_golden_messages_are_sound(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case.unpack(tmp_path)
     monkeypatch.chdir(tmp_path)
     check(SourceFile("input.tltl", case.files["input.tltl"].decode()))
 
 
-@pytest.mark.parametrize(("clause", "meant"), MEANT.items(), ids=MEANT)
-def test_fixes_of_a_clause(clause: str, meant: list[str]) -> None:
+@pytest.mark.parametrize(("clause", "meant"), CORRECTIONS.items(), ids=CORRECTIONS)
+def test_fixes_of_a_clause_produce_the_corrections(clause: str, meant: list[str]) -> None:
     source = in_spec(clause)
     check(source)
-    fixed = [after(source, offer.fix.edits) for offer in offers(source)]
-    assert [each.text for each in fixed] == [in_spec(each).text for each in meant]
-    for each, clause_ in zip(fixed, meant, strict=True):
-        assert formula(each) == formula(in_spec(clause_))
+    fixed_sources = [after(source, offer.fix.edits) for offer in offers(source)]
+    assert [fixed_source.text for fixed_source in fixed_sources] == [
+        in_spec(fixed_source).text for fixed_source in meant
+    ]
+    for fixed_source, correction in zip(fixed_sources, meant, strict=True):
+        assert formula(fixed_source) == formula(in_spec(correction))
 
 
 def formula(source: SourceFile) -> str:
@@ -225,11 +231,12 @@ def formula(source: SourceFile) -> str:
     return fspa.formula.ascii
 
 
-def test_what_is_offered_is_rarely_refused() -> None:
-    """The trial of a fix is a second look: whoever makes a diagnostic says what mends it."""
+def test_every_fix_of_the_table_is_offered() -> None:
+    """Trying a fix before offering it is only a safeguard: a diagnostic should come with fixes that
+    work."""
     refused = {
         (clause, fix.title)
-        for clause in MEANT
+        for clause in CORRECTIONS
         for _, fix in all_fixes(in_spec(clause))
         if fix not in [offer.fix for offer in offers(in_spec(clause))]
     }
@@ -237,17 +244,17 @@ def test_what_is_offered_is_rarely_refused() -> None:
 
 
 def test_the_table_has_many_rows() -> None:
-    assert len(MEANT) >= 60
+    assert len(CORRECTIONS) >= 60
 
 
-def test_no_fix_of_a_definition_is_that_of_one_use() -> None:
-    """What is wrong with these arguments alone is not written into the body."""
+def test_an_error_of_one_use_does_not_change_the_definition() -> None:
+    """The definition must not be edited because one use has bad arguments."""
     text = f"{HEAD}let more(n) = coins > n\nspec s {{\n    keep more(3)\n    keep more(60)\n}}\n"
-    (said,) = errors(SourceFile("a.tltl", text))
-    assert (said.code, said.fixes) == ("TLT0310", ())
+    (diagnostic,) = errors(SourceFile("a.tltl", text))
+    assert (diagnostic.code, diagnostic.fixes) == ("TLT0310", ())
 
 
-def test_words_stay_apart() -> None:
+def test_a_fix_keeps_words_apart() -> None:
     with pytest.raises(TltlError):
         tltlc.compile_text(f"{HEAD}spec s = a|~b")
     ((_, fix),) = all_fixes(SourceFile("a.tltl", f"{HEAD}spec s = a|~b"))
@@ -255,7 +262,7 @@ def test_words_stay_apart() -> None:
     assert fix.edits[0].text == "not "
 
 
-def test_a_meaning_that_is_kept_is_safe() -> None:
+def test_a_fix_that_keeps_the_meaning_is_safe() -> None:
     for clause, applicability in (("keep coins < 0", "safe"), ("keep aliev", "maybe")):
         ((_, fix),) = all_fixes(in_spec(clause))
         assert fix.applicability == applicability
@@ -300,14 +307,14 @@ OPPOSITES = [
 
 
 @pytest.mark.parametrize(("known", "other"), [*OPPOSITES, *((b, a) for a, b in OPPOSITES)])
-def test_a_name_that_says_otherwise_is_no_misspelling(known: str, other: str) -> None:
+def test_a_name_of_opposite_meaning_is_no_misspelling(known: str, other: str) -> None:
     source = SourceFile("a.tltl", f"signal {known}: bool\nspec s {{ keep {other} }}\n")
-    # It is declared, or imported where a library has it.
+    # The fix declares the name, or imports the library that has it.
     assert not [fix.title for _, fix in all_fixes(source) if fix.title.startswith("Write")]
 
 
 @pytest.mark.parametrize("other", ["sen", "seeen", "Seen", "sene", "eseen"])
-def test_a_misspelt_name_is_known(other: str) -> None:
+def test_a_misspelt_name_is_corrected(other: str) -> None:
     ((_, fix),) = all_fixes(SourceFile("a.tltl", f"signal seen: bool\nspec s {{ keep {other} }}\n"))
     assert fix.title == "Write `seen`"
 
@@ -322,12 +329,12 @@ def test_a_misspelt_name_is_known(other: str) -> None:
         ("door2_open", "door2_opne"),
     ],
 )
-def test_a_slip_in_one_part_of_a_name_is_known(name: str, other: str) -> None:
+def test_a_misspelling_in_one_part_of_a_name_is_corrected(name: str, other: str) -> None:
     ((_, fix),) = all_fixes(SourceFile("a.tltl", f"signal {name}: bool\nspec s {{ keep {other} }}\n"))
     assert fix.title == f"Write `{name}`"
 
 
-def test_of_two_names_that_are_as_likely_none_is_offered() -> None:
+def test_no_correction_is_offered_between_two_likely_names() -> None:
     text = "signal swing: bool\nsignal sting: bool\nspec s { keep sing or swing or sting }\n"
     assert not [fix.title for _, fix in all_fixes(SourceFile("a.tltl", text)) if fix.title.startswith("Write")]
 
@@ -339,7 +346,7 @@ teach beach stop
 
 
 @pytest.mark.parametrize("verb", VERBS.split())
-def test_an_english_verb_is_no_keyword(verb: str) -> None:
+def test_an_english_verb_is_no_misspelt_keyword(verb: str) -> None:
     assert not [fix.title for _, fix in all_fixes(in_spec(f"{verb} a")) if fix.title.startswith("Write")]
 
 
@@ -349,29 +356,29 @@ off for around end stand other often there their these least raise reset please 
 
 
 @pytest.mark.parametrize("clause", [*(f"keep a {word} b" for word in WORDS.split()), "keep away a", "keep anyway a"])
-def test_an_english_word_is_no_operator(clause: str) -> None:
+def test_an_english_word_is_no_misspelt_operator(clause: str) -> None:
     titles = [fix.title for _, fix in all_fixes(in_spec(clause)) if fix.title.startswith("Write")]
-    # A name in front of another one may be that of a predicate.
+    # A name before another name may be a predicate with an argument.
     assert all("(" in title for title in titles)
 
 
 @pytest.mark.parametrize("verb", ["reject", "repeat", "select", "stop", "store", "state", "sleep"])
-def test_an_english_verb_is_no_line_of_a_test(verb: str) -> None:
+def test_an_english_verb_is_no_misspelt_line_of_a_test(verb: str) -> None:
     text = f'signal a: bool\nspec s = F a\ntest "t" for s {{\n    step a\n    {verb} a\n}}\n'
     assert not [*all_fixes(SourceFile("a.tltl", text))]
 
 
-def test_what_is_documented_stays_so() -> None:
+def test_a_declaration_is_inserted_above_documentation() -> None:
     source = SourceFile("a.tltl", "/// Nobody sees.\n// TODO tune\n\nspec s = F a\n")
     (fix,) = (fix for _, fix in all_fixes(source) if fix.title.startswith("Declare"))
     assert after(source, fix.edits).text == f"signal a: bool\n{source.text}"
 
 
-def test_a_plain_number_is_no_percentage() -> None:
-    for declared, meant in (("hearts in [0, 1]", "false"), ("hearts: ratio", "hearts >= 3 %")):
+def test_a_plain_number_is_not_read_as_a_percentage() -> None:
+    for declared, correction in (("hearts in [0, 1]", "false"), ("hearts: ratio", "hearts >= 3 %")):
         source = SourceFile("a.tltl", f"signal {declared}\nspec s {{ reach hearts >= 3 }}\n")
         ((_, fix),) = all_fixes(source)
-        assert after(source, fix.edits).text == source.text.replace("hearts >= 3", meant)
+        assert after(source, fix.edits).text == source.text.replace("hearts >= 3", correction)
 
 
 @pytest.mark.parametrize(
@@ -381,7 +388,7 @@ def test_a_plain_number_is_no_percentage() -> None:
         "signal v: speed in [0 km/h, 200 km/h]\nspec s { reach v > 30 m }\n",
     ],
 )
-def test_a_number_may_be_in_units_that_are_not_of_si(text: str) -> None:
+def test_a_number_may_have_a_unit_outside_the_si(text: str) -> None:
     assert not [*all_fixes(SourceFile("a.tltl", text))]
 
 
@@ -389,11 +396,11 @@ def test_a_number_may_be_in_units_that_are_not_of_si(text: str) -> None:
     "clause",
     ["keepnot a", "dontreach a", "neverreach a", "keep a andnot b", "require a untilnot b"],
 )
-def test_a_word_that_says_otherwise_is_no_misspelt_keyword(clause: str) -> None:
+def test_a_word_joined_with_a_negation_is_no_misspelt_keyword(clause: str) -> None:
     assert not [*all_fixes(in_spec(clause))]
 
 
-def test_a_name_with_other_first_letters_is_no_operator() -> None:
+def test_a_name_with_another_first_letter_is_no_operator() -> None:
     assert [fix.title for _, fix in all_fixes(in_spec("reach exit a"))] == ["Write `exit(a)`"]
     assert [fix.title for _, fix in all_fixes(in_spec("require nxt a"))] == ["Write `next`"]
 
@@ -413,7 +420,7 @@ def test_no_comment_is_dropped(clause: str) -> None:
     + [("time in [0 {}, 500 {}]", unit) for unit in ("s", "ms", "min")]
     + [("speed in [0 {}, 50 {}]", unit) for unit in ("m/s", "km/h", "m/min")],
 )
-def test_a_number_without_a_unit_has_none_where_others_are_declared(declared: str, unit: str) -> None:
+def test_a_missing_unit_is_added_only_if_si_units_are_declared(declared: str, unit: str) -> None:
     text = f"signal it: {declared.replace('{}', unit)}\nspec s {{ reach it > 3 }}\n"
-    given = [fix.title for _, fix in all_fixes(SourceFile("a.tltl", text))]
-    assert given == ([f"Write `3 {unit}`"] if unit in ("m", "s", "m/s") else [])
+    titles = [fix.title for _, fix in all_fixes(SourceFile("a.tltl", text))]
+    assert titles == ([f"Write `3 {unit}`"] if unit in ("m", "s", "m/s") else [])

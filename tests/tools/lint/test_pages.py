@@ -1,4 +1,4 @@
-"""The page of a rule shows what the rule finds and what to write instead, and both examples are right."""
+"""Each page of a rule shows what to avoid and what to prefer, and both examples are correct."""
 
 from __future__ import annotations
 
@@ -19,37 +19,38 @@ FOLDER = Path(codes.__file__).parent / "pages"
 CODES = sorted([*(rule.code for rule in rules()), allow.CODE])
 
 
-def found(code: str, kind: str) -> list[str]:
-    """The codes that are found in the example of a page: the first one is to be avoided, the second preferred."""
+def codes_of_example(code: str, kind: str) -> list[str]:
+    """Return the codes reported for an example of a page: the first example is to be avoided, the
+    second preferred."""
     avoid, prefer = (block for block in blocks(FOLDER / f"{code}.md") if block.kind == "tltl")
     block = avoid if kind == "avoid" else prefer
-    return [each.diagnostic.code for each in lint(SourceFile("example.tltl", block.text))]
+    return [finding.diagnostic.code for finding in lint(SourceFile("example.tltl", block.text))]
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_what_to_avoid_causes_this_code_alone(code: str) -> None:
-    assert found(code, "avoid") == [code]
+def test_the_example_to_avoid_causes_this_code_only(code: str) -> None:
+    assert codes_of_example(code, "avoid") == [code]
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_what_to_prefer_causes_nothing(code: str) -> None:
-    assert found(code, "prefer") == []
+def test_the_preferred_example_causes_no_finding(code: str) -> None:
+    assert codes_of_example(code, "prefer") == []
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_the_form_of_a_page(code: str) -> None:
+def test_every_page_has_the_same_sections(code: str) -> None:
     text = codes.page(code)
     headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
     assert headings == ["Example", "How to fix it", "Why"]
     assert re.findall(r"(\w+):\n\n```tltl\n", text) == ["Avoid", "Prefer"]
 
 
-def test_every_rule_has_a_code_of_its_own() -> None:
+def test_every_rule_has_its_own_code() -> None:
     assert len(set(CODES)) == len(CODES) >= 16
     assert all("TLT0412" <= code <= "TLT0439" for code in CODES)
 
 
-def test_every_rule_has_tests_of_its_own() -> None:
+def test_every_rule_has_its_own_tests() -> None:
     folder, tests = Path(package.__file__).parent, Path(__file__).parent / "rules"
     names = {path.name for path in folder.glob("[!_]*.py")}
     assert {path.name.removeprefix("test_") for path in tests.glob("test_*.py")} == names

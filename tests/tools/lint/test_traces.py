@@ -1,4 +1,4 @@
-"""The traces that other tests judge rules by are those of the definition."""
+"""The bit sets of traces that other tests use match the definition of the logic."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ LETTERS = subsets(["a", "b"])
 
 
 @given(formulas(["a", "b"]), traces(["a", "b"], max_length=LONGEST))
-def test_all_traces_at_once_are_judged_as_one_by_one(formula: Formula, trace: tuple[frozenset[str], ...]) -> None:
+def test_all_traces_at_once_are_judged_like_single_traces(formula: Formula, trace: tuple[frozenset[str], ...]) -> None:
     number = sum(LETTERS.index(letter) * len(LETTERS) ** step for step, letter in enumerate(trace))
-    found = Traces(LETTERS).satisfying(formula)[len(trace) - 1]
-    assert bool(found >> number & 1) == holds(formula, trace)
+    satisfying = Traces(LETTERS).satisfying(formula)[len(trace) - 1]
+    assert bool(satisfying >> number & 1) == holds(formula, trace)
     ever = Traces(LETTERS).ever(formula)[len(trace) - 1]
     assert bool(ever >> number & 1) == any(holds(formula, trace, step) for step in range(len(trace)))

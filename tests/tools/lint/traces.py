@@ -1,4 +1,5 @@
-"""What formulas say of all short traces at once, straight from the definitions: a number has a bit for each trace."""
+"""Evaluate formulas on all short traces at once, straight from the definitions. A number has one
+bit for each trace."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from tltlc.logic.formula import Formula
 
 LONGEST: Final = 5
 Bits = tuple[int, ...]
-"""For each length from 1 on, the traces of that length for which something is true."""
+"""For each length from 1 on, the traces of that length with some property."""
 
 
 class Traces:
@@ -22,29 +23,30 @@ class Traces:
 
     @cached_property
     def every(self) -> Bits:
-        """All traces."""
+        """The bits of all traces."""
         return tuple((1 << len(self.letters) ** length) - 1 for length in range(1, LONGEST + 1))
 
     def satisfying(self, formula: Formula) -> Bits:
-        """Those that satisfy the formula."""
+        """Return the traces that satisfy the formula."""
         return tuple(self._truths(formula, length)[0] for length in range(1, LONGEST + 1))
 
     def ever(self, formula: Formula, without: Collection[Formula] = ()) -> Bits:
-        """Those at some step of which the formula holds, and none of the others does."""
-        found = []
+        """Return the traces with a step at which the formula holds and none of ``without`` does."""
+        traces = []
         for length in range(1, LONGEST + 1):
             steps = self._truths(formula, length)
-            for other in without:
-                steps = [here & ~there for here, there in zip(steps, self._truths(other, length), strict=True)]
-            found.append(_any(steps))
-        return tuple(found)
+            for excluded in without:
+                steps = [here & ~there for here, there in zip(steps, self._truths(excluded, length), strict=True)]
+            traces.append(_any(steps))
+        return tuple(traces)
 
     def _truths(self, formula: Formula, length: int) -> list[int]:
-        """For each step the traces of this length on which the formula holds from there on."""
+        """For each step, the traces of this length whose suffix from this step satisfies the
+        formula."""
         every = self.every[length - 1]
         truths: dict[Formula, list[int]] = {}
         for node in formula.bottom_up():
-            args = [truths[each] for each in node.args]
+            args = [truths[argument] for argument in node.args]
             if node.op == "atom":
                 truths[node] = [self._atom(node.name, step, length) for step in range(length)]
             elif node.is_temporal:
@@ -55,32 +57,37 @@ class Traces:
         return truths[formula]
 
     def _atom(self, name: str, step: int, length: int) -> int:
-        """The letter of a trace at a step is the digit there of its number, whose base is the number of letters."""
+        """The traces with this atom at a step.
+
+        The letter at a step is a digit of the trace's number; the base is the number of letters.
+        """
         count = len(self.letters)
         digits = "".join(("1" if name in letter else "0") * count**step for letter in self.letters)
         return int((digits * count ** (length - 1 - step))[::-1], 2)
 
 
 def subsets(atoms: Sequence[str]) -> list[frozenset[str]]:
-    """Every letter over some atoms."""
-    return [frozenset(each) for each in chain(*(combinations(atoms, size) for size in range(len(atoms) + 1)))]
+    """Return every letter over some atoms."""
+    return [
+        frozenset(combination) for combination in chain(*(combinations(atoms, size) for size in range(len(atoms) + 1)))
+    ]
 
 
 def includes(more: Bits, fewer: Bits) -> bool:
-    """Whether the one has all traces of the other."""
+    """Whether ``more`` contains all traces of ``fewer``."""
     return all(not few & ~many for many, few in zip(more, fewer, strict=True))
 
 
 def both(one: Bits, other: Bits) -> Bits:
-    """The traces that are in the one and in the other."""
+    """Return the traces that are in both sets."""
     return tuple(mine & yours for mine, yours in zip(one, other, strict=True))
 
 
 def _any(steps: Sequence[int]) -> int:
-    found = 0
+    union = 0
     for step in steps:
-        found |= step
-    return found
+        union |= step
+    return union
 
 
 def _now(op: str, args: Sequence[int], every: int) -> int:
@@ -89,7 +96,7 @@ def _now(op: str, args: Sequence[int], every: int) -> int:
     if op == "or":
         return _any(args)
     if op == "and":
-        return every & ~_any([every & ~each for each in args])
+        return every & ~_any([every & ~arg for arg in args])
     first, last = args[0], args[-1]
     if op == "not":
         return every & ~first
@@ -97,9 +104,12 @@ def _now(op: str, args: Sequence[int], every: int) -> int:
 
 
 def _from_the_end(op: str, args: Sequence[Sequence[int]], every: int) -> list[int]:
-    """The truths of a temporal operator, from those of the step behind; behind the last one weak ones hold."""
+    """Compute the truths of a temporal operator, from the last step to the first.
+
+    After the last step, the weak operators are true and the strong ones are false.
+    """
     behind = every if op in ("N", "G", "W", "R") else 0
-    found: list[int] = []
+    truths: list[int] = []
     for step in reversed(range(len(args[0]))):
         first, last = args[0][step], args[-1][step]
         here = {
@@ -110,6 +120,6 @@ def _from_the_end(op: str, args: Sequence[Sequence[int]], every: int) -> list[in
             "R": last & (first | behind),
             "M": last & (first | behind),
         }.get(op, behind)
-        found.append(here)
+        truths.append(here)
         behind = first if op in ("X", "N") else here
-    return found[::-1]
+    return truths[::-1]
