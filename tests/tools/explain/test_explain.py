@@ -1,4 +1,5 @@
-"""What is said of specs, against their automata and formulas; the texts of the examples are goldens."""
+"""Explanations of specs match their automata and formulas; the texts for the examples are golden
+files."""
 
 from __future__ import annotations
 
@@ -43,24 +44,24 @@ FORMULAS = formulas(atoms=("a", "b", "c"), max_leaves=5)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_the_text_of_the_examples(path: Path) -> None:
+def test_texts_of_the_examples_match_the_golden_files(path: Path) -> None:
     compiled = compile_source(read_source(path))
-    found = "\n".join(
+    explanation = "\n".join(
         text(explain(fspa, spec.formula)) for fspa, spec in zip(compiled.automata, compiled.program.specs, strict=True)
     )
     golden = GOLDEN / f"{path.stem}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
-        golden.write_text(found, encoding="utf-8")
-    assert found == golden.read_text(encoding="utf-8")
-    assert all(len(line) <= 100 and line == line.rstrip() for line in found.splitlines())
+        golden.write_text(explanation, encoding="utf-8")
+    assert explanation == golden.read_text(encoding="utf-8")
+    assert all(len(line) <= 100 and line == line.rstrip() for line in explanation.splitlines())
 
 
-def test_no_golden_is_left_over() -> None:
+def test_no_golden_file_is_left_over() -> None:
     assert {path.stem for path in GOLDEN.iterdir()} == {path.stem for path in EXAMPLES}
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_an_artefact_says_what_its_file_says(path: Path) -> None:
+def test_an_artefact_is_explained_like_its_source(path: Path) -> None:
     compiled = compile_source(read_source(path))
     for fspa, spec in zip(compiled.automata, compiled.program.specs, strict=True):
         assert explain(fspa) == explain(fspa, spec.formula)
@@ -70,19 +71,19 @@ def test_an_artefact_says_what_its_file_says(path: Path) -> None:
 @given(FORMULAS)
 def test_a_formula_is_read_back_from_its_text(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
-    found = formula_of(fspa)
-    assert found is not None
-    assert ascii_text(found) == ascii_text(formula)
+    parsed = formula_of(fspa)
+    assert parsed is not None
+    assert ascii_text(parsed) == ascii_text(formula)
 
 
-def test_names_in_names_are_told_apart() -> None:
+def test_names_within_names_are_parsed() -> None:
     text_ = "signal x in [-9, 9]  signal y in [0, 9]  signal x1: bool  signal F1.x: bool\n"
     text_ += "spec s = F x > 1 & G(x + y > 1 -> x > 1.5) & (!x1 U F1.x) & F -x > 1"
     (fspa,) = compiler.compile_text(text_)
-    found = formula_of(fspa)
-    assert found is not None
-    assert ascii_text(found) == fspa.formula.ascii
-    assert set(found.atoms()) == {each.name for each in fspa.atoms}
+    parsed = formula_of(fspa)
+    assert parsed is not None
+    assert ascii_text(parsed) == fspa.formula.ascii
+    assert set(parsed.atoms()) == {atom.name for atom in fspa.atoms}
 
 
 @settings(max_examples=100, deadline=None)
@@ -90,38 +91,40 @@ def test_names_in_names_are_told_apart() -> None:
 def test_guards_are_read_back_from_their_texts(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
     read = guard_reader(fspa)
-    names = [each.name for each in fspa.atoms]
+    names = [atom.name for atom in fspa.atoms]
     for edge in fspa.edges:
         for number in range(2 ** len(names)):
             truth = {name: 1.0 if number >> place & 1 else -1.0 for place, name in enumerate(names)}
-            said = robustness_of_state(read(edge.guard), truth) > 0
-            assert said == holds(edge.guard, [truth[name] for name in names])
+            is_true = robustness_of_state(read(edge.guard), truth) > 0
+            assert is_true == holds(edge.guard, [truth[name] for name in names])
 
 
 @settings(max_examples=100, deadline=None)
 @given(FORMULAS)
-def test_the_fields_are_those_of_the_automaton(formula: Formula) -> None:
+def test_the_explanation_matches_the_automaton(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
-    found = explain(fspa, formula)
+    explanation = explain(fspa, formula)
     verdicts = {state.verdict for state in fspa.states}
-    assert [(state.id, state.verdict, state.distance) for state in found.states] == [
+    assert [(state.id, state.verdict, state.distance) for state in explanation.states] == [
         (state.id, state.verdict, state.distance) for state in fspa.states
     ]
-    for state in found.states:
+    for state in explanation.states:
         assert bool(state.leads) == bool(state.distance)
         for lead in state.leads:
-            assert (there := found.states[lead.state].distance) is not None and there <= (state.distance or 0)
-            assert there != state.distance or is_looser(fspa, state.id, lead.state)
-    assert (found.succeed is None) == (verdicts == {"violated"})
-    if found.fail is not None:
-        assert found.states[found.fail.steps[-1].state].verdict == "violated"
-    if found.succeed is not None:
-        assert fspa.states[found.succeed.steps[-1].state].accepting
-    jsonschema.validate({"specs": [values(found)]}, SCHEMA)
+            assert (distance := explanation.states[lead.state].distance) is not None and distance <= (
+                state.distance or 0
+            )
+            assert distance != state.distance or is_looser(fspa, state.id, lead.state)
+    assert (explanation.succeed is None) == (verdicts == {"violated"})
+    if explanation.fail is not None:
+        assert explanation.states[explanation.fail.steps[-1].state].verdict == "violated"
+    if explanation.succeed is not None:
+        assert fspa.states[explanation.succeed.steps[-1].state].accepting
+    jsonschema.validate({"specs": [values(explanation)]}, SCHEMA)
 
 
 def is_looser(fspa: Fspa, one: int, other: int) -> bool:
-    """Whether another state accepts all short traces that the one does."""
+    """Whether ``other`` accepts all short traces that ``one`` accepts."""
     traces = all_traces(tuple(atom.name for atom in fspa.atoms), 3)
     return all(ends_well(fspa, other, trace) for trace in traces if ends_well(fspa, one, trace))
 
@@ -133,10 +136,10 @@ def ends_well(fspa: Fspa, state: int, letters: Iterable[Letter]) -> bool:
     return fspa.states[state].accepting
 
 
-def test_one_goal_at_a_time_stands_before_several_at_once() -> None:
+def test_single_goals_are_listed_before_goals_at_once() -> None:
     (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { reach a  reach b }")
     assert [lead.when for lead in explain(fspa).states[0].leads] == ["b and not a", "a and not b", "a and b"]
-    # The time that passes is no lead.
+    # The passing of time is not listed as a lead.
     (fspa,) = compiler.compile_text("signal a: bool  spec s = F[0,3] a")
     assert [lead.when for lead in explain(fspa).states[0].leads] == ["a"]
 
@@ -149,38 +152,38 @@ def test_one_goal_at_a_time_stands_before_several_at_once() -> None:
         ("F a", ["0", "1"]),
     ],
 )
-def test_states_that_count_share_a_row(formula: str, rows: list[str]) -> None:
+def test_counting_states_share_a_row(formula: str, rows: list[str]) -> None:
     (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s = {formula}")
-    found = explain(fspa)
-    (section,) = (each for each in document(found) if each.heading == "States")
+    explanation = explain(fspa)
+    (section,) = (candidate for candidate in document(explanation) if candidate.heading == "States")
     (table,) = section.blocks
     assert isinstance(table, Table)
     assert [row[0] for row in table.rows] == rows
-    assert len(values(found)["states"]) == len(fspa.states)
+    assert len(values(explanation)["states"]) == len(fspa.states)
 
 
-def test_a_row_for_many_states_says_what_they_count_and_where_they_lead() -> None:
+def test_a_row_of_counting_states_names_the_steps_and_the_target() -> None:
     (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { require G (b -> F[0,20] a) }")
-    said = " ".join(text(explain(fspa)).split())
-    assert said.count("18…1 steps.") == 1
+    explanation = " ".join(text(explain(fspa)).split())
+    assert explanation.count("18…1 steps.") == 1
     (fspa,) = compiler.compile_text("signal a: bool  spec s = X X X X X X a")
     row = "  1–4    pending    6…3    Have a after 5…2 steps.      anything (to the next)\n"
     assert row in text(explain(fspa))
 
 
-def test_what_breaks_a_spec_is_said_reason_by_reason() -> None:
+def test_failures_are_listed_by_reason() -> None:
     (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { keep a  avoid b  require F a }")
-    found = [(failure.when, failure.everywhere) for failure in explain(fspa).failures]
-    assert found == [("not a", True), ("b", True)]
+    failures = [(failure.when, failure.everywhere) for failure in explain(fspa).failures]
+    assert failures == [("not a", True), ("b", True)]
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_the_document_of_the_examples(path: Path, tltlc: Run) -> None:
+def test_documents_of_the_examples_fit_the_schema(path: Path, tltlc: Run) -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     jsonschema.validate(json.loads(tltlc("explain", path, "--format", "json").out), SCHEMA)
 
 
-def test_json_and_markdown(tltlc: Run) -> None:
+def test_json_and_markdown_output(tltlc: Run) -> None:
     document = json.loads(tltlc("explain", EXAMPLE, "--format", "json").out)
     (spec,) = document["specs"]
     assert spec["name"] == "cover_and_hide"
@@ -221,7 +224,7 @@ def test_a_file_is_explained_spec_by_spec(tltlc: Run, inside: Path) -> None:
         ("semantics infinite require G F a", "  Again and again, for ever:\n    - reach a\n"),
     ],
 )
-def test_what_is_said(clauses: str, said: str) -> None:
+def test_the_text_contains_the_expected_phrases(clauses: str, said: str) -> None:
     (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s {{ {clauses} }}")
     assert said in text(explain(fspa))
 
@@ -234,9 +237,9 @@ def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str
         compile_source(source)
 
     def explained() -> None:
-        found = compile_source(source)
-        for fspa, spec in zip(found.automata, found.program.specs, strict=True):
+        compilation = compile_source(source)
+        for fspa, spec in zip(compilation.automata, compilation.program.specs, strict=True):
             text(explain(fspa, spec.formula))
 
-    explained()  # the libraries are read
+    explained()  # Warm up: read the libraries.
     assert calls(explained) < 3 * calls(compiled)

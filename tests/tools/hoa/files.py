@@ -1,4 +1,4 @@
-"""Random automata as HOA files of every style, with what they mean beside them."""
+"""Random automata, together with their HOA files in varied styles."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from random import Random
 from typing import Any
 
 Condition = tuple[Any, ...]
-"""``("fin", set)``, ``("inf", set)``, both also with ``outside`` behind, ``("and", …)``, ``("or", …)``, ``("t",)``."""
+"""``("fin", set)``, ``("inf", set)``, both optionally followed by ``"outside"``; ``("and", …)``,
+``("or", …)``, ``("t",)``."""
 Letter = int
-"""Bit i says whether atom i holds."""
+"""Bit i is set if atom i holds."""
 
 
 @dataclass
 class Automaton:
-    """Of each state and letter the target and the sets; and the condition that its sets have to meet."""
+    """For each state and letter, the target and the acceptance sets of the edge; and the acceptance
+    condition."""
 
     atoms: int
     sets: int
@@ -24,7 +26,7 @@ class Automaton:
     of_states: list[frozenset[int]]
 
     def accepts(self, prefix: Sequence[Letter], cycle: Sequence[Letter]) -> bool:
-        """Whether the run on ``prefix`` and then ``cycle`` for ever is accepted."""
+        """Whether the run on ``prefix`` followed by ``cycle`` for ever is accepted."""
         state = 0
         for letter in prefix:
             state, _ = self.moves[state][letter]
@@ -46,7 +48,7 @@ class Automaton:
         if op == "t":
             return True
         if op in ("and", "or"):
-            return (all if op == "and" else any)(self._holds(each, taken) for each in rest)
+            return (all if op == "and" else any)(self._holds(part, taken) for part in rest)
         number, outside = rest[0], rest[1:] == ["outside"]
         met = any((number in sets) != outside for sets in taken)
         return bool(met == (op == "inf"))
@@ -54,7 +56,8 @@ class Automaton:
 
 @dataclass
 class Shape:
-    """What an automaton is to have."""
+    """The numbers of atoms, states and sets, and the acceptance condition, of an automaton to be
+    generated."""
 
     atoms: int
     states: int
@@ -63,7 +66,7 @@ class Shape:
 
 
 def some_automaton(chance: Random, shape: Shape | None = None) -> Automaton:
-    """A deterministic, complete automaton; without a shape, with any acceptance."""
+    """Return a deterministic, complete automaton; without a shape, size and acceptance are random."""
     atoms, states, sets = chance.randint(0, 2), chance.randint(1, 5), chance.randint(0, 3)
     if shape is not None:
         atoms, states, sets = shape.atoms, shape.states, shape.sets
@@ -87,7 +90,7 @@ def some_automaton(chance: Random, shape: Shape | None = None) -> Automaton:
 
 
 def written(automaton: Automaton, chance: Random) -> str:
-    """The automaton as a file, in a style of its own."""
+    """Return the automaton as a file in a random style."""
     lines = ["HOA: v1", *([f"States: {len(automaton.moves)}"] if chance.random() < 0.7 else []), "Start: 0"]
     lines.append(" ".join([f"AP: {automaton.atoms}", *(f'"p{atom}"' for atom in range(automaton.atoms))]))
     if automaton.atoms:
@@ -109,7 +112,7 @@ def written(automaton: Automaton, chance: Random) -> str:
 
 
 def _labelled(automaton: Automaton, moves: list[tuple[int, frozenset[int]]], chance: Random) -> list[str]:
-    """An edge for each letter, or for all with one move."""
+    """Return one edge per letter, or one edge for all letters with the same move."""
     groups: dict[Any, list[int]] = {}
     together = chance.random() < 0.5
     for letter, move in enumerate(moves):

@@ -33,48 +33,53 @@ def imported(text: str, library: SourceFile = PROPOSITIONS, options: ImportOptio
 
 
 def library(fspa: Fspa) -> SourceFile:
-    """Signals of the names of an automaton's atoms, and its groups of exclusive ones."""
+    """Return a source with a signal for each atom of the automaton, and its groups of exclusive
+    atoms."""
     signals = [f"signal {atom.name}: number in [-1, 1]" for atom in fspa.atoms]
     predicates = [f"predicate {atom.name}_ = {atom.name}" for atom in fspa.atoms]
-    groups = [f"exclusive {', '.join(f'{fspa.atoms[each].name}_' for each in group)}" for group in fspa.exclusive]
+    groups = [f"exclusive {', '.join(f'{fspa.atoms[index].name}_' for index in group)}" for group in fspa.exclusive]
     return SourceFile("lib.tltl", "\n".join([*signals, *predicates, *groups, ""]))
 
 
 def again(fspa: Fspa) -> Fspa:
-    """The automaton written as HOA and read again."""
+    """Write the automaton as HOA, and read it back."""
     text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
     assert isinstance(text, str)
     options = ImportOptions(atoms={atom.name: f"{atom.name}_" for atom in fspa.atoms})
-    found = imported(text, library(fspa), options)
-    # The same names, to be compared.
+    automaton = imported(text, library(fspa), options)
+    # Restore the names of the atoms, so that the automata can be compared.
     names = {f"{atom.name}_": atom.name for atom in fspa.atoms}
-    return replace(found, atoms=tuple(replace(atom, base=names[atom.name], arguments=()) for atom in found.atoms))
+    return replace(
+        automaton, atoms=tuple(replace(atom, base=names[atom.name], arguments=()) for atom in automaton.atoms)
+    )
 
 
 @settings(max_examples=80, deadline=None)
 @given(automata())
-def test_what_is_written_over_finite_traces_is_read_again(fspa: Fspa) -> None:
-    found = again(fspa)
-    assert found.semantics == "finite"
-    assert are_equivalent(found, fspa)
-    assert [replace(state, label=None) for state in found.states] == [
+def test_a_finite_automaton_survives_export_and_import(fspa: Fspa) -> None:
+    reimported = again(fspa)
+    assert reimported.semantics == "finite"
+    assert are_equivalent(reimported, fspa)
+    assert [replace(state, label=None) for state in reimported.states] == [
         replace(state, label=None) for state in fspa.states
     ]
-    assert [(edge.source, edge.target) for edge in found.edges] == [(edge.source, edge.target) for edge in fspa.edges]
-    assert (found.spec_size, found.judge) == (fspa.spec_size, fspa.judge)
+    assert [(edge.source, edge.target) for edge in reimported.edges] == [
+        (edge.source, edge.target) for edge in fspa.edges
+    ]
+    assert (reimported.spec_size, reimported.judge) == (fspa.spec_size, fspa.judge)
 
 
 @settings(max_examples=80, deadline=None)
 @given(infinite_automata())
-def test_what_is_written_over_infinite_traces_is_read_again(fspa: Fspa) -> None:
-    found = again(fspa)
-    assert found.semantics == "infinite"
-    assert are_equivalent(found, fspa)
-    assert [replace(state, label=None) for state in found.states] == [
+def test_an_infinite_automaton_survives_export_and_import(fspa: Fspa) -> None:
+    reimported = again(fspa)
+    assert reimported.semantics == "infinite"
+    assert are_equivalent(reimported, fspa)
+    assert [replace(state, label=None) for state in reimported.states] == [
         replace(state, label=None) for state in fspa.states
     ]
-    assert len(found.acceptance) <= len(fspa.acceptance)
-    assert (found.spec_size, found.judge) == (fspa.spec_size, fspa.judge)
+    assert len(reimported.acceptance) <= len(fspa.acceptance)
+    assert (reimported.spec_size, reimported.judge) == (fspa.spec_size, fspa.judge)
 
 
 def ascii_alone(fspa: Fspa) -> Fspa:
@@ -86,21 +91,23 @@ def ascii_alone(fspa: Fspa) -> Fspa:
 
 
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.name)
-def test_what_is_written_of_an_example_is_read_again_whole(spec: Fspa) -> None:
+def test_an_example_survives_export_and_import(spec: Fspa) -> None:
     fspa, example = spec, EXAMPLE_OF[spec.name]
     text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
     assert isinstance(text, str)
-    found = imported(text, read_source(example))
-    # Comparisons have lost their units, so that a label with one is no formula any more.
+    reimported = imported(text, read_source(example))
+    # The file names comparisons without their units, so a label with a comparison can no longer be parsed as
+    # a formula.
     if any("<" in atom.name or ">" in atom.name for atom in fspa.atoms):
-        fspa, found = ascii_alone(fspa), ascii_alone(found)
+        fspa, reimported = ascii_alone(fspa), ascii_alone(reimported)
     for name in Fspa.__match_args__:
         if name not in ("doc", "tags"):
-            assert (name, getattr(found, name)) == (name, getattr(fspa, name))
+            assert (name, getattr(reimported, name)) == (name, getattr(fspa, name))
 
 
 def _as_artefact(fspa: Fspa) -> Fspa:
-    """Written and read, which checks all that is known of an artefact."""
+    """Write the automaton as an artefact and read it back; reading checks all invariants of
+    artefacts."""
     from tltlc.backends.json import read
 
     text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
@@ -109,7 +116,7 @@ def _as_artefact(fspa: Fspa) -> Fspa:
 
 
 def accepts(fspa: Fspa, prefix: Sequence[int], cycle: Sequence[int]) -> bool:
-    """Whether an automaton accepts a lasso; letters as of :mod:`tests.tools.hoa.files`."""
+    """Whether an automaton accepts a lasso; letters are as in :mod:`tests.tools.hoa.files`."""
     marks = fspa.marks()
     place = {atom.name: index for index, atom in enumerate(fspa.atoms)}
 
@@ -146,17 +153,17 @@ def lassos(automaton: Automaton, chance: Random) -> list[tuple[list[int], list[i
 
 
 @pytest.mark.parametrize("seed", range(150))
-def test_any_acceptance_and_any_style_is_read(seed: int) -> None:
+def test_any_acceptance_and_any_style_can_be_imported(seed: int) -> None:
     chance = Random(seed)
     automaton = some_automaton(chance)
-    found = imported(written(automaton, chance))
-    assert _as_artefact(found) == found
+    fspa = imported(written(automaton, chance))
+    assert _as_artefact(fspa) == fspa
     for prefix, cycle in lassos(automaton, chance):
-        assert accepts(found, prefix, cycle) == automaton.accepts(prefix, cycle)
+        assert accepts(fspa, prefix, cycle) == automaton.accepts(prefix, cycle)
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_states_that_are_not_reached_are_left_out(seed: int) -> None:
+def test_unreachable_states_are_left_out(seed: int) -> None:
     text = re.sub("States:.*\n", "", written(some_automaton(Random(seed)), Random(seed)))
     assert imported(text.replace("--END--", 'State: 90 "unreached"\n--END--')) == imported(text)
 
@@ -170,11 +177,11 @@ def streett(pairs: int) -> Condition:
 
 
 def parity(colours: int) -> Condition:
-    """``parity max even``."""
-    found: Condition = ("inf", 0)
+    """The acceptance condition ``parity max even``."""
+    condition: Condition = ("inf", 0)
     for colour in range(1, colours):
-        found = ("and", ("fin", colour), found) if colour % 2 else ("or", ("inf", colour), found)
-    return found
+        condition = ("and", ("fin", colour), condition) if colour % 2 else ("or", ("inf", colour), condition)
+    return condition
 
 
 def generalized_rabin(pairs: int, infs: int) -> Condition:
@@ -199,41 +206,39 @@ def generalized_rabin(pairs: int, infs: int) -> Condition:
     ],
     ids=["buchi", "co-buchi", "rabin", "parity", "generalized-buchi", "streett", "generalized-rabin"],
 )
-def test_named_acceptances_keep_the_states_as_far_as_they_can(
-    condition: Condition, sets: int, largest: int, seed: int
-) -> None:
+def test_named_acceptances_bound_the_number_of_states(condition: Condition, sets: int, largest: int, seed: int) -> None:
     chance = Random(seed)
     automaton = some_automaton(chance, Shape(atoms=2, states=6, sets=sets, condition=condition))
-    found = imported(written(automaton, chance))
-    assert len(found.states) <= largest
+    fspa = imported(written(automaton, chance))
+    assert len(fspa.states) <= largest
     for prefix, cycle in lassos(automaton, chance):
-        assert accepts(found, prefix, cycle) == automaton.accepts(prefix, cycle)
+        assert accepts(fspa, prefix, cycle) == automaton.accepts(prefix, cycle)
 
 
-def test_a_state_that_becomes_several_is_counted() -> None:
+def test_copies_of_a_state_are_numbered() -> None:
     text = """HOA: v1 Start: 0 AP: 2 "p0" "p1" Acceptance: 2 Inf(0)&Inf(1)
     --BODY-- State: 0 "both" [0&!1] 0 {0} [!0&1] 0 {1} [!0&!1] 0 [0&1] 0 {0 1} --END--"""
     assert [state.label.ascii for state in imported(text).states] == ["both (1 of 2)", "both (2 of 2)"]
 
 
 @pytest.mark.parametrize("name", ["a=b", "x==1", "", "X", "q > 2", "p0 p1"])
-def test_any_name_can_be_given_a_predicate(name: str) -> None:
+def test_an_atom_of_any_name_can_be_mapped_to_a_predicate(name: str) -> None:
     text = f'HOA: v1 Start: 0 AP: 1 "{name}" Acceptance: 0 t --BODY-- State: 0 [0] 0 [!0] 0 --END--'
     key, _, value = f"{name}=p1".partition("=")
     assert [atom.name for atom in imported(text, options=ImportOptions({key: value})).atoms] == ["p1"]
     with pytest.raises(tltlc.TltlError) as error:
         imported(text)
-    assert all(f'`--atom "{name}=…"`' in str(each.help) for each in error.value.diagnostics)
+    assert all(f'`--atom "{name}=…"`' in str(diagnostic.help) for diagnostic in error.value.diagnostics)
 
 
-def test_a_library_in_error_is_told_and_nothing_else() -> None:
+def test_only_errors_of_the_library_are_reported_if_it_has_any() -> None:
     text = 'HOA: v1 Start: 0 AP: 1 "a" Acceptance: 0 t --BODY-- State: 0 [0] 0 [!0] 0 --END--'
     with pytest.raises(tltlc.TltlError) as error:
         imported(text, SourceFile("lib.tltl", "signal a: boool\n"))
-    assert {each.labels[0].source.name for each in error.value.diagnostics} == {"lib.tltl"}
+    assert {diagnostic.labels[0].source.name for diagnostic in error.value.diagnostics} == {"lib.tltl"}
 
 
-def test_what_takes_too_much_work_is_refused() -> None:
+def test_automata_over_the_limits_are_rejected() -> None:
     automaton = some_automaton(Random(1), Shape(atoms=2, states=6, sets=16, condition=generalized_rabin(4, 3)))
     with pytest.raises(tltlc.TltlError, match="is too large, or its acceptance"):
         imported(written(automaton, Random(1)), options=ImportOptions(work=300))
@@ -241,7 +246,7 @@ def test_what_takes_too_much_work_is_refused() -> None:
         imported(written(automaton, Random(1)), options=ImportOptions(state_budget=3))
 
 
-def test_too_many_prime_implicants_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_prime_implicants_are_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.automaton.guards.PRIME_LIMIT", 1)
     text = 'HOA: v1 Start: 0 AP: 2 "p0" "p1" Acceptance: 0 t --BODY-- State: 0 [0&!1 | !0&1] 0 [0&1 | !0&!1] 1'
     with pytest.raises(tltlc.TltlError, match="TLT0502"):
@@ -258,27 +263,27 @@ def test_too_many_prime_implicants_are_refused(monkeypatch: pytest.MonkeyPatch) 
         ('Start: 0 AP: 15000 "p0"', "`AP:` says 15000, and 1 name follows"),
     ],
 )
-def test_headers_that_are_wrong(text: str, message: str) -> None:
+def test_wrong_headers_are_reported(text: str, message: str) -> None:
     with pytest.raises(tltlc.TltlError, match=re.escape(message)):
         imported(f"HOA: v1 {text} Acceptance: 0 t --BODY-- State: 0 [t] 0 --END--")
 
 
 @pytest.mark.slow
-def test_letters_of_many_atoms_are_not_counted() -> None:
+def test_letters_of_many_atoms_are_not_enumerated() -> None:
     names = " ".join(f'"p{place}"' for place in range(15_000))
     library = SourceFile("p.tltl", "\n".join(f"signal p{place}: bool" for place in range(15_000)))
     with pytest.raises(tltlc.TltlError, match=r"has 1 edge without labels, for 2\^15000 letters"):
         imported(f"HOA: v1 Start: 0 AP: 15000 {names} Acceptance: 0 t --BODY-- State: 0 0 --END--", library)
 
 
-def test_every_terminal_has_words_for_messages() -> None:
+def test_every_terminal_has_a_name_for_messages() -> None:
     from tltlc.tools.hoa import reader
 
-    patterns = [each.name for each in reader._parser().terminals if each.pattern.type == "re"]
+    patterns = [terminal.name for terminal in reader._parser().terminals if terminal.pattern.type == "re"]
     assert set(patterns) - {"__IGNORE_0"} <= set(reader._NAMES)
 
 
-def test_the_messages_on_many_names_take_linear_memory_and_name_their_places() -> None:
+def test_errors_for_many_names_take_linear_memory_and_point_at_each_name() -> None:
     count = 3_000
     names = " ".join(f'"n{number}"' for number in range(count))
     head = f"HOA: v1\nStates: 1\nStart: 0\nAP: {count} {names}\nAcceptance: 1 Inf(0)\n"
@@ -287,10 +292,10 @@ def test_the_messages_on_many_names_take_linear_memory_and_name_their_places() -
     try:
         with pytest.raises(TltlError) as raised:
             load(source, PROPOSITIONS, ImportOptions())
-        most = tracemalloc.get_traced_memory()[1]
+        peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert most < 30_000_000
+    assert peak < 30_000_000
     labels = [message.labels[0] for message in raised.value.diagnostics]
     assert [label.source for label in labels] == [source] * count
     assert [source.slice(label.span) for label in labels] == [f"n{number}" for number in range(count)]

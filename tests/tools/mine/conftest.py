@@ -22,4 +22,6 @@ def evidences(draw: st.DrawFn, atoms: tuple[str, ...] = ATOMS, longest: int = 20
     traces = st.lists(letters, min_size=1, max_size=longest).map(tuple)
     good = draw(st.lists(traces, min_size=1, max_size=4))
     bad = draw(st.lists(traces, min_size=0, max_size=4))
-    return Evidence(*(tuple(Recorded(f"t{i}", each) for i, each in enumerate(part)) for part in (good, bad)))
+    return Evidence(
+        *(tuple(Recorded(f"t{i}", letters_of_trace) for i, letters_of_trace in enumerate(part)) for part in (good, bad))
+    )

@@ -1,4 +1,5 @@
-"""The benchmark's parts: peers that learn what they say they learn, and a report of any records."""
+"""Parts of the benchmark: the competing learners return formulas that separate the traces; the
+report of records."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ def learned(formula: str, spec: Planted) -> Fspa:
     return compile_source(SourceFile("found.tltl", text)).automata[0]
 
 
-def tells_apart(fspa: Fspa, given: Evidence) -> bool:
+def separates(fspa: Fspa, given: Evidence) -> bool:
     return all(judge(fspa, trace).accepted for trace in given.traces) and not any(
         judge(fspa, trace).accepted for trace in given.counterexamples
     )
@@ -33,43 +34,43 @@ def tells_apart(fspa: Fspa, given: Evidence) -> bool:
 @pytest.mark.parametrize(
     "clauses", [("reach p0",), ("keep not p0",), ("require p0 until p1",), ("require X p1",), ("reach p0 and p1",)]
 )
-def test_enumeration_finds_a_formula_that_tells_all_apart(clauses: tuple[str, ...]) -> None:
+def test_enumeration_finds_a_formula_that_separates_the_traces(clauses: tuple[str, ...]) -> None:
     spec = Planted("tiny", clauses, SHORT.likely)
     given = evidence(spec, 20, 40, seed=1)
-    found = enumerated(given, timeout_s=HANG_S)
-    assert found.formula is not None
-    assert tells_apart(learned(found.formula, spec), given)
+    result = enumerated(given, timeout_s=HANG_S)
+    assert result.formula is not None
+    assert separates(learned(result.formula, spec), given)
 
 
-def test_enumeration_gives_up_in_time() -> None:
-    found = enumerated(evidence(planted(0), 20, 40, seed=1), timeout_s=0.0)
-    # It looks at the clock as often as that.
-    assert (found.formula, found.tried) == (None, 64)
+def test_enumeration_stops_at_the_timeout() -> None:
+    result = enumerated(evidence(planted(0), 20, 40, seed=1), timeout_s=0.0)
+    # The clock is checked after every 64 formulas.
+    assert (result.formula, result.tried) == (None, 64)
 
 
 @pytest.mark.skipif(not has_scarlet(), reason="Scarlet is not installed")
-def test_scarlet_is_read_as_it_means() -> None:
+def test_formulas_of_scarlet_are_translated_correctly() -> None:
     given = evidence(SHORT, 20, 40, seed=1)
-    found = scarlet(given, timeout_s=HANG_S)
-    assert found.formula is not None
-    assert tells_apart(learned(found.formula, SHORT), given)
+    result = scarlet(given, timeout_s=HANG_S)
+    assert result.formula is not None
+    assert separates(learned(result.formula, SHORT), given)
 
 
 @pytest.mark.parametrize("spec", [*of_the_paper(), *map(planted, range(10))], ids=lambda spec: spec.name)
-def test_evidence_is_on_the_sides_that_it_says(spec: Planted) -> None:
+def test_generated_evidence_is_labelled_correctly(spec: Planted) -> None:
     given = evidence(spec, 6, 8, seed=2)
-    assert tells_apart(spec.automaton(), given)
+    assert separates(spec.automaton(), given)
     assert given == evidence(spec, 6, 8, seed=2)
     noisy = evidence(spec, 6, 8, seed=2, noise=0.5)
     assert sum(not judge(spec.automaton(), trace).accepted for trace in noisy.traces) == 3
 
 
-def test_no_two_random_specs_are_the_same() -> None:
+def test_random_specs_differ() -> None:
     automata = [planted(number).automaton() for number in range(0, 20, 10)]
     assert not are_equivalent(*automata)
 
 
-def test_the_report_of_what_was_measured() -> None:
+def test_the_report_summarizes_the_records() -> None:
     ours = {"seconds": 0.1, "rank": 1, "tried": 100}
     records = {
         name: {

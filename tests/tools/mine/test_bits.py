@@ -9,14 +9,14 @@ from tltlc.tools.mine.evidence import Evidence, Recorded
 
 
 def places(bits: Bits, samples: int, evidence: Evidence) -> list[set[int]]:
-    """Per trace the samples of a set, seen through single samples."""
-    found = []
+    """For each trace, the samples in a set, decoded bit by bit."""
+    decoded = []
     width = bits.all.bit_length() // len(evidence.all) + 8
     size = next(size for size in range(1, width) if _fits(bits, size, evidence))
     for number, trace in enumerate(evidence.all):
         segment = samples >> (8 * size * number)
-        found.append({place for place in range(len(trace.letters)) if segment >> place & 1})
-    return found
+        decoded.append({place for place in range(len(trace.letters)) if segment >> place & 1})
+    return decoded
 
 
 def _fits(bits: Bits, size: int, evidence: Evidence) -> bool:
@@ -29,18 +29,18 @@ def members(bits: Bits, verdicts: int, evidence: Evidence) -> list[bool]:
 
 
 @given(evidences(), st.integers(0, 9))
-def test_operations_are_what_they_say(evidence: Evidence, steps: int) -> None:
+def test_operations_match_a_naive_implementation(evidence: Evidence, steps: int) -> None:
     bits = Bits(evidence)
     for name, samples in bits.holds.items():
         naive = [{place for place, letter in enumerate(trace.letters) if name in letter} for trace in evidence.all]
         every = [set(range(len(trace.letters))) for trace in evidence.all]
         assert places(bits, samples, evidence) == naive
-        assert members(bits, bits.some(samples), evidence) == [bool(each) for each in naive]
-        assert members(bits, bits.none(samples), evidence) == [not each for each in naive]
+        assert members(bits, bits.some(samples), evidence) == [bool(places_of_trace) for places_of_trace in naive]
+        assert members(bits, bits.none(samples), evidence) == [not places_of_trace for places_of_trace in naive]
         assert places(bits, bits.complement(samples), evidence) == [
-            all_ - each for all_, each in zip(every, naive, strict=True)
+            all_ - places_of_trace for all_, places_of_trace in zip(every, naive, strict=True)
         ]
-        firsts = [min(each, default=None) for each in naive]
+        firsts = [min(places_of_trace, default=None) for places_of_trace in naive]
         assert places(bits, bits.after_first(samples), evidence) == [
             {place for place in all_ if first is not None and place > first}
             for all_, first in zip(every, firsts, strict=True)
@@ -50,13 +50,13 @@ def test_operations_are_what_they_say(evidence: Evidence, steps: int) -> None:
             for all_, first in zip(every, firsts, strict=True)
         ]
         assert places(bits, bits.within(samples, steps), evidence) == [
-            {place for place in all_ if any(place <= other <= place + steps for other in each)}
-            for all_, each in zip(every, naive, strict=True)
+            {place for place in all_ if any(place <= other <= place + steps for other in places_of_trace)}
+            for all_, places_of_trace in zip(every, naive, strict=True)
         ]
 
 
 @given(evidences())
-def test_backwards_turns_every_trace_around(evidence: Evidence) -> None:
+def test_backwards_reverses_every_trace(evidence: Evidence) -> None:
     turned = Evidence(
         *(
             tuple(Recorded(trace.name, trace.letters[::-1]) for trace in part)
@@ -67,7 +67,7 @@ def test_backwards_turns_every_trace_around(evidence: Evidence) -> None:
 
 
 @given(evidences())
-def test_the_traces_and_the_counterexamples_are_all(evidence: Evidence) -> None:
+def test_traces_and_counterexamples_partition_the_evidence(evidence: Evidence) -> None:
     bits = Bits(evidence)
     assert count(bits.traces) == len(evidence.traces)
     assert count(bits.counterexamples) == len(evidence.counterexamples)

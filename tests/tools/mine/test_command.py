@@ -34,7 +34,7 @@ Run = Callable[..., Outcome]
 
 
 class Named(Planted):
-    """With a source that declares what has brackets."""
+    """A planted spec whose source declares the predicates with arguments."""
 
     @property
     def source(self) -> str:
@@ -44,7 +44,7 @@ class Named(Planted):
 
 @pytest.fixture
 def recorded(inside: Path) -> Path:
-    """The folders `good` and `bad` with traces of a planted spec."""
+    """The folder with subfolders `good` and `bad`, which contain traces of a planted spec."""
     made = evidence(Named(SPEC.name, SPEC.clauses, SPEC.likely), 12, 24, seed=4)
     for folder, traces in (("good", made.traces), ("bad", made.counterexamples)):
         (inside / folder).mkdir()
@@ -63,49 +63,51 @@ def _csv(trace: Recorded) -> str:
 def proposals(done: Outcome) -> list[dict[str, Any]]:
     document = json.loads(done.out)
     jsonschema.validate(document, SCHEMA)
-    found: list[dict[str, Any]] = document["proposals"]
-    return found
+    listed: list[dict[str, Any]] = document["proposals"]
+    return listed
 
 
-def test_what_is_printed(tltlc: Run, recorded: Path) -> None:
-    done = tltlc("mine", "good", "--against", "bad", "--top", "2")
-    assert done.status == 0
-    assert done.err == "columns left out, being no atoms: time (`--predicates LIB` computes atoms from numbers)\n"
+def test_the_text_output_matches_the_golden_file(tltlc: Run, recorded: Path) -> None:
+    outcome = tltlc("mine", "good", "--against", "bad", "--top", "2")
+    assert outcome.status == 0
+    assert outcome.err == "columns left out, being no atoms: time (`--predicates LIB` computes atoms from numbers)\n"
     expected = Path(__file__).with_name("expected.txt")
-    assert done.out == expected.read_text(encoding="utf-8")
-    assert max(map(len, done.out.splitlines())) <= 100
+    assert outcome.out == expected.read_text(encoding="utf-8")
+    assert max(map(len, outcome.out.splitlines())) <= 100
 
 
-def test_the_document(tltlc: Run, recorded: Path) -> None:
+def test_the_document_describes_the_proposals(tltlc: Run, recorded: Path) -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
-    done = tltlc("mine", "good", "--against", "bad", "--json")
-    document = json.loads(done.out)
+    outcome = tltlc("mine", "good", "--against", "bad", "--json")
+    document = json.loads(outcome.out)
     assert {key: document[key] for key in ("traces", "counterexamples", "made_up", "complete")} == {
         "traces": 12,
         "counterexamples": 24,
         "made_up": False,
         "complete": True,
     }
-    first = proposals(done)[0]
+    first = proposals(outcome)[0]
     assert first["rank"] == 1
     assert first["clauses"] == list(SPEC.clauses)
     assert first["formula"] == "F(near(s1) & X F(near(s2) & X F near(exit))) & G alive"
     assert (first["support"], first["separation"], first["atoms"]) == (1.0, 1.0, 4)
     assert first["score"] == pytest.approx(0.96)
     assert first["not_satisfied"] == first["not_violated"] == []
-    assert all(each["not_violated"] for each in proposals(done)[1:])
+    assert all(proposal["not_violated"] for proposal in proposals(outcome)[1:])
 
 
-def test_it_prints_the_same_each_time_in_any_order(tltlc: Run, recorded: Path) -> None:
-    done = tltlc("mine", "good", "--against", "bad", "--json")
+def test_the_result_does_not_depend_on_the_order_of_files(tltlc: Run, recorded: Path) -> None:
+    outcome = tltlc("mine", "good", "--against", "bad", "--json")
     files = sorted(str(path) for path in Path("good").iterdir())
-    turned = tltlc("mine", *files[::-1], "--against", "bad", "--json")
-    assert [each["clauses"] for each in proposals(turned)] == [each["clauses"] for each in proposals(done)]
+    reversed_outcome = tltlc("mine", *files[::-1], "--against", "bad", "--json")
+    assert [proposal["clauses"] for proposal in proposals(reversed_outcome)] == [
+        proposal["clauses"] for proposal in proposals(outcome)
+    ]
 
 
 def test_the_source_file_compiles_and_its_tests_pass(tltlc: Run, recorded: Path) -> None:
-    done = tltlc("mine", "good", "--against", "bad", "-o", "mined.tltl")
-    assert done.err.endswith("wrote mined.tltl\n")
+    outcome = tltlc("mine", "good", "--against", "bad", "-o", "mined.tltl")
+    assert outcome.err.endswith("wrote mined.tltl\n")
     text = Path("mined.tltl").read_text(encoding="utf-8")
     assert format_text(text) == text
     assert tltlc("test", "mined.tltl").status == 0
@@ -138,23 +140,23 @@ def test_the_source_file_declares_what_it_uses(tltlc: Run, inside: Path, predica
     assert tltlc("test", "mined.tltl").status == 0
 
 
-def test_traces_on_both_sides_are_said_once(tltlc: Run, recorded: Path) -> None:
+def test_traces_on_both_sides_are_reported_once(tltlc: Run, recorded: Path) -> None:
     first, second = (str(Path(f"good/run_0{number}.csv")) for number in (0, 1))
-    done = tltlc("mine", "good", "--against", "good")
-    assert done.err.count("TLT0762") == 1
+    outcome = tltlc("mine", "good", "--against", "good")
+    assert outcome.err.count("TLT0762") == 1
     title = f"12 of 12 counterexamples are the same in atoms as a trace (`{first}`, for one), and no spec tells them"
-    assert title in done.err
-    done = tltlc("mine", "good", "--against", "bad", "--against", first)
-    assert f"TLT0762]: `{first}` is a trace and a counterexample, and no spec tells the two apart" in done.err
+    assert title in outcome.err
+    outcome = tltlc("mine", "good", "--against", "bad", "--against", first)
+    assert f"TLT0762]: `{first}` is a trace and a counterexample, and no spec tells the two apart" in outcome.err
     copies = [Path("bad/a.csv"), Path("bad/b.csv")]
     for path, source in zip(copies, (first, second), strict=True):
         path.write_text(Path(source).read_text())
-    done = tltlc("mine", "good", "--against", "bad")
+    outcome = tltlc("mine", "good", "--against", "bad")
     title = f"2 of 26 counterexamples are the same in atoms as a trace (`{copies[0]}` as `{first}`, for one)"
-    assert title in done.err and done.err.count("TLT0762") == 1
+    assert title in outcome.err and outcome.err.count("TLT0762") == 1
 
 
-def test_predicates_of_a_library(tltlc: Run, inside: Path) -> None:
+def test_atoms_are_computed_by_predicates_of_a_library_file(tltlc: Run, inside: Path) -> None:
     Path("lib").mkdir()
     Path("lib/game.tltl").write_text("import stealth\nentity s1\n")
     Path("build").mkdir()
@@ -164,27 +166,27 @@ def test_predicates_of_a_library(tltlc: Run, inside: Path) -> None:
     Path("worse.csv").write_text("distance(s1),distance(exit),health\n9,9,1\n9,0.5,1\n0.5,9,1\n")
     Path("short.csv").write_text("distance(s1),distance(exit),health\n9,9,1\n0.5,9,1\n9,9,1\n")
     against = [part for name in ("bad", "worse", "short") for part in ("--against", f"{name}.csv")]
-    done = tltlc("mine", "good.csv", *against, "--predicates", "lib/game.tltl", "-o", "build/mined.tltl", "--json")
-    assert done.status == 0
-    assert proposals(done)[0]["clauses"] == ["reach near(s1) then near(exit)", "keep alive"]
+    outcome = tltlc("mine", "good.csv", *against, "--predicates", "lib/game.tltl", "-o", "build/mined.tltl", "--json")
+    assert outcome.status == 0
+    assert proposals(outcome)[0]["clauses"] == ["reach near(s1) then near(exit)", "keep alive"]
     text = Path("build/mined.tltl").read_text(encoding="utf-8")
     assert 'import "../lib/game.tltl"\n\nentity exit\n' in text
     assert tltlc("test", "build/mined.tltl").status == 0
 
 
-def test_a_library_is_known_by_its_name(tltlc: Run, inside: Path) -> None:
+def test_a_shipped_library_can_be_given_by_name(tltlc: Run, inside: Path) -> None:
     Path("good.csv").write_text("distance(s1),health\n9,1\n0.5,1\n")
     Path("bad.csv").write_text("distance(s1),health\n9,1\n9,1\n")
-    done = tltlc("mine", "good.csv", "--against", "bad.csv", "--predicates", "stealth", "-o", "mined.tltl", "--json")
-    assert proposals(done)[0]["clauses"] == ["reach near(s1)"]
+    outcome = tltlc("mine", "good.csv", "--against", "bad.csv", "--predicates", "stealth", "-o", "mined.tltl", "--json")
+    assert proposals(outcome)[0]["clauses"] == ["reach near(s1)"]
     assert "\nimport stealth\n\nentity s1\n" in Path("mined.tltl").read_text(encoding="utf-8")
     assert tltlc("test", "mined.tltl").status == 0
-    done = tltlc("mine", "good.csv", "--predicates", "stelth")
-    assert done.status == 1
-    assert "error[TLT0010]: there is no library `stelth`" in done.err
+    outcome = tltlc("mine", "good.csv", "--predicates", "stelth")
+    assert outcome.status == 1
+    assert "error[TLT0010]: there is no library `stelth`" in outcome.err
 
 
-def test_no_limit_is_made_up(tltlc: Run, recorded: Path) -> None:
+def test_no_limit_is_invented(tltlc: Run, recorded: Path) -> None:
     tltlc("mine", "good", "--against", "bad", "-o", "mined.tltl")
     text = Path("mined.tltl").read_text(encoding="utf-8")
     longest = max(len(path.read_text().splitlines()) - 1 for path in Path("good").iterdir())
@@ -192,142 +194,142 @@ def test_no_limit_is_made_up(tltlc: Run, recorded: Path) -> None:
     assert all(fspa.limit_steps is None for fspa in compile_file("mined.tltl"))
 
 
-def test_a_library_is_not_written_over(tltlc: Run, recorded: Path) -> None:
+def test_a_library_is_not_overwritten(tltlc: Run, recorded: Path) -> None:
     Path("lib.tltl").write_text("signal alive: bool\n")
-    done = tltlc("mine", "good", "--against", "bad", "--predicates", "lib.tltl", "-o", "lib.tltl")
-    assert done.status == 2
-    assert "would be written over" in done.err
+    outcome = tltlc("mine", "good", "--against", "bad", "--predicates", "lib.tltl", "-o", "lib.tltl")
+    assert outcome.status == 2
+    assert "would be written over" in outcome.err
     assert Path("lib.tltl").read_text() == "signal alive: bool\n"
 
 
-def test_without_counterexamples(tltlc: Run, recorded: Path) -> None:
-    done = tltlc("mine", "good")
-    assert done.status == 0
-    assert "made-up counterexamples" in done.out
-    assert "stand in for them.\n" in done.out
+def test_counterexamples_are_made_up_if_none_are_given(tltlc: Run, recorded: Path) -> None:
+    outcome = tltlc("mine", "good")
+    assert outcome.status == 0
+    assert "made-up counterexamples" in outcome.out
+    assert "stand in for them.\n" in outcome.out
 
 
 @pytest.mark.parametrize("example", ["navigation", "cover_and_hide", "racing"])
-def test_the_plan_of_an_example_is_seen_in_its_one_trace(tltlc: Run, inside: Path, example: str) -> None:
+def test_the_plan_of_an_example_is_found_in_its_trace(tltlc: Run, inside: Path, example: str) -> None:
     path = ROOT / "examples" / example
-    done = tltlc("mine", f"{path}.csv", "--predicates", f"{path}.tltl", "--json")
-    wanted = next(line.strip() for line in path.with_suffix(".tltl").read_text().splitlines() if "reach" in line)
-    order = [step.strip() for step in wanted.removeprefix("reach ").split(" then ")]
-    found = " ".join(proposals(done)[0]["clauses"])
-    assert [found.index(step) for step in order] == sorted(found.index(step) for step in order)
+    outcome = tltlc("mine", f"{path}.csv", "--predicates", f"{path}.tltl", "--json")
+    reach_clause = next(line.strip() for line in path.with_suffix(".tltl").read_text().splitlines() if "reach" in line)
+    order = [step.strip() for step in reach_clause.removeprefix("reach ").split(" then ")]
+    clauses = " ".join(proposals(outcome)[0]["clauses"])
+    assert [clauses.index(step) for step in order] == sorted(clauses.index(step) for step in order)
 
 
 def test_one_trace_may_be_standard_input(process: Run, recorded: Path) -> None:
     text = Path("good/run_00.csv").read_bytes()
-    done = process("mine", "-", "--against", "bad", "--json", stdin=text)
-    assert done.status == 0
-    assert json.loads(done.out)["traces"] == 1
+    outcome = process("mine", "-", "--against", "bad", "--json", stdin=text)
+    assert outcome.status == 0
+    assert json.loads(outcome.out)["traces"] == 1
     for twice in (("-", "-"), ("-", "--against", "-")):
         assert process("mine", *twice, stdin=text).status == 2
 
 
-def test_a_folder_without_traces(tltlc: Run, inside: Path) -> None:
+def test_a_folder_without_traces_is_reported(tltlc: Run, inside: Path) -> None:
     Path("empty").mkdir()
     Path("empty/.hidden.csv").write_text("a\ntrue\n")
-    done = tltlc("mine", "empty")
-    assert done.status == 3
-    assert "the folder `empty` holds no trace" in done.err
+    outcome = tltlc("mine", "empty")
+    assert outcome.status == 3
+    assert "the folder `empty` holds no trace" in outcome.err
 
 
-def test_traces_in_which_nothing_ever_holds(tltlc: Run, inside: Path) -> None:
+def test_traces_in_which_nothing_holds_give_no_proposal(tltlc: Run, inside: Path) -> None:
     Path("run.csv").write_text("a,b\nfalse,false\n")
-    done = tltlc("mine", "run.csv", "--json")
-    assert done.status == 1
-    assert "TLT0761" in done.err
-    assert proposals(done) == []
+    outcome = tltlc("mine", "run.csv", "--json")
+    assert outcome.status == 1
+    assert "TLT0761" in outcome.err
+    assert proposals(outcome) == []
 
 
-def test_nothing_heavy_is_loaded(recorded: Path) -> None:
+def test_no_heavy_module_is_imported(recorded: Path) -> None:
     assert not loaded("mine", "good", "--against", "bad", folder=recorded) & HEAVY
 
 
-def test_a_column_that_one_trace_lacks_is_named(tltlc: Run, recorded: Path) -> None:
+def test_a_column_missing_in_one_trace_is_reported(tltlc: Run, recorded: Path) -> None:
     path = Path("good/run_00.csv")
     path.write_text(path.read_text().replace("seen", "noticed"))
-    done = tltlc("mine", "good", "--against", "bad")
-    assert done.status == 0
-    assert f"warning[TLT0763]: `{path}` lacks the column `seen`, so it is left out\n" in done.err
-    assert "columns left out, being no atoms: time, noticed (" in done.err
+    outcome = tltlc("mine", "good", "--against", "bad")
+    assert outcome.status == 0
+    assert f"warning[TLT0763]: `{path}` lacks the column `seen`, so it is left out\n" in outcome.err
+    assert "columns left out, being no atoms: time, noticed (" in outcome.err
 
 
-def test_columns_that_are_called_as_no_atom_are_named(tltlc: Run, inside: Path) -> None:
+def test_columns_that_cannot_name_an_atom_are_reported(tltlc: Run, inside: Path) -> None:
     Path("run.csv").write_text("seen,x,the door\nfalse,1.5,false\ntrue,2.5,true\n")
-    done = tltlc("mine", "run.csv")
-    assert (done.status, done.err) == (
+    outcome = tltlc("mine", "run.csv")
+    assert (outcome.status, outcome.err) == (
         0,
         "columns left out, being no atoms: x (`--predicates LIB` computes atoms from numbers)\n"
         "columns left out, as no atom can be called so: the door (atoms are called `seen` or `at(key)`)\n",
     )
 
 
-def test_a_library_is_called_by_its_name(tltlc: Run, inside: Path) -> None:
+def test_a_library_is_named_as_on_the_command_line(tltlc: Run, inside: Path) -> None:
     Path("run.csv").write_text("x\n1.5\n")
-    done = tltlc("mine", "run.csv", "--predicates", "stealth")
-    assert done.status == 1
-    assert "no predicate of `stealth` can be computed from the columns of the traces" in done.err
+    outcome = tltlc("mine", "run.csv", "--predicates", "stealth")
+    assert outcome.status == 1
+    assert "no predicate of `stealth` can be computed from the columns of the traces" in outcome.err
 
 
 @pytest.mark.parametrize("text", ["", "alive,seen\n"])
-def test_an_empty_trace_is_named(tltlc: Run, recorded: Path, text: str) -> None:
+def test_an_empty_trace_is_reported(tltlc: Run, recorded: Path, text: str) -> None:
     Path("bad/empty.csv").write_text(text)
-    done = tltlc("mine", "good", "--against", "bad")
-    assert done.status == 1
-    assert f"error[TLT0620]: the trace `{Path('bad/empty.csv')}` holds no sample" in done.err
+    outcome = tltlc("mine", "good", "--against", "bad")
+    assert outcome.status == 1
+    assert f"error[TLT0620]: the trace `{Path('bad/empty.csv')}` holds no sample" in outcome.err
 
 
-def test_a_missing_trace(tltlc: Run, inside: Path) -> None:
+def test_a_missing_trace_is_reported(tltlc: Run, inside: Path) -> None:
     assert tltlc("mine", "nowhere.csv").status == 3
 
 
-def test_a_bad_line_is_pointed_at(tltlc: Run, inside: Path) -> None:
+def test_an_invalid_line_is_reported_with_its_number(tltlc: Run, inside: Path) -> None:
     Path("run.csv").write_text("alive,seen\ntrue,false\ntrue\n")
-    done = tltlc("mine", "run.csv")
-    assert done.status == 1
-    assert "TLT0622" in done.err
-    assert "run.csv:3" in done.err
+    outcome = tltlc("mine", "run.csv")
+    assert outcome.status == 1
+    assert "TLT0622" in outcome.err
+    assert "run.csv:3" in outcome.err
 
 
-def test_time_is_kept(tltlc: Run, recorded: Path) -> None:
-    done = tltlc("mine", "good", "--against", "bad", "--time", "0", "--json")
-    assert "time is up" in done.err
-    assert json.loads(done.out)["complete"] is False
+def test_the_search_stops_at_the_time_limit(tltlc: Run, recorded: Path) -> None:
+    outcome = tltlc("mine", "good", "--against", "bad", "--time", "0", "--json")
+    assert "time is up" in outcome.err
+    assert json.loads(outcome.out)["complete"] is False
 
 
-def test_an_interrupt_shows_what_there_is(
+def test_an_interrupt_prints_the_best_proposals_so_far(
     tltlc: Run,
     recorded: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from tltlc.tools.mine.search import Search
 
-    whole = Search.run
+    original_run = Search.run
 
     def interrupted(self: Search) -> Iterator[str]:
-        for stage in whole(self):
+        for stage in original_run(self):
             yield stage
             if stage == "conjunctions" and len(self.ranked()[0]) > 1:
                 raise KeyboardInterrupt
 
     monkeypatch.setattr(Search, "run", interrupted)
-    done = tltlc("mine", "good", "--against", "bad", "--json")
-    assert done.status == 130
-    assert "interrupted" in done.err
-    assert proposals(done)[0]["clauses"] == list(SPEC.clauses)
+    outcome = tltlc("mine", "good", "--against", "bad", "--json")
+    assert outcome.status == 130
+    assert "interrupted" in outcome.err
+    assert proposals(outcome)[0]["clauses"] == list(SPEC.clauses)
 
 
 @pytest.mark.parametrize("folder", ['p"q', "p\nq", "p\rq", os.fsdecode(b"p\xff")])
 @pytest.mark.parametrize("output", ["mined.tltl", "-"])
-def test_a_library_that_no_source_can_import_is_refused_before_the_search(
+def test_a_library_that_cannot_be_imported_is_rejected_before_the_search(
     folder: str, output: str, recorded: Path, tltlc: Run
 ) -> None:
     (recorded / folder).mkdir()
     (recorded / folder / "c.tltl").write_text("signal seen: bool\n")
-    done = tltlc("mine", "good", "--predicates", f"{folder}/c.tltl", "-o", output)
-    assert (done.status, done.out) == (2, "")
-    assert "for a quote or a line break in its path: rename it" in done.err
+    outcome = tltlc("mine", "good", "--predicates", f"{folder}/c.tltl", "-o", output)
+    assert (outcome.status, outcome.out) == (2, "")
+    assert "for a quote or a line break in its path: rename it" in outcome.err
     assert not (recorded / "mined.tltl").exists()

@@ -14,10 +14,10 @@ GUIDE = (DOCS / "guides" / "mining.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the page speaks to a POSIX shell")
-def test_the_guide_runs(tmp_path: Path) -> None:
+def test_the_commands_of_the_guide_run(tmp_path: Path) -> None:
     assert run_page(GUIDE, Shell(tmp_path)) == 9
 
 
-def test_the_guide_has_the_figures_of_the_code() -> None:
+def test_the_guide_has_the_constants_of_the_code() -> None:
     assert f"- {PRICE} * atoms" in GUIDE
     assert f"at most {LONGEST_BOUND} |" in GUIDE

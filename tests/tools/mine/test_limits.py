@@ -1,4 +1,4 @@
-"""Traces with thousands of columns: limited work, and a warning that says what is left out."""
+"""Traces with thousands of columns: the work is limited, and a warning lists what is left out."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ Run = Callable[..., Outcome]
 
 
 def letters(*names: str) -> tuple[frozenset[str], ...]:
-    """A trace in which each sample has the atoms that a text lists."""
-    return tuple(frozenset(each.split()) for each in names)
+    """Return a trace from one string per sample, which lists the atoms that hold."""
+    return tuple(frozenset(sample.split()) for sample in names)
 
 
 def noisy(columns: int, rows: int, seed: int, steps: tuple[str, ...] = ()) -> tuple[frozenset[str], ...]:
-    """A trace of columns that hold by chance; the ``steps`` hold in this order at the end."""
+    """A trace of columns that hold at random, followed by the ``steps`` in this order."""
     random = Random(seed)
     names = [f"c{number}" for number in range(columns)]
     samples = [{name for name in names if random.random() < 0.5} for _ in range(rows)]
@@ -50,7 +50,7 @@ def csv(trace: tuple[frozenset[str], ...], columns: int) -> str:
     return "\n".join([",".join(names), *rows]) + "\n"
 
 
-def many(columns: int) -> Evidence:
+def random_evidence(columns: int) -> Evidence:
     good, bad = (Recorded(f"t{seed}", noisy(columns, 10, seed)) for seed in (1, 2))
     return Evidence((good,), (bad,))
 
@@ -58,7 +58,7 @@ def many(columns: int) -> Evidence:
 def test_the_work_does_not_grow_with_the_columns() -> None:
     work = []
     for columns in (1_000, 2_000):
-        search = Search(many(columns), Options())
+        search = Search(random_evidence(columns), Options())
         list(search.run())
         work.append(search.tried - 2 * columns)
         assert search.ranked()
@@ -67,17 +67,18 @@ def test_the_work_does_not_grow_with_the_columns() -> None:
     assert abs(work[0] - work[1]) < max(work) / 5
 
 
-def test_the_search_can_be_left_after_a_few_candidates() -> None:
-    """What holds `--time`: between two moments at which the search may end, it tries few candidates."""
-    search = Search(many(1_000), Options())
-    before = most = 0
+def test_the_search_can_be_stopped_every_few_candidates() -> None:
+    """This keeps ``--time`` precise: the search tries few candidates between two points at which it
+    can stop."""
+    search = Search(random_evidence(1_000), Options())
+    previous = largest = 0
     for _ in search.run():
-        most = max(most, search.tried - before)
-        before = search.tried
-    assert most <= 20_000
+        largest = max(largest, search.tried - previous)
+        previous = search.tried
+    assert largest <= 20_000
 
 
-def test_the_events_that_separate_best_are_related() -> None:
+def test_the_events_that_separate_best_are_combined() -> None:
     planted = ("key", "door")
     good = [Recorded(f"g{seed}", noisy(300, 10, seed, planted)) for seed in range(20)]
     bad = [Recorded(f"b{seed}", noisy(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
@@ -85,48 +86,48 @@ def test_the_events_that_separate_best_are_related() -> None:
     assert set(planted) <= set(best_events(given, given.atoms()))
     search = Search(given, Options())
     list(search.run())
-    assert [each.text for each in search.ranked()[0]] == ["require (not door) weak_until key"]
+    assert [clause.text for clause in search.ranked()[0]] == ["require (not door) weak_until key"]
 
 
-def test_few_events_are_all_related() -> None:
-    given = many(50)
+def test_all_events_are_combined_if_there_are_few() -> None:
+    given = random_evidence(50)
     assert best_events(given, given.atoms()) == list(given.atoms())
 
 
-def test_sequences_end_where_no_work_is_left() -> None:
-    bits = Bits(many(20))
-    whole = sum(map(len, sequences(bits, tuple(bits.holds), 1, 4)))
-    some = sum(map(len, sequences(bits, tuple(bits.holds), 1, 4, work=Work(500))))
-    assert 0 < some < whole
+def test_sequences_stop_at_the_work_limit() -> None:
+    bits = Bits(random_evidence(20))
+    full_count = sum(map(len, sequences(bits, tuple(bits.holds), 1, 4)))
+    limited_count = sum(map(len, sequences(bits, tuple(bits.holds), 1, 4, work=Work(500))))
+    assert 0 < limited_count < full_count
 
 
 def every_clause(bits: Bits) -> list[Clause]:
-    backwards = Bits(many(30), backwards=True)
-    return [each for portion in clauses(bits, backwards, tuple(bits.holds), 1) for each in portion]
+    backwards = Bits(random_evidence(30), backwards=True)
+    return [clause for portion in clauses(bits, backwards, tuple(bits.holds), 1) for clause in portion]
 
 
-def test_the_candidates_that_are_kept_are_those_that_would_be_chosen() -> None:
-    bits = Bits(many(30))
-    found: dict[Conjunction, int] = {(each,): each.accepts for each in every_clause(bits)}
-    found |= {(a, b): a.accepts & b.accepts for a, b in combinations(every_clause(bits)[:60], 2)}
+def test_pruned_candidates_would_not_have_been_chosen() -> None:
+    bits = Bits(random_evidence(30))
+    conjunctions: dict[Conjunction, int] = {(clause,): clause.accepts for clause in every_clause(bits)}
+    conjunctions |= {(a, b): a.accepts & b.accepts for a, b in combinations(every_clause(bits)[:60], 2)}
     kept = Candidates(bits)
-    for conjunction, accepts in found.items():
+    for conjunction, accepts in conjunctions.items():
         kept.add(conjunction, accepts)
-    assert len(list(kept.items())) < len(found) / 10
-    assert best(kept.items(), bits) == best(found.items(), bits)
+    assert len(list(kept.items())) < len(conjunctions) / 10
+    assert best(kept.items(), bits) == best(conjunctions.items(), bits)
     assert not kept.is_cut
 
 
-def test_of_too_many_candidates_the_best_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_best_candidates_are_kept_if_there_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(candidates, "_MOST", 2)
     traces = [Recorded(f"t{number}", letters("a", "b")) for number in range(4)]
     bits = Bits(Evidence(tuple(traces), (Recorded("bad", letters("c")),)))
     kept = Candidates(bits)
     for number in range(5):
-        accepts = sum(0x80 << 8 * each for each in range(number))
+        accepts = sum(0x80 << 8 * place for place in range(number))
         kept.add((Clause("reach", 0, f"reach {number}", 1, accepts, accepts),), accepts)
     assert kept.is_cut
-    assert {each[0].text for each, _ in kept.items()} == {"reach 3", "reach 4"}
+    assert {conjunction[0].text for conjunction, _ in kept.items()} == {"reach 3", "reach 4"}
 
 
 # --- the command ----------------------------------------------------------------------------------
@@ -135,23 +136,23 @@ def test_of_too_many_candidates_the_best_are_kept(monkeypatch: pytest.MonkeyPatc
 def test_many_columns_are_mined_with_a_warning(tltlc: Run, inside: Path) -> None:
     for name, seed in (("good.csv", 1), ("bad.csv", 2)):
         (inside / name).write_text(csv(noisy(1_000, 10, seed), 1_000))
-    done = tltlc("mine", "good.csv", "--against", "bad.csv", "--json")
-    assert done.status == 0
-    document = json.loads(done.out)
+    outcome = tltlc("mine", "good.csv", "--against", "bad.csv", "--json")
+    assert outcome.status == 0
+    document = json.loads(outcome.out)
     assert document["proposals"]
     assert document["complete"] is False
-    assert "warning[TLT0624]: only 244 atoms are related to each other" in done.err
+    assert "warning[TLT0624]: only 244 atoms are related to each other" in outcome.err
 
 
 def test_few_columns_are_mined_without_a_warning(tltlc: Run, inside: Path) -> None:
     for name, seed in (("good.csv", 1), ("bad.csv", 2)):
         (inside / name).write_text(csv(noisy(12, 10, seed), 12))
-    done = tltlc("mine", "good.csv", "--against", "bad.csv", "--json", "--max-length", "3")
-    assert json.loads(done.out)["complete"] is True
-    assert "TLT0624" not in done.err
+    outcome = tltlc("mine", "good.csv", "--against", "bad.csv", "--json", "--max-length", "3")
+    assert json.loads(outcome.out)["complete"] is True
+    assert "TLT0624" not in outcome.err
 
 
-def test_of_too_many_columns_the_first_are_read() -> None:
+def test_the_first_columns_are_read_if_there_are_too_many() -> None:
     columns = WORK["mined columns"] + 7
     files = [TraceFile(f"t{seed}", csv(noisy(columns, 2, seed), columns).encode()) for seed in (1, 2)]
     words, evidence, _ = gathered(files[:1], files[1:], None, ResolveOptions((), {}))
@@ -161,7 +162,7 @@ def test_of_too_many_columns_the_first_are_read() -> None:
     assert f"c{WORK['mined columns']}" not in evidence.atoms()
 
 
-def test_of_too_many_instances_of_a_predicate_the_first_are_read() -> None:
+def test_the_first_instances_are_read_if_a_predicate_has_too_many() -> None:
     library = SourceFile("lib.tltl", "signal at(x: entity, y: entity): bool\n")
     data = "".join(f'"at(e{a}, e{a + 1})",' for a in range(49)) + "time\n" + "0," * 49 + "1\n"
     file = TraceFile("t", data.encode())

@@ -8,7 +8,7 @@ from tltlc.tools.mine.mutants import with_mutants
 
 
 @given(evidences(longest=10))
-def test_mutants_are_no_traces_and_always_the_same(given_: Evidence) -> None:
+def test_mutants_are_deterministic_and_differ_from_all_traces(given_: Evidence) -> None:
     made = with_mutants(given_.traces)
     assert made == with_mutants(given_.traces)
     assert made.counterexamples == with_mutants(given_.traces[::-1]).counterexamples
@@ -20,13 +20,13 @@ def test_mutants_are_no_traces_and_always_the_same(given_: Evidence) -> None:
     assert all(bad)
 
 
-def test_each_way_to_go_wrong() -> None:
+def test_every_kind_of_mutant_is_made() -> None:
     a, b, kept = frozenset({"a", "k"}), frozenset({"b", "k"}), frozenset({"k"})
     made = with_mutants([Recorded("run", (kept, a, kept, b, kept))])
-    found = {trace.name: trace.letters for trace in made.counterexamples}
-    assert found["run, cut short"] == (kept, a, kept)
-    assert found["run, without a"] == (kept, kept, kept, b, kept)
-    assert found["run, without b"] == (kept, a, kept, kept, kept)
-    broken = found["run, with k broken"]
+    mutants = {trace.name: trace.letters for trace in made.counterexamples}
+    assert mutants["run, cut short"] == (kept, a, kept)
+    assert mutants["run, without a"] == (kept, kept, kept, b, kept)
+    assert mutants["run, without b"] == (kept, a, kept, kept, kept)
+    broken = mutants["run, with k broken"]
     assert sum("k" not in letter for letter in broken) == 1
-    assert any(name.startswith("run, in another order") for name in found)
+    assert any(name.startswith("run, in another order") for name in mutants)

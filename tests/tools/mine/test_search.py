@@ -35,17 +35,17 @@ def verdicts(given_: Evidence, accepts: int) -> list[bool]:
 
 @settings(max_examples=25, deadline=None)
 @given(evidences())
-def test_the_masks_say_what_the_automata_say(given_: Evidence) -> None:
+def test_bit_masks_agree_with_the_automata(given_: Evidence) -> None:
     forwards, backwards = Bits(given_), Bits(given_, backwards=True)
     atoms = list(forwards.holds)
-    found = [
+    found_clauses = [
         *chain.from_iterable(clauses(forwards, backwards, atoms, 1)),
-        *(each for portion in islice(sequences(forwards, atoms, 1, 4), 6) for each in portion[:10]),
+        *(clause for portion in islice(sequences(forwards, atoms, 1, 4), 6) for clause in portion[:10]),
     ]
-    text = words().library.text + "".join(f"spec s{i} {{ {each.text} }}\n" for i, each in enumerate(found))
-    automata = compile_source(SourceFile("all.tltl", text)).automata if found else ()
-    for each, fspa in zip(found, automata, strict=True):
-        assert [judge(fspa, trace).accepted for trace in given_.all] == verdicts(given_, each.accepts), each.text
+    text = words().library.text + "".join(f"spec s{i} {{ {clause.text} }}\n" for i, clause in enumerate(found_clauses))
+    automata = compile_source(SourceFile("all.tltl", text)).automata if found_clauses else ()
+    for clause, fspa in zip(found_clauses, automata, strict=True):
+        assert [judge(fspa, trace).accepted for trace in given_.all] == verdicts(given_, clause.accepts), clause.text
 
 
 def test_every_template_is_tried() -> None:
@@ -53,27 +53,27 @@ def test_every_template_is_tried() -> None:
     for number in (1, 4, 8):
         given_ = evidence(planted(number), 10, 10, seed=3)
         forwards, backwards = Bits(given_), Bits(given_, backwards=True)
-        found = clauses(forwards, backwards, list(forwards.holds), 10)
-        kinds |= {each.kind for each in chain.from_iterable(found)}
+        portions = clauses(forwards, backwards, list(forwards.holds), 10)
+        kinds |= {clause.kind for clause in chain.from_iterable(portions)}
     assert kinds == set(KINDS)
 
 
 @settings(max_examples=12, deadline=None)
 @given(evidences(longest=8))
-def test_figures_are_those_of_the_automata_and_of_the_masks(given_: Evidence) -> None:
+def test_figures_agree_with_automata_and_masks(given_: Evidence) -> None:
     search = Search(given_, Options(min_support=0.5))
     list(search.run())
     for proposal in confirmed(search.ranked(), given_, words(), CompileOptions(), 5):
         accepts = accepted_by(proposal.clauses, search.bits)
-        said = [each.accepted for each in (*proposal.traces, *proposal.counterexamples)]
-        assert said == verdicts(given_, accepts)
+        accepted = [judgement.accepted for judgement in (*proposal.traces, *proposal.counterexamples)]
+        assert accepted == verdicts(given_, accepts)
         assert proposal.figures.support >= 0.5
         assert proposal.figures.rejected >= 1
 
 
 @settings(max_examples=12, deadline=None)
 @given(evidences(longest=8))
-def test_support_of_one_means_that_all_traces_are_accepted(given_: Evidence) -> None:
+def test_a_support_of_one_means_that_all_traces_are_accepted(given_: Evidence) -> None:
     for proposal in proposals(given_):
         assert proposal.figures.support == 1.0
         assert all(judge(proposal.fspa, trace).accepted for trace in given_.traces)
@@ -84,51 +84,55 @@ def test_support_of_one_means_that_all_traces_are_accepted(given_: Evidence) -> 
 def test_a_planted_sequence_of_any_length_is_recovered(length: int, seed: int) -> None:
     steps = Random(seed).sample(ATOMS, length)
     spec = Planted("sequence", ("reach " + " then ".join(steps),), dict.fromkeys(ATOMS, 0.15))
-    # With sequences that fail for want of one step each, or in another order, nothing shorter tells all apart.
-    found = proposals(_with_all_orders(spec, steps, evidence(spec, 20, 40, seed)))
-    assert are_equivalent(found[0].fspa, spec.automaton())
+    # The added counterexamples lack one step, or swap two steps, so that no shorter spec separates the traces.
+    proposed = proposals(_with_all_orders(spec, steps, evidence(spec, 20, 40, seed)))
+    assert are_equivalent(proposed[0].fspa, spec.automaton())
 
 
 def _with_all_orders(spec: Planted, steps: list[str], given_: Evidence) -> Evidence:
-    others = [steps[:place] + steps[place + 1 :] for place in range(len(steps))]
-    others += [[*steps[:place], steps[place + 1], steps[place], *steps[place + 2 :]] for place in range(len(steps) - 1)]
-    letters = [tuple(frozenset({step}) for step in other) or (frozenset(),) for other in others]
-    # Any other atom may have come in between, and none of them helps.
+    wrong_orders = [steps[:place] + steps[place + 1 :] for place in range(len(steps))]
+    wrong_orders += [
+        [*steps[:place], steps[place + 1], steps[place], *steps[place + 2 :]] for place in range(len(steps) - 1)
+    ]
+    letters = [tuple(frozenset({step}) for step in wrong_order) or (frozenset(),) for wrong_order in wrong_orders]
+    # All other atoms hold between the steps, so they do not help to separate the traces.
     filler = [frozenset(ATOMS) - set(steps)] * 9
     missed = tuple(
-        Recorded(f"missed {number}", tuple(part for letter in each for part in (*filler, letter)) + tuple(filler))
-        for number, each in enumerate(letters)
+        Recorded(
+            f"missed {number}", tuple(part for letter in letters_of_trace for part in (*filler, letter)) + tuple(filler)
+        )
+        for number, letters_of_trace in enumerate(letters)
     )
     return Evidence(given_.traces, (*given_.counterexamples, *missed))
 
 
 @pytest.mark.parametrize("spec", of_the_paper(), ids=lambda spec: spec.name)
 def test_the_plans_of_the_paper_are_recovered(spec: Planted) -> None:
-    found = proposals(evidence(spec, 40, 80, seed=1), top=1)
-    assert are_equivalent(found[0].fspa, spec.automaton())
+    proposed = proposals(evidence(spec, 40, 80, seed=1), top=1)
+    assert are_equivalent(proposed[0].fspa, spec.automaton())
 
 
-def test_wrong_labels_are_tolerated_where_that_is_asked_for() -> None:
+def test_wrong_labels_are_tolerated_on_request() -> None:
     spec = planted(0)
     given_ = evidence(spec, 40, 80, seed=1, noise=0.05)
-    found = proposals(given_, Options(min_support=0.9))
-    assert are_equivalent(found[0].fspa, spec.automaton())
+    proposed = proposals(given_, Options(min_support=0.9))
+    assert are_equivalent(proposed[0].fspa, spec.automaton())
     assert all(proposal.figures.support == 1.0 for proposal in proposals(given_))
 
 
-def test_the_order_is_the_same_each_time() -> None:
+def test_the_order_is_deterministic() -> None:
     given_ = evidence(planted(3), 20, 30, seed=5)
     first, second = ([proposal.clauses for proposal in proposals(given_)] for _ in range(2))
     assert _texts(first) == _texts(second)
-    turned = Evidence(given_.traces[::-1], given_.counterexamples[::-1])
-    assert _texts([proposal.clauses for proposal in proposals(turned)]) == _texts(first)
+    reversed_evidence = Evidence(given_.traces[::-1], given_.counterexamples[::-1])
+    assert _texts([proposal.clauses for proposal in proposals(reversed_evidence)]) == _texts(first)
 
 
-def _texts(found: list[Conjunction]) -> list[list[str]]:
-    return [[each.text for each in conjunction] for conjunction in found]
+def _texts(conjunctions: list[Conjunction]) -> list[list[str]]:
+    return [[clause.text for clause in conjunction] for conjunction in conjunctions]
 
 
-def test_the_best_so_far_can_be_had_at_any_moment() -> None:
+def test_the_best_proposal_so_far_is_available_at_any_time() -> None:
     given_ = evidence(planted(1), 20, 30, seed=5)
     search = Search(given_, Options())
     best = -2.0
@@ -150,8 +154,8 @@ def test_no_proposal_is_longer_than_allowed() -> None:
     assert max(map(atoms_of, search.ranked())) <= 3
 
 
-def test_what_is_proposed_is_better_or_shorter_than_what_comes_behind() -> None:
-    found = [proposal.clauses for proposal in proposals(evidence(planted(2), 20, 40, seed=2))]
-    sizes = [atoms_of(each) for each in found]
+def test_proposals_are_sorted_by_falling_size() -> None:
+    proposed = [proposal.clauses for proposal in proposals(evidence(planted(2), 20, 40, seed=2))]
+    sizes = [atoms_of(conjunction) for conjunction in proposed]
     assert sizes == sorted(sizes, reverse=True)
-    assert len(found) > 1
+    assert len(proposed) > 1

@@ -21,24 +21,24 @@ spec careful = G health > 0.2
 """
 
 
-def names(text: str, there: set[str]) -> list[str]:
-    words = of_library(SourceFile("game.tltl", text), there, ResolveOptions())
+def names(text: str, columns_of_traces: set[str]) -> list[str]:
+    words = of_library(SourceFile("game.tltl", text), columns_of_traces, ResolveOptions())
     return [atom.name for atom in words.reader.atoms]
 
 
-def test_columns_are_atoms_where_they_hold_truths_alone() -> None:
-    found = columns(b"alive,health,near(s1)\ntrue,1,0\nfalse,0.5,1\n", "run.csv")
-    assert found == {"alive": True, "health": False, "near(s1)": True}
-    words = of_columns(found)
+def test_columns_of_truth_values_are_atoms() -> None:
+    kinds = columns(b"alive,health,near(s1)\ntrue,1,0\nfalse,0.5,1\n", "run.csv")
+    assert kinds == {"alive": True, "health": False, "near(s1)": True}
+    words = of_columns(kinds)
     assert [atom.name for atom in words.reader.atoms] == ["alive", "near(s1)"]
     assert (words.left_out, words.misnamed) == (("health",), frozenset())
 
 
-def test_columns_of_json_lines() -> None:
-    found = columns(
+def test_json_lines_are_read_like_csv() -> None:
+    kinds = columns(
         b'{"alive": true, "health": 0.5, "name": "x"}\n\n{"alive": 0, "health": 1, "late": true}\n', "run.csv"
     )
-    assert found == {"alive": True, "health": False}
+    assert kinds == {"alive": True, "health": False}
     assert columns(b'{"alive": true, "doors": [1], "name": "x"}\n', "run.csv") == {
         "alive": True,
         "doors": False,
@@ -46,24 +46,24 @@ def test_columns_of_json_lines() -> None:
     }
 
 
-def test_only_shared_columns_count() -> None:
+def test_only_columns_of_all_traces_count() -> None:
     assert shared([{"a": True, "b": True, "c": True}, {"c": True, "b": False}]) == {"b": False, "c": True}
 
 
 @pytest.mark.parametrize("column", ["reach", "F", "2fast", "a b", "near(s1", "near()", "near(2)", "s1 > 2", ""])
-def test_columns_that_are_called_like_no_atom_are_left_out(column: str) -> None:
+def test_columns_that_cannot_name_an_atom_are_left_out(column: str) -> None:
     words = of_columns({"alive": True, column: True})
     assert [atom.name for atom in words.reader.atoms] == ["alive"]
     assert (words.left_out, words.misnamed) == ((column,), {column})
 
 
-def test_a_column_that_stands_twice_is_told_by_the_reader() -> None:
-    found = columns(b"a,a\ntrue,false\n", "run.csv")
-    assert found == {"a": True}
+def test_a_duplicate_column_is_reported() -> None:
+    kinds = columns(b"a,a\ntrue,false\n", "run.csv")
+    assert kinds == {"a": True}
     with pytest.raises(TltlError) as raised:
-        read([TraceFile("run.csv", b"a,a\ntrue,false\n")], of_columns(found))
-    (said,) = raised.value.diagnostics
-    assert (said.code, said.labels[0].message) == ("TLT0622", "two columns are called `a`")
+        read([TraceFile("run.csv", b"a,a\ntrue,false\n")], of_columns(kinds))
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.code, diagnostic.labels[0].message) == ("TLT0622", "two columns are called `a`")
 
 
 @pytest.mark.parametrize(
@@ -75,23 +75,23 @@ def test_a_column_that_stands_twice_is_told_by_the_reader() -> None:
         ({}, "no column of the traces holds"),
     ],
 )
-def test_why_there_is_no_atom(there: dict[str, bool], said: str) -> None:
+def test_the_error_says_why_there_is_no_atom(there: dict[str, bool], said: str) -> None:
     with pytest.raises(TltlError) as raised:
         of_columns(there)
-    (only,) = raised.value.diagnostics
-    assert only.code == "TLT0760" and only.title.startswith(said)
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "TLT0760" and diagnostic.title.startswith(said)
 
 
-def test_columns_that_cannot_be_declared_beside_each_other_are_left_out() -> None:
-    found = of_columns(dict.fromkeys(("s1", "near(s1)", "at(a)", "at(a, b)", "to(a, b)", "a(c)", "b"), True))
-    assert [atom.name for atom in found.reader.atoms] == ["s1", "at(a)", "b"]
+def test_columns_that_cannot_be_declared_together_are_left_out() -> None:
+    words = of_columns(dict.fromkeys(("s1", "near(s1)", "at(a)", "at(a, b)", "to(a, b)", "a(c)", "b"), True))
+    assert [atom.name for atom in words.reader.atoms] == ["s1", "at(a)", "b"]
 
 
-def test_a_library_is_read_over_the_entities_of_the_traces() -> None:
-    there = {"distance(s1)", "distance(exit)", "distance(s2)", "health", "seen", "open(s2)"}
-    found = names(LIBRARY.replace("near(s1)", "near(s3)").replace("entity exit", "entity exit, s3"), there)
-    assert set(found) >= {"near(s1)", "near(exit)", "near(s2)", "hurt", "seen", "open(s2)", "health > 0.2"}
-    assert not {"near(s3)", "open(exit)", "open(s1)"} & set(found)
+def test_predicates_are_instantiated_with_the_entities_of_the_traces() -> None:
+    columns_of_traces = {"distance(s1)", "distance(exit)", "distance(s2)", "health", "seen", "open(s2)"}
+    atoms = names(LIBRARY.replace("near(s1)", "near(s3)").replace("entity exit", "entity exit, s3"), columns_of_traces)
+    assert set(atoms) >= {"near(s1)", "near(exit)", "near(s2)", "hurt", "seen", "open(s2)", "health > 0.2"}
+    assert not {"near(s3)", "open(exit)", "open(s1)"} & set(atoms)
 
 
 def test_entities_of_the_traces_are_declared() -> None:
@@ -112,22 +112,22 @@ def test_traces_are_read_as_letters() -> None:
         "signal health in [0, 1]\npredicate alive in [-1, 1] = health - 0.1\npredicate well in [-1, 1] = health - 0.9\n"
     )
     words = of_library(SourceFile("game.tltl", text), {"health"}, ResolveOptions())
-    (found,), notices = read([TraceFile("run.csv", b"health\n0\n0.5\n1.5\n")], words)
-    assert found.letters == (frozenset(), frozenset({"alive"}), frozenset({"alive", "well"}))
-    assert [(each.code, each.title[:17]) for each in notices] == [("TLT0615", "`run.csv`, step 3")]
+    (trace,), notices = read([TraceFile("run.csv", b"health\n0\n0.5\n1.5\n")], words)
+    assert trace.letters == (frozenset(), frozenset({"alive"}), frozenset({"alive", "well"}))
+    assert [(notice.code, notice.title[:17]) for notice in notices] == [("TLT0615", "`run.csv`, step 3")]
 
 
-def test_samples_that_come_again_are_the_same_letters() -> None:
+def test_repeated_samples_give_the_same_letters() -> None:
     text = "signal health in [0, 1]\npredicate alive in [-1, 1] = health - 0.1\n"
     words = of_library(SourceFile("game.tltl", text), {"health"}, ResolveOptions())
-    told: list[str] = []
+    messages: list[str] = []
     files = [TraceFile(f"{name}.csv", b"health\n0\n0.5\n0\n0.5\n") for name in "ab"]
-    found, _ = read(files, words, told.append)
-    assert [trace.letters for trace in found] == [(frozenset(), frozenset({"alive"})) * 2] * 2
-    assert told == ["reading a.csv", "reading b.csv"]
+    traces, _ = read(files, words, messages.append)
+    assert [trace.letters for trace in traces] == [(frozenset(), frozenset({"alive"})) * 2] * 2
+    assert messages == ["reading a.csv", "reading b.csv"]
 
 
-def test_what_is_wrong_with_a_step_names_its_trace() -> None:
+def test_an_error_in_a_step_names_its_trace() -> None:
     text = "signal a: bool\nsignal b: bool\nexclusive a, b\n"
     words = of_library(SourceFile("game.tltl", text), {"a", "b"}, ResolveOptions())
     with pytest.raises(TltlError, match=r"`two.csv`, step 2: `a` and `b` hold at once"):

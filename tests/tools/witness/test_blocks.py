@@ -1,4 +1,4 @@
-"""Traces as ``test`` blocks: valid in the file of any spec."""
+"""Traces as ``test`` blocks, which are valid in the file of any spec."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ spec q {
 """
 
 
-def test_names_of_any_kind_are_written_so_that_the_file_takes_them() -> None:
+def test_names_of_every_kind_are_written_so_that_they_parse() -> None:
     (fspa,) = tltlc.compile_text(NAMES)
     names = [atom.name for atom in fspa.atoms]
     assert {"near(s1, close=3)", "above(x, 0.1, 2e-07)", "alive", "(x + y) * 2 > y - x"} <= set(names)
@@ -42,7 +42,7 @@ def test_names_of_any_kind_are_written_so_that_the_file_takes_them() -> None:
     assert all(len(line) <= 100 for line in text.splitlines() if "expect state" not in line)
 
 
-def test_each_letter_is_read_back_as_it_was() -> None:
+def test_each_letter_is_read_back() -> None:
     (fspa,) = tltlc.compile_text(NAMES)
     names = [atom.name for atom in fspa.atoms]
     letters = [frozenset(n for n, on in zip(names, bits, strict=False) if on) for bits in product((0, 1), repeat=5)]
@@ -52,7 +52,7 @@ def test_each_letter_is_read_back_as_it_was() -> None:
     assert [step.holds for step in steps for _ in range(step.times)] == letters
 
 
-def test_runs_of_equal_letters_are_one_step_and_break_where_something_is_expected() -> None:
+def test_equal_letters_share_a_step_up_to_an_expectation() -> None:
     (fspa,) = tltlc.compile_text("signal a: bool  signal b: bool  spec s = G !(a & b)")
     none = frozenset[str]()
     text = blocks.test_block(
@@ -69,7 +69,7 @@ def test_runs_of_equal_letters_are_one_step_and_break_where_something_is_expecte
     )
 
 
-def test_a_step_without_atoms_names_the_one_that_the_edge_asks_not_to_hold() -> None:
+def test_a_step_without_atoms_names_the_atom_that_the_edge_forbids() -> None:
     (fspa,) = tltlc.compile_text("signal a: bool  signal alive: bool  spec s = F a & G alive")
     text = blocks.test_block("death", fspa, [frozenset()], {1: ["violated"]})
     assert "    step not alive\n" in text
@@ -81,7 +81,9 @@ def test_progress_is_rounded_down() -> None:
 
 
 @pytest.mark.parametrize(("spec", "letters", "expects"), [("X true", [{}], {1: ["pending"]}), ("G a", [], {1: ["x"]})])
-def test_what_is_no_test(spec: str, letters: list[frozenset[str]], expects: dict[int, list[str]]) -> None:
+def test_a_test_without_atoms_or_steps_is_rejected(
+    spec: str, letters: list[frozenset[str]], expects: dict[int, list[str]]
+) -> None:
     (fspa,) = tltlc.compile_text(f"signal a: bool  spec s = {spec}")
     with pytest.raises(ValueError, match="a test names atoms"):
         blocks.test_block("t", fspa, letters, expects)

@@ -1,4 +1,4 @@
-"""``tltlc witness`` from the command line: what it prints can be pasted, and passes."""
+"""``tltlc witness`` on the command line: the printed blocks can be pasted, and pass."""
 
 from __future__ import annotations
 
@@ -14,75 +14,75 @@ __all__ = ["inside", "tltlc"]
 Run = Callable[..., Outcome]
 
 
-def test_by_default_two_blocks_that_pass_under_test(tltlc: Run, inside: Path) -> None:
-    found = tltlc("witness", EXAMPLE)
-    assert (found.status, found.err) == (0, "")
-    assert found.out.count('test "') == 2
-    assert "    step not alive\n    expect violated\n" in found.out
-    Path("pasted.tltl").write_text(EXAMPLE.read_text() + "\n" + found.out)
+def test_two_blocks_that_pass_are_printed_by_default(tltlc: Run, inside: Path) -> None:
+    outcome = tltlc("witness", EXAMPLE)
+    assert (outcome.status, outcome.err) == (0, "")
+    assert outcome.out.count('test "') == 2
+    assert "    step not alive\n    expect violated\n" in outcome.out
+    Path("pasted.tltl").write_text(EXAMPLE.read_text() + "\n" + outcome.out)
     tested = tltlc("test", "pasted.tltl")
     assert tested.status == 0, tested.err
     assert tested.out.endswith("5 passed, 0 failed\n")
 
 
-def test_a_cover_as_csv_that_monitor_takes(tltlc: Run, inside: Path) -> None:
-    found = tltlc("witness", EXAMPLE, "--cover", "--accepting", "--as", "csv", "-o", "traces")
-    assert (found.status, found.out) == (0, "")
+def test_monitor_reads_a_cover_written_as_csv(tltlc: Run, inside: Path) -> None:
+    outcome = tltlc("witness", EXAMPLE, "--cover", "--accepting", "--as", "csv", "-o", "traces")
+    assert (outcome.status, outcome.out) == (0, "")
     files = sorted(Path("traces").iterdir())
-    assert len(files) == found.err.count("wrote ") == 6
-    judged = {file.name: tltlc("monitor", EXAMPLE, file).status for file in files}
-    assert judged["cover_and_hide_accepting.csv"] == 0
-    assert 1 in judged.values()
+    assert len(files) == outcome.err.count("wrote ") == 6
+    statuses = {file.name: tltlc("monitor", EXAMPLE, file).status for file in files}
+    assert statuses["cover_and_hide_accepting.csv"] == 0
+    assert 1 in statuses.values()
 
 
-def test_one_trace_on_standard_output(tltlc: Run, inside: Path) -> None:
-    found = tltlc("witness", EXAMPLE, "--rejecting", "--as", "csv")
-    assert found.out.splitlines()[0] == "distance(s1),distance(s2),distance(exit),health"
-    several = tltlc("witness", EXAMPLE, "--as", "csv")
-    assert several.status == 2
-    assert "-o" in several.err
+def test_only_a_single_csv_trace_is_printed(tltlc: Run, inside: Path) -> None:
+    outcome = tltlc("witness", EXAMPLE, "--rejecting", "--as", "csv")
+    assert outcome.out.splitlines()[0] == "distance(s1),distance(s2),distance(exit),health"
+    both = tltlc("witness", EXAMPLE, "--as", "csv")
+    assert both.status == 2
+    assert "-o" in both.err
 
 
-def test_an_artefact_of_an_infinite_spec(tltlc: Run, inside: Path) -> None:
+def test_an_artefact_of_an_infinite_spec_has_witnesses(tltlc: Run, inside: Path) -> None:
     Path("watch.tltl").write_text(
         "signal at_post: bool\nspec watch { semantics infinite  require always eventually at_post }\n"
     )
     tltlc("compile", "watch.tltl", "-t", "json")
-    found = tltlc("witness", "watch.fspa.json", "--accepting")
-    assert found.out.startswith("// Step 1 repeats for ever; here it stands once.\n")
-    Path("pasted.tltl").write_text(Path("watch.tltl").read_text() + found.out)
+    outcome = tltlc("witness", "watch.fspa.json", "--accepting")
+    assert outcome.out.startswith("// Step 1 repeats for ever; here it stands once.\n")
+    Path("pasted.tltl").write_text(Path("watch.tltl").read_text() + outcome.out)
     assert tltlc("test", "pasted.tltl").status == 0
     csv = tltlc("witness", "watch.fspa.json", "--rejecting", "--as", "csv")
     assert csv.out == "at_post\nfalse\n"
     assert "step 1 repeats for ever" in csv.err
 
 
-def test_a_spec_without_atoms_does_not_stand_in_the_way_of_others(tltlc: Run, inside: Path) -> None:
+def test_a_spec_without_atoms_does_not_block_the_others(tltlc: Run, inside: Path) -> None:
     Path("two.tltl").write_text("signal a: bool\nspec long = X true\nspec reached = F a\n")
-    found = tltlc("witness", "two.tltl", "--accepting")
-    assert found.status == 1
-    assert "error[TLT0742]: `long` has no atoms" in found.err
-    assert found.out.startswith('test "reached: a shortest trace that is accepted" for reached {')
+    outcome = tltlc("witness", "two.tltl", "--accepting")
+    assert outcome.status == 1
+    assert "error[TLT0742]: `long` has no atoms" in outcome.err
+    assert outcome.out.startswith('test "reached: a shortest trace that is accepted" for reached {')
 
 
 @pytest.mark.parametrize("options", [[], ["--cover"], ["--cover", "--as", "csv", "-o", "out"]])
-def test_it_says_the_same_each_time(options: list[str], tltlc: Run, inside: Path) -> None:
+def test_the_output_is_deterministic(options: list[str], tltlc: Run, inside: Path) -> None:
     assert tltlc("witness", EXAMPLE, *options).out == tltlc("witness", EXAMPLE, *options).out
 
 
-def test_no_csv_of_a_spec_that_reads_no_signal(tltlc: Run, inside: Path) -> None:
+def test_a_spec_without_signals_has_no_csv(tltlc: Run, inside: Path) -> None:
     Path("constant.tltl").write_text("param p in [0, 2] = 1\nspec s = F p > 1\n")
-    refused = tltlc("witness", "constant.tltl", "--as", "csv")
-    assert refused.status == 1
-    assert "error[TLT0742]: `s` reads no signal, so a CSV trace of it has no columns" in refused.err
-    assert "TLT0620" not in refused.err
+    outcome = tltlc("witness", "constant.tltl", "--as", "csv")
+    assert outcome.status == 1
+    assert "error[TLT0742]: `s` reads no signal, so a CSV trace of it has no columns" in outcome.err
+    assert "TLT0620" not in outcome.err
     assert 'test "s: a shortest trace that is rejected"' in tltlc("witness", "constant.tltl").out
 
 
-def test_what_was_not_found_is_not_called_impossible(tltlc: Run, inside: Path) -> None:
+def test_traces_that_were_not_found_are_not_called_impossible(tltlc: Run, inside: Path) -> None:
     Path("never.tltl").write_text("signal x in [0, 1]\nspec s = F (x > 0.7 & x < 0.3)\n")
-    said = tltlc("witness", "never.tltl").err
-    assert "no values of the signals were found that give `x > 0.7` and `x < 0.3`" in said
+    message = tltlc("witness", "never.tltl").err
+    assert "no values of the signals were found that give `x > 0.7` and `x < 0.3`" in message
 
 
 @pytest.mark.parametrize("size", ["1e12", "1e150", "1e308"])
@@ -94,7 +94,7 @@ def test_very_large_values_are_found(tltlc: Run, inside: Path, size: str, sign: 
         f"predicate q in [-1, 1] = clamp({sign}x / {size} - 1.5, -1, 1)\n"
         "spec s = F (p & !q) & F (p & q)\n"
     )
-    found = tltlc("witness", "far.tltl", "--accepting", "--as", "csv")
-    assert (found.status, found.err) == (0, "")
-    Path("trace.csv").write_text(found.out)
+    outcome = tltlc("witness", "far.tltl", "--accepting", "--as", "csv")
+    assert (outcome.status, outcome.err) == (0, "")
+    Path("trace.csv").write_text(outcome.out)
     assert tltlc("monitor", "far.tltl", "trace.csv").status == 0

@@ -1,4 +1,4 @@
-"""Values of signals that give atoms their truth."""
+"""Values of signals that make atoms true or false."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tltlc.tools.witness.samples import Obstacle, Realiser, Unrealised, csv_text
         ),
     ],
 )
-def test_each_atom_alone_is_made_true_and_false(declared: str, formula: str) -> None:
+def test_each_atom_is_made_true_and_false(declared: str, formula: str) -> None:
     (fspa,) = tltlc.compile_text(f"{declared}\nspec s = {formula}")
     realiser = Realiser(fspa)
     for index, atom in enumerate(fspa.atoms):
@@ -41,21 +41,21 @@ def test_each_atom_alone_is_made_true_and_false(declared: str, formula: str) -> 
 
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.integers(1, 99), min_size=1, max_size=4, unique=True), st.data())
-def test_thresholds_of_one_signal(thresholds: list[int], data: st.DataObject) -> None:
-    formula = " & ".join(f"F x > {each / 100}" for each in thresholds)
+def test_values_between_thresholds_are_found(thresholds: list[int], data: st.DataObject) -> None:
+    formula = " & ".join(f"F x > {threshold / 100}" for threshold in thresholds)
     (fspa,) = tltlc.compile_text(f"signal x in [0, 1]  spec s = {formula}")
-    wanted = tuple((index, data.draw(st.booleans())) for index in range(len(thresholds)))
-    above = [threshold for threshold, (_, holds) in zip(thresholds, wanted, strict=True) if holds]
-    below = [threshold for threshold, (_, holds) in zip(thresholds, wanted, strict=True) if not holds]
-    found = Realiser(fspa).literals(wanted)
+    literals = tuple((index, data.draw(st.booleans())) for index in range(len(thresholds)))
+    above = [threshold for threshold, (_, holds) in zip(thresholds, literals, strict=True) if holds]
+    below = [threshold for threshold, (_, holds) in zip(thresholds, literals, strict=True) if not holds]
+    sample = Realiser(fspa).literals(literals)
     if max(above, default=0) < min(below, default=100):
-        assert isinstance(found, dict)
+        assert isinstance(sample, dict)
         monitor = Monitor(fspa)
-        monitor.step(found)
-        assert [value > 0 for value in monitor.values] == [holds for _, holds in wanted]
+        monitor.step(sample)
+        assert [value > 0 for value in monitor.values] == [holds for _, holds in literals]
     else:
-        assert isinstance(found, Obstacle)
-        (low, holds), (high, other) = sorted(found.literals, key=lambda literal: thresholds[literal[0]])
+        assert isinstance(sample, Obstacle)
+        (low, holds), (high, other) = sorted(sample.literals, key=lambda literal: thresholds[literal[0]])
         assert not holds and other and thresholds[low] < thresholds[high]
 
 
@@ -67,13 +67,13 @@ def test_exclusive_atoms_do_not_hold_together() -> None:
     assert realiser.letter(frozenset({"a"})) == {"a": 1.0, "b": 0.0}
 
 
-def test_a_trace_of_letters_becomes_csv_or_what_stands_in_the_way() -> None:
+def test_letters_become_csv_or_an_obstacle() -> None:
     (fspa,) = tltlc.compile_text("signal x in [0, 1]  signal seen: bool  spec s = F x > 0.5 & F x > 0.25 & F seen")
     low, high = frozenset({"x > 0.25"}), frozenset({"x > 0.5", "x > 0.25", "seen"})
-    found = samples(fspa, (low, high))
-    assert not isinstance(found, Unrealised)
-    assert csv_text(fspa, found).splitlines()[0] == "x,seen"
-    assert [line.split(",")[1] for line in csv_text(fspa, found).splitlines()[1:]] == ["false", "true"]
-    stuck = samples(fspa, (low, frozenset({"x > 0.5"})))
-    assert isinstance(stuck, Unrealised)
-    assert (stuck.step, stuck.obstacle.text(fspa)) == (2, "`x > 0.5` and not `x > 0.25`")
+    realised = samples(fspa, (low, high))
+    assert not isinstance(realised, Unrealised)
+    assert csv_text(fspa, realised).splitlines()[0] == "x,seen"
+    assert [line.split(",")[1] for line in csv_text(fspa, realised).splitlines()[1:]] == ["false", "true"]
+    unrealised = samples(fspa, (low, frozenset({"x > 0.5"})))
+    assert isinstance(unrealised, Unrealised)
+    assert (unrealised.step, unrealised.obstacle.text(fspa)) == (2, "`x > 0.5` and not `x > 0.25`")

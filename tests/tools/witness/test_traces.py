@@ -1,4 +1,4 @@
-"""Shortest traces and covers, against what formulas mean on all short traces."""
+"""Shortest traces and covers, checked against the formulas on all short traces."""
 
 from __future__ import annotations
 
@@ -45,35 +45,35 @@ def finite(formula: Formula) -> Fspa:
 
 @settings(max_examples=200, deadline=None)
 @given(SMALL)
-def test_an_accepting_trace_is_accepted_and_no_shorter_one_is(formula: Formula) -> None:
-    found = accepting(Moves(finite(formula)))
+def test_an_accepting_trace_is_accepted_and_shortest(formula: Formula) -> None:
+    witness = accepting(Moves(finite(formula)))
     accepted = [trace for trace in all_traces(("a", "b"), LONGEST) if holds(formula, trace)]
-    if found is None:
+    if witness is None:
         assert not accepted
         return
-    assert holds(formula, found.letters)
-    assert all(len(found.letters) <= len(trace) for trace in accepted)
-    assert accepted or len(found.letters) > LONGEST
+    assert holds(formula, witness.letters)
+    assert all(len(witness.letters) <= len(trace) for trace in accepted)
+    assert accepted or len(witness.letters) > LONGEST
 
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL)
-def test_a_rejecting_trace_is_a_shortest_one_that_nothing_mends(formula: Formula) -> None:
+def test_a_rejecting_trace_is_shortest_and_final(formula: Formula) -> None:
     fspa = finite(formula)
-    found = rejecting(Moves(fspa))
+    witness = rejecting(Moves(fspa))
     rejected = [trace for trace in all_traces(("a", "b"), 3) if not holds(formula, trace)]
-    if found is None:
+    if witness is None:
         assert not rejected
         return
-    assert not holds(formula, found.letters)
-    broken = [len(trace) for trace in all_traces(("a", "b"), LONGEST) if run(fspa, trace) == "violated"]
+    assert not holds(formula, witness.letters)
+    lengths = [len(trace) for trace in all_traces(("a", "b"), LONGEST) if run(fspa, trace) == "violated"]
     if "violated" in {state.verdict for state in fspa.states}:
-        assert run(fspa, found.letters) == "violated"
-        assert len(found.letters) <= min(broken, default=len(found.letters))
-        for more in all_traces(("a", "b"), 2):
-            assert not holds(formula, (*found.letters, *more))
+        assert run(fspa, witness.letters) == "violated"
+        assert len(witness.letters) <= min(lengths, default=len(witness.letters))
+        for suffix in all_traces(("a", "b"), 2):
+            assert not holds(formula, (*witness.letters, *suffix))
     else:
-        assert all(len(found.letters) <= len(trace) for trace in rejected)
+        assert all(len(witness.letters) <= len(trace) for trace in rejected)
 
 
 def run(fspa: Fspa, letters: tuple[Letter, ...]) -> str:
@@ -83,20 +83,20 @@ def run(fspa: Fspa, letters: tuple[Letter, ...]) -> str:
 
 @settings(max_examples=100, deadline=None)
 @given(SMALL)
-def test_lassos_are_accepted_and_rejected_for_ever(formula: Formula) -> None:
+def test_lassos_are_accepted_or_rejected_for_ever(formula: Formula) -> None:
     text = f"{SIGNALS}spec s {{ semantics infinite  require {ascii_text(formula)} }}"
     (fspa,) = tltlc.compile_text(text)
-    for search, wanted in ((accepting, True), (rejecting, False)):
-        found = search(Moves(fspa))
-        if found is not None:
-            assert found.cycle is not None
-            prefix, cycle = found.letters[: found.cycle], found.letters[found.cycle :]
-            assert holds_on_lasso(formula, prefix, cycle) == wanted
+    for search, is_accepted in ((accepting, True), (rejecting, False)):
+        witness = search(Moves(fspa))
+        if witness is not None:
+            assert witness.cycle is not None
+            prefix, cycle = witness.letters[: witness.cycle], witness.letters[witness.cycle :]
+            assert holds_on_lasso(formula, prefix, cycle) == is_accepted
             continue
         letters = [frozenset(names) for names in ((), ("a",), ("b",), ("a", "b"))]
         for before, after in ((0, 1), (1, 1), (0, 2), (1, 2)):
             for trace in product(letters, repeat=before + after):
-                assert holds_on_lasso(formula, trace[:before], trace[before:]) != wanted
+                assert holds_on_lasso(formula, trace[:before], trace[before:]) != is_accepted
 
 
 @settings(max_examples=100, deadline=None)
@@ -113,63 +113,68 @@ def test_a_cover_takes_every_edge(formula: Formula) -> None:
     st.sampled_from(["", "judge at limit  limit 3 steps", "semantics infinite"]),
     st.sampled_from(["", "require F[0,2] c", "require G[0,2] (a -> F[0,1] b)"]),
 )
-def test_covers_and_tests_of_all_kinds_of_specs(formula: Formula, exclusive: str, how: str, more: str) -> None:
+def test_covers_and_tests_of_all_kinds_of_specs_are_valid(
+    formula: Formula, exclusive: str, how: str, more: str
+) -> None:
     text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {how}  require {ascii_text(formula)}  {more} }}\n"
     source = SourceFile("s.tltl", text)
     (fspa,) = compile_source(source).automata
     moves = Moves(fspa)
-    found = cover(moves)
-    assert not found.untaken
-    check_cover(fspa, found)
+    covering = cover(moves)
+    assert not covering.untaken
+    check_cover(fspa, covering)
     if fspa.atoms:
-        traces = [*found.traces, *(each for each in (accepting(moves), rejecting(moves)) if each)]
+        traces = [*covering.traces, *(witness for witness in (accepting(moves), rejecting(moves)) if witness)]
         check_blocks(source, fspa, traces)
         for trace in traces:
             check_csv(fspa, trace)
 
 
 @pytest.mark.parametrize("path", [*EXAMPLES, *LIBRARIES], ids=lambda path: path.stem)
-def test_witnesses_of_the_examples(path: Path) -> None:
+def test_witnesses_of_the_examples_are_valid(path: Path) -> None:
     source = SourceFile(str(path), path.read_text(encoding="utf-8"))
     for fspa in compile_source(source).automata:
         moves = Moves(fspa)
         covering = cover(moves)
         assert not covering.untaken
         check_cover(fspa, covering)
-        found = [accepting(moves), rejecting(moves), *covering.traces]
-        traces = [trace for trace in found if trace is not None]
+        witnesses = [accepting(moves), rejecting(moves), *covering.traces]
+        traces = [trace for trace in witnesses if trace is not None]
         check_blocks(source, fspa, traces)
         for trace in traces:
             check_csv(fspa, trace)
-        assert (found[0] is not None) and (found[1] is not None)
+        assert (witnesses[0] is not None) and (witnesses[1] is not None)
 
 
-def check_cover(fspa: Fspa, found: Cover) -> None:
-    """Every edge is taken by the letters, as the monitor goes, and by no fewer traces than are needed at most."""
+def check_cover(fspa: Fspa, covering: Cover) -> None:
+    """Assert that the letters take every edge in the monitor, and that there are no more traces
+    than edges."""
     taken = set()
-    for trace in found.traces:
+    for trace in covering.traces:
         monitor = Monitor(fspa)
         for letter in trace.letters:
             source = monitor.state
             taken.add((source, monitor.step_atoms(blocks.values(fspa, letter)).state))
     assert taken == {(edge.source, edge.target) for edge in fspa.edges}
-    assert [len(trace.moves) for trace in found.traces] == sorted(len(trace.moves) for trace in found.traces)
-    assert len(found.traces) <= len(fspa.edges)
+    assert [len(trace.moves) for trace in covering.traces] == sorted(len(trace.moves) for trace in covering.traces)
+    assert len(covering.traces) <= len(fspa.edges)
 
 
 def check_blocks(source: SourceFile, fspa: Fspa, traces: list[Witness]) -> None:
-    """The blocks pass where they are pasted into the file."""
+    """Assert that the blocks pass when pasted into the file."""
     from tltlc.monitor.tests import run_tests
 
     texts = [written.as_test(fspa, trace, f"witness {number}") for number, trace in enumerate(traces)]
     compiled = compile_source(SourceFile(source.name, "\n".join([source.text, *texts])))
-    results = [each for each in run_tests(compiled.program, compiled.automata) if each.test.title.startswith("witness")]
+    results = [
+        result for result in run_tests(compiled.program, compiled.automata) if result.test.title.startswith("witness")
+    ]
     assert len(results) == len(traces)
-    assert [each.failure for each in results] == [None] * len(traces)
+    assert [result.failure for result in results] == [None] * len(traces)
 
 
 def check_csv(fspa: Fspa, trace: Witness) -> None:
-    """The signals give the letters, and the monitor says the same of both."""
+    """Assert that the signals give the letters, and that the monitor judges both alike."""
     text = written.as_csv(fspa, trace)
     by_signals, by_atoms = Monitor(fspa), Monitor(fspa)
     samples = list(read_trace(io.BytesIO(text.encode()), "trace", fspa.signals))
@@ -187,7 +192,7 @@ def check_csv(fspa: Fspa, trace: Witness) -> None:
     st.sampled_from(["", "exclusive a, b\n"]),
     st.sampled_from(["", "semantics infinite"]),
 )
-def test_a_cover_goes_the_ways_of_a_search_from_each_state(formula: Formula, exclusive: str, how: str) -> None:
+def test_a_cover_equals_a_search_from_each_state(formula: Formula, exclusive: str, how: str) -> None:
     text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {how}  require {ascii_text(formula)} }}"
     (fspa,) = tltlc.compile_text(text)
     moves = Moves(fspa)
@@ -195,13 +200,13 @@ def test_a_cover_goes_the_ways_of_a_search_from_each_state(formula: Formula, exc
 
 
 def searched_cover(moves: Moves) -> list[tuple[Move, ...]]:
-    """The traces of a cover by a breadth-first search for each way: slow and plain."""
-    left, traces = set(range(len(moves.fspa.edges))), []
+    """Compute the traces of a cover with one breadth-first search per path: slow and simple."""
+    untaken, traces = set(range(len(moves.fspa.edges))), []
     while True:
         trace: list[Move] = []
-        while way := moves.way(moves.fspa.edges[trace[-1].edge].target if trace else 0, left.__contains__):
-            trace += way
-            left.difference_update(move.edge for move in way)
+        while path := moves.way(moves.fspa.edges[trace[-1].edge].target if trace else 0, untaken.__contains__):
+            trace += path
+            untaken.difference_update(move.edge for move in path)
         if not trace:
             return sorted(traces, key=len)
         traces.append(tuple(trace))
@@ -218,61 +223,61 @@ ANY_ORDER = "F a & F b & F c & F d & F e & F f & F g"
 
 
 @pytest.mark.parametrize("spec", ["F[0,60] a", "F[0,240] a", "G(a -> F[0,120] b)", ANY_ORDER, f"{ANY_ORDER} & F h"])
-def test_a_cover_looks_at_few_edges_for_each_step_of_its_traces(spec: str) -> None:
+def test_a_cover_visits_few_edges_per_step(spec: str) -> None:
     signals = "".join(f"signal {name}: bool  " for name in "abcdefgh")
     (fspa,) = tltlc.compile_text(f"{signals} spec s = {spec}")
     nearest, state, steps = Nearest(edges_leaving(fspa)), 0, 0
-    while way := nearest.take(state) or (nearest.take(0) if state else ()):
-        steps += len(way)
-        state = fspa.edges[way[-1]].target
-    # A search from each state looks at each edge of most states again, for each trace.
+    while path := nearest.take(state) or (nearest.take(0) if state else ()):
+        steps += len(path)
+        state = fspa.edges[path[-1]].target
+    # A search from each state would visit the edges of most states again for each trace.
     assert nearest.looks <= 5 * (steps + len(fspa.edges))
 
 
 @pytest.mark.parametrize("bound", [20, 80])
-def test_the_tests_of_a_cover_run_and_say_what_is_new_once(bound: int) -> None:
+def test_the_tests_of_a_cover_are_short_and_share_their_runs(bound: int) -> None:
     (fspa,) = tltlc.compile_text(f"signal a: bool  spec s = F[0,{bound}] a")
-    found = cover(Moves(fspa))
-    together, runs = blocks.Blocks(fspa), []
-    for trace in found.traces:
-        text = written.as_test(fspa, trace, "t", together)
+    covering = cover(Moves(fspa))
+    shared_blocks, runs = blocks.Blocks(fspa), []
+    for trace in covering.traces:
+        text = written.as_test(fspa, trace, "t", shared_blocks)
         assert text == written.as_test(fspa, trace, "t")
         assert len(text.splitlines()) <= 10
-        runs.append(together.runs)
-    assert sum(len(trace.moves) for trace in found.traces) > bound**2 / 2
-    # Each trace of a bound begins as the one before it does.
+        runs.append(shared_blocks.runs)
+    assert sum(len(trace.moves) for trace in covering.traces) > bound**2 / 2
+    # The traces of a bound share their beginnings.
     assert runs[-1] <= 4 * bound
 
 
-def test_the_news_of_a_cover_are_its_edges_once_each() -> None:
+def test_the_news_of_a_cover_list_every_edge_once() -> None:
     (fspa,) = tltlc.compile_text("signal a: bool  signal b: bool  spec s = G(a -> F[0,3] b)")
-    found = cover(Moves(fspa))
-    news = [trace.moves[number - 1].edge for trace in found.traces for number in trace.news]
+    covering = cover(Moves(fspa))
+    news = [trace.moves[number - 1].edge for trace in covering.traces for number in trace.news]
     assert sorted(news) == list(range(len(fspa.edges)))
 
 
-def test_an_edge_of_atoms_that_exclude_each_other_is_told_and_left_out() -> None:
+def test_an_edge_of_exclusive_atoms_is_reported_and_left_out() -> None:
     text = "signal fuel in [0, 100]  spec both { reach fuel > 80  reach fuel < 20 }"
     (fspa,) = tltlc.compile_text(text)
-    found = cover(Moves(fspa))
-    untaken = [fspa.edges[each.edge].guard.text for each in found.untaken]
+    covering = cover(Moves(fspa))
+    untaken = [fspa.edges[edge.edge].guard.text for edge in covering.untaken]
     assert untaken == ["(fuel > 80) & (fuel < 20)"]
-    assert [each.text(fspa) for each in found.untaken[0].obstacles] == ["`fuel > 80` and `fuel < 20`"]
-    # The shortest way by letters alone would be one step.
+    assert [obstacle.text(fspa) for obstacle in covering.untaken[0].obstacles] == ["`fuel > 80` and `fuel < 20`"]
+    # By letters alone, the shortest trace would have one step.
     trace = accepting(Moves(fspa))
     assert trace is not None and len(trace.letters) == 2
 
 
-def test_what_stands_behind_an_edge_that_is_not_taken() -> None:
+def test_edges_behind_an_impossible_edge_are_not_taken() -> None:
     (fspa,) = tltlc.compile_text("signal n in [0, 1]  signal a: bool  spec s { reach n > 0.8 and n < 0.2 then a }")
     moves = Moves(fspa)
     assert accepting(moves) is None
-    reasons = {(fspa.edges[each.edge].source, bool(each.obstacles)) for each in cover(moves).untaken}
+    reasons = {(fspa.edges[edge.edge].source, bool(edge.obstacles)) for edge in cover(moves).untaken}
     assert reasons == {(0, True), (1, False), (2, False)}
 
 
 THRESHOLDS = {"a": "x > 0.75", "b": "x > 0.25", "c": "x < 0.5"}
-"""Atoms of one signal: of the eight letters over them, samples make four."""
+"""Atoms of one signal. Of the eight letters over them, samples can give four."""
 REAL = {
     frozenset(name for name, holds in zip(THRESHOLDS, (x > 0.75, x > 0.25, x < 0.5), strict=True) if holds)
     for x in (0.0, 0.25, 0.3, 0.5, 0.6, 0.75, 0.8)
@@ -281,7 +286,7 @@ REAL = {
 
 @settings(max_examples=100, deadline=None)
 @given(formulas(atoms=tuple(THRESHOLDS), max_leaves=5))
-def test_a_cover_takes_the_edges_that_samples_take_and_no_others(formula: Formula) -> None:
+def test_a_cover_takes_exactly_the_edges_that_samples_take(formula: Formula) -> None:
     text = "".join(f"let {name} = {atom}\n" for name, atom in THRESHOLDS.items())
     (fspa,) = tltlc.compile_text(f"signal x in [0, 1]\n{text}spec s = {ascii_text(formula)}")
     letters = [frozenset(THRESHOLDS[name] for name in letter) for letter in REAL]
@@ -295,11 +300,11 @@ def test_a_cover_takes_the_edges_that_samples_take_and_no_others(formula: Formul
             if edge.target not in reached:
                 reached.add(edge.target)
                 queue.append(edge.target)
-    found = cover(Moves(fspa))
-    edges = {(fspa.edges[move.edge].source, fspa.edges[move.edge].target) for t in found.traces for move in t.moves}
+    covering = cover(Moves(fspa))
+    edges = {(fspa.edges[move.edge].source, fspa.edges[move.edge].target) for t in covering.traces for move in t.moves}
     assert edges == possible
-    assert {(fspa.edges[each.edge].source, fspa.edges[each.edge].target) for each in found.untaken} == {
+    assert {(fspa.edges[edge.edge].source, fspa.edges[edge.edge].target) for edge in covering.untaken} == {
         (edge.source, edge.target) for edge in fspa.edges
     } - possible
-    for trace in found.traces if fspa.atoms else ():
+    for trace in covering.traces if fspa.atoms else ():
         check_csv(fspa, trace)
