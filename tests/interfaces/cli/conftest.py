@@ -26,7 +26,7 @@ class Outcome:
 
 @pytest.fixture
 def inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty folder, made the current one, with one good source file."""
+    """A temporary folder with one valid source file, as the current folder."""
     (tmp_path / "hide.tltl").write_text(HIDE)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -34,7 +34,7 @@ def inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def tltlc(capfd: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
-    """Run a command line in this process."""
+    """A function that runs a command line in this process."""
 
     def run(*arguments: str | Path) -> Outcome:
         from tltlc.interfaces.cli.main import main
@@ -51,10 +51,10 @@ def tltlc(capfd: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
 
 @pytest.fixture
 def process() -> Callable[..., Outcome]:
-    """Run a command line in a process of its own."""
+    """A function that runs a command line in a new process."""
 
     def run(*arguments: str | Path, stdin: bytes = b"", **environment: str) -> Outcome:
-        done = subprocess.run(
+        completed = subprocess.run(
             [sys.executable, "-m", "tltlc", *map(str, arguments)],
             input=stdin,
             capture_output=True,
@@ -62,6 +62,6 @@ def process() -> Callable[..., Outcome]:
             env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
             check=False,
         )
-        return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
+        return Outcome(completed.returncode, completed.stdout.decode(), completed.stderr.decode())
 
     return run

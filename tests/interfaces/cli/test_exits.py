@@ -14,7 +14,7 @@ from tests.waiting import HANG_S, until_it_reads
 from tltlc.interfaces.cli import exits
 
 
-def test_clean_and_warnings_are_0(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_clean_files_and_warnings_exit_with_0(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     clean = tltlc("check", "hide.tltl")
     assert (clean.status, clean.out) == (0, "")
     assert clean.err == "hide.tltl: 1 spec, nothing to report\n"
@@ -24,7 +24,7 @@ def test_clean_and_warnings_are_0(tltlc, inside: Path) -> None:  # type: ignore[
     assert "warning[TLT0410]" in warned.err
 
 
-def test_errors_are_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_errors_exit_with_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("broken.tltl").write_text("spec hide = G !seen")
     Path("import.tltl").write_text("import nowhere\n" + HIDE)
     Path("latin.tltl").write_bytes(b"// \xe9")
@@ -33,21 +33,21 @@ def test_errors_are_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-d
 
 
 @pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that opens and cannot be read")
-def test_a_file_that_only_an_import_names_is_never_3(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_unreadable_import_exits_with_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("lib.tltl").symlink_to("/proc/self/mem")
     Path("import.tltl").write_text("import lib\n" + HIDE)
-    found = tltlc("check", "import.tltl")
-    assert (found.status, found.err.splitlines()[0][:37]) == (1, "error[TLT0010]: cannot read `lib.tltl")
-    assert "imported here" in found.err
+    outcome = tltlc("check", "import.tltl")
+    assert (outcome.status, outcome.err.splitlines()[0][:37]) == (1, "error[TLT0010]: cannot read `lib.tltl")
+    assert "imported here" in outcome.err
 
 
-def test_every_file_is_checked(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    found = tltlc("check", "missing.tltl", "hide.tltl")
-    assert found.status == 3
-    assert "hide.tltl: 1 spec" in found.err
+def test_all_files_are_checked_despite_an_unreadable_one(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = tltlc("check", "missing.tltl", "hide.tltl")
+    assert outcome.status == 3
+    assert "hide.tltl: 1 spec" in outcome.err
 
 
-def test_a_file_that_cannot_be_read_is_3_whatever_is_wrong_in_others(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_unreadable_file_exits_with_3_despite_errors_in_others(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("broken.tltl").write_text("spec hide = G !seen")
     for command in ("check", "lint", "test", "fmt"):
         for names in (("broken.tltl", "missing.tltl"), ("missing.tltl", "broken.tltl")):
@@ -77,13 +77,13 @@ def test_a_file_that_cannot_be_read_is_3_whatever_is_wrong_in_others(tltlc, insi
         ("new", "."),
     ],
 )
-def test_wrong_usage_is_2(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_wrong_usage_exits_with_2(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     before = sorted(inside.iterdir())
     assert tltlc(*arguments).status == 2
     assert sorted(inside.iterdir()) == before
 
 
-def test_no_option_is_advised_that_is_not_there(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_only_existing_options_are_suggested(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     assert "-o" not in tltlc("new", "hide.tltl/game").err
     assert "-o" in tltlc("compile", "hide.tltl", "-o", "hide.tltl/game").err
 
@@ -106,23 +106,23 @@ def test_no_option_is_advised_that_is_not_there(tltlc, inside: Path) -> None:  #
         ("render", "hide.tltl", "-t", "dot", "-o", "."),
     ],
 )
-def test_unreadable_is_3(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    found = tltlc(*arguments)
-    assert found.status == 3
-    assert found.err.startswith("error[TLT000")
+def test_unreadable_and_unwritable_paths_exit_with_3(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = tltlc(*arguments)
+    assert outcome.status == 3
+    assert outcome.err.startswith("error[TLT000")
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
 
 
-def test_a_bug_is_70_without_a_traceback(tltlc, inside: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_a_bug_exits_with_70_without_a_traceback(tltlc, inside: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("secret")
 
     monkeypatch.setattr("tltlc.pipeline.compile_source", broken)
-    found = tltlc("check", "hide.tltl")
-    assert found.status == 70
-    assert found.err.startswith("error: a bug in tltlc stopped this command (reference ")
-    assert "Traceback" not in found.err
-    assert tltlc("check", "hide.tltl").err == found.err
+    outcome = tltlc("check", "hide.tltl")
+    assert outcome.status == 70
+    assert outcome.err.startswith("error: a bug in tltlc stopped this command (reference ")
+    assert "Traceback" not in outcome.err
+    assert tltlc("check", "hide.tltl").err == outcome.err
     monkeypatch.setenv("TLTLC_DEBUG", "1")
     assert "ZeroDivisionError: secret" in tltlc("check", "hide.tltl").err
 
@@ -131,7 +131,7 @@ def test_a_closed_pipe_is_quiet(inside: Path) -> None:
     reading, writing = os.pipe()
     os.close(reading)
     try:
-        done = subprocess.run(
+        completed = subprocess.run(
             [sys.executable, "-m", "tltlc", "render", str(EXAMPLE), "-t", "dot"],
             stdout=writing,
             stderr=subprocess.PIPE,
@@ -141,7 +141,7 @@ def test_a_closed_pipe_is_quiet(inside: Path) -> None:
         )
     finally:
         os.close(writing)
-    assert (done.returncode, done.stderr) == (141, b"")
+    assert (completed.returncode, completed.stderr) == (141, b"")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at a process as Linux shows it")
@@ -151,20 +151,20 @@ def test_an_interrupt_is_quiet(inside: Path) -> None:
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
     ) as running:
-        # Earlier would be Python's own start-up.
+        # An earlier signal would arrive while Python itself starts.
         until_it_reads(running.pid)
         running.send_signal(signal.SIGINT)
         out, err = running.communicate(timeout=HANG_S)
     assert (running.returncode, out, err) == (130, b"", b"")
 
 
-def test_nothing_asked_for_shows_the_help(process) -> None:  # type: ignore[no-untyped-def]
-    found = process()
-    assert (found.status, found.out) == (2, "")
-    assert found.err == process("--help").out
+def test_no_arguments_show_the_help(process) -> None:  # type: ignore[no-untyped-def]
+    outcome = process()
+    assert (outcome.status, outcome.out) == (2, "")
+    assert outcome.err == process("--help").out
 
 
-def test_choices_stand_on_one_line(tltlc) -> None:  # type: ignore[no-untyped-def]
+def test_choices_are_printed_on_one_line(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert (
         "missing argument '{predicates|targets|levels|codes}'. Choose from: predicates, targets, levels, codes\n"
         in tltlc("list").err
@@ -172,27 +172,27 @@ def test_choices_stand_on_one_line(tltlc) -> None:  # type: ignore[no-untyped-de
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device without room")
-def test_standard_output_without_room_is_3() -> None:
+def test_full_standard_output_exits_with_3() -> None:
     with Path("/dev/full").open("wb") as full:
-        done = subprocess.run(
+        completed = subprocess.run(
             [sys.executable, "-m", "tltlc", "list", "codes"], stdout=full, stderr=-1, check=False, cwd=ROOT
         )
-    assert done.returncode == 3
-    assert done.stderr.startswith(b"error[TLT0005]: cannot write to standard output")
+    assert completed.returncode == 3
+    assert completed.stderr.startswith(b"error[TLT0005]: cannot write to standard output")
 
 
-def test_a_missing_folder_is_called_one(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    found = tltlc("render", "hide.tltl", "-o", "nowhere/hide.svg")
-    assert found.status == 3
-    assert found.err.splitlines()[0].endswith("there is no such folder")
+def test_a_missing_folder_is_reported_as_a_folder(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = tltlc("render", "hide.tltl", "-o", "nowhere/hide.svg")
+    assert outcome.status == 3
+    assert outcome.err.splitlines()[0].endswith("there is no such folder")
 
 
-def test_a_summary_counts_the_files_without_tests(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_the_summary_counts_files_with_errors(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("broken.tltl").write_text("spec x = F b\n")
     Path("other.tltl").write_text("spec x = F c\n")
-    found = tltlc("test", "broken.tltl", "other.tltl")
-    assert found.out == "0 passed, 0 failed, 2 files with errors\n"
-    assert "\n\nerror[" in found.err
+    outcome = tltlc("test", "broken.tltl", "other.tltl")
+    assert outcome.out == "0 passed, 0 failed, 2 files with errors\n"
+    assert "\n\nerror[" in outcome.err
 
 
 @pytest.mark.parametrize(
@@ -203,7 +203,9 @@ def test_a_summary_counts_the_files_without_tests(tltlc, inside: Path) -> None: 
         (click.IntRange(min=0), "1.5", "`1.5` is no whole number"),
     ],
 )
-def test_what_is_no_number(type_: click.ParamType, text: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_invalid_number_is_reported(
+    type_: click.ParamType, text: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     command = click.Command("wait", params=[click.Option(["--for"], type=type_)])
     with pytest.raises(click.UsageError) as error:
         command.main(["--for", text], standalone_mode=False)
@@ -211,28 +213,30 @@ def test_what_is_no_number(type_: click.ParamType, text: str, said: str, capsys:
     assert capsys.readouterr().err.startswith(f"error[TLT0700]: invalid value for '--for': {said}\n")
 
 
-def test_a_path_at_which_the_system_does_not_let_us_look_is_no_bug(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_path_that_the_system_rejects_is_not_reported_as_a_bug(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(OSError, match="too long") as error:
         Path("a" * 300).stat()
     assert exits.report(error.value) == exits.UNREADABLE
-    said = capsys.readouterr().err
-    assert said.startswith(f"error[TLT0001]: cannot look at `{'a' * 300}`: file name too long\n  help: ")
+    message = capsys.readouterr().err
+    assert message.startswith(f"error[TLT0001]: cannot look at `{'a' * 300}`: file name too long\n  help: ")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs limits of processes")
 @pytest.mark.parametrize("files", [7, 10])
-def test_a_limit_of_the_system_is_no_bug(files: int, inside: Path) -> None:
+def test_a_system_limit_is_not_reported_as_a_bug(files: int, inside: Path) -> None:
     script = f"ulimit -n {files}; exec {sys.executable} -m tltlc serve --port 0"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(["/bin/sh", "-c", script], env=environment, capture_output=True, text=True, timeout=HANG_S)
-    assert (done.returncode, done.stdout) == (3, "")
-    assert done.stderr == (
+    completed = subprocess.run(
+        ["/bin/sh", "-c", script], env=environment, capture_output=True, text=True, timeout=HANG_S
+    )
+    assert (completed.returncode, completed.stdout) == (3, "")
+    assert completed.stderr == (
         "error[TLT0768]: this process may open no more files\n"
         "  help: `ulimit -a` shows your limits: raise the one that is too small, or close other programs\n"
     )
 
 
-def test_what_led_to_an_error_counts(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_cause_of_an_exception_decides_the_message(capsys: pytest.CaptureFixture[str]) -> None:
     error = RuntimeError("no thread")
     error.__cause__ = MemoryError()
     assert exits.report(error) == exits.UNREADABLE

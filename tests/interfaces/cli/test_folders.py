@@ -1,4 +1,4 @@
-"""Folders in the place of files, and files that are no source texts."""
+"""Folders as arguments, and files that are not source texts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Command = Callable[..., Outcome]
 
 @pytest.fixture
 def levels(inside: Path) -> Path:
-    """A folder with a spec, one below it with another, a library, and a hidden file that is wrong."""
+    """A folder with a spec, a library and a spec in a subfolder, and a hidden file with an error."""
     for name, text in {
         "levels/hide.tltl": HIDE,
         "levels/deep/dash.tltl": "import sounds\nspec dash = F loud\n",
@@ -32,19 +32,19 @@ def levels(inside: Path) -> Path:
     return inside
 
 
-def test_check_says_how_many_files_there_were(tltlc: Command, levels: Path) -> None:
-    done = tltlc("check", "levels")
-    assert (done.status, done.out, done.err) == (0, "", "3 files: nothing to report\n")
+def test_check_counts_the_files_of_a_folder(tltlc: Command, levels: Path) -> None:
+    outcome = tltlc("check", "levels")
+    assert (outcome.status, outcome.out, outcome.err) == (0, "", "3 files: nothing to report\n")
     Path("levels/hide.tltl").write_text("spec hide = G !seen\n")
     Path("levels/never.tltl").write_text("signal a: bool\nspec never = F a & G !a\nspec ever = F (a | !a)\n")
-    done = tltlc("check", "levels")
-    assert done.status == 1
-    assert "levels/hide.tltl:1:" in done.err
-    assert done.err.endswith("\n4 files: 1 error, 2 warnings\n")
+    outcome = tltlc("check", "levels")
+    assert outcome.status == 1
+    assert "levels/hide.tltl:1:" in outcome.err
+    assert outcome.err.endswith("\n4 files: 1 error, 2 warnings\n")
 
 
 @pytest.mark.parametrize("command", ["check", "lint", "test", "fmt"])
-def test_without_arguments_the_current_folder_is_looked_at(
+def test_without_arguments_the_current_folder_is_used(
     command: str, tltlc: Command, levels: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     named = tltlc(command, ".", *(["--check"] if command == "fmt" else []))
@@ -55,73 +55,73 @@ def test_without_arguments_the_current_folder_is_looked_at(
     assert tltlc(command).status == 1
     monkeypatch.chdir("../.old")
     Path("wrong.tltl").unlink()
-    nothing = tltlc(command)
-    assert (nothing.status, "there is no .tltl file in `.`" in nothing.err) == (2, True)
+    outcome = tltlc(command)
+    assert (outcome.status, "there is no .tltl file in `.`" in outcome.err) == (2, True)
 
 
-def test_the_only_file_of_a_folder_is_spoken_of(tltlc: Command, inside: Path) -> None:
+def test_a_folder_with_one_file_is_counted(tltlc: Command, inside: Path) -> None:
     assert tltlc("check").err == "1 file: nothing to report\n"
     Path("hide.tltl").write_text("spec hide = G !seen\n")
     assert tltlc("check").err.endswith("\n1 file: 1 error\n")
 
 
-def test_files_that_are_named_have_their_own_lines(tltlc: Command, levels: Path) -> None:
-    done = tltlc("check", "levels/hide.tltl", "levels", "hide.tltl")
-    told = ["levels/hide.tltl: 1 spec, nothing to report", "hide.tltl: 1 spec, nothing to report"]
-    assert done.err.splitlines() == [*told, "4 files: nothing to report"]
+def test_files_given_by_name_have_their_own_lines(tltlc: Command, levels: Path) -> None:
+    outcome = tltlc("check", "levels/hide.tltl", "levels", "hide.tltl")
+    expected_lines = ["levels/hide.tltl: 1 spec, nothing to report", "hide.tltl: 1 spec, nothing to report"]
+    assert outcome.err.splitlines() == [*expected_lines, "4 files: nothing to report"]
     assert tltlc("check", "hide.tltl:hide", "hide.tltl").err.endswith("1 file: nothing to report\n")
 
 
-def test_what_two_files_import_is_told_once(tltlc: Command, levels: Path) -> None:
+def test_an_error_in_a_shared_import_is_reported_once(tltlc: Command, levels: Path) -> None:
     Path("levels/deep/sounds.tltl").write_text("signal noise: ratios\nlet loud = noise > 50 %\n")
-    done = tltlc("check", "levels", "--format", "json")
-    assert (done.status, len(json.loads(done.out)["diagnostics"])) == (1, 1)
+    outcome = tltlc("check", "levels", "--format", "json")
+    assert (outcome.status, len(json.loads(outcome.out)["diagnostics"])) == (1, 1)
     assert tltlc("check", "levels").err.endswith("3 files: 1 error\n")
 
 
 def test_explain_takes_all_specs_of_a_folder(tltlc: Command, levels: Path) -> None:
-    done = tltlc("explain", "levels", "--format", "json")
-    assert [each["name"] for each in json.loads(done.out)["specs"]] == ["dash", "hide"]
+    outcome = tltlc("explain", "levels", "--format", "json")
+    assert [spec["name"] for spec in json.loads(outcome.out)["specs"]] == ["dash", "hide"]
     Path("levels/hide.tltl").write_text("spec")
     partly = tltlc("explain", "levels", "--format", "json")
-    assert (partly.status, [each["name"] for each in json.loads(partly.out)["specs"]]) == (1, ["dash"])
+    assert (partly.status, [spec["name"] for spec in json.loads(partly.out)["specs"]]) == (1, ["dash"])
     assert tltlc("explain", "levels/hide.tltl", "--format", "json").out == ""
 
 
-def test_compile_makes_the_files_of_a_folder(tltlc: Command, levels: Path) -> None:
-    done = tltlc("compile", "levels", "-t", "json", "-o", "build")
-    assert (done.status, "no spec" in done.err) == (0, False)
+def test_compile_takes_all_specs_of_a_folder(tltlc: Command, levels: Path) -> None:
+    outcome = tltlc("compile", "levels", "-t", "json", "-o", "build")
+    assert (outcome.status, "no spec" in outcome.err) == (0, False)
     assert sorted(load(path).name for path in Path("build").iterdir()) == ["dash", "hide"]
     assert "no spec" in tltlc("compile", "levels/deep/sounds.tltl", "-t", "json", "-o", "build").err
 
 
 @pytest.mark.parametrize("command", ["check", "compile", "explain", "fmt", "lint", "test"])
-def test_a_folder_without_sources(command: str, tltlc: Command, inside: Path) -> None:
+def test_a_folder_without_sources_is_rejected(command: str, tltlc: Command, inside: Path) -> None:
     Path("empty").mkdir()
-    done = tltlc(command, "empty")
-    assert (done.status, done.err.splitlines()[0]) == (2, "error[TLT0722]: there is no .tltl file in `empty`")
+    outcome = tltlc(command, "empty")
+    assert (outcome.status, outcome.err.splitlines()[0]) == (2, "error[TLT0722]: there is no .tltl file in `empty`")
 
 
 @pytest.mark.parametrize("command", ["fmt", "lint", "test"])
-def test_an_artefact_is_no_source_text(command: str, tltlc: Command, inside: Path) -> None:
+def test_an_artefact_is_rejected_as_a_source(command: str, tltlc: Command, inside: Path) -> None:
     tltlc("compile", "hide.tltl", "-t", "json")
     before = Path("hide.fspa.json").read_bytes()
-    done = tltlc(command, "hide.fspa.json")
+    outcome = tltlc(command, "hide.fspa.json")
     title = "error[TLT0722]: `hide.fspa.json` is an artefact: it holds an automaton, and no source text"
-    assert (done.status, done.err.splitlines()[0]) == (2, title)
+    assert (outcome.status, outcome.err.splitlines()[0]) == (2, title)
     assert Path("hide.fspa.json").read_bytes() == before
 
 
-def test_an_artefact_is_no_library(tltlc: Command, inside: Path) -> None:
+def test_an_artefact_is_rejected_as_a_library(tltlc: Command, inside: Path) -> None:
     tltlc("compile", "hide.tltl", "-t", "json,hoa")
     Path("play.csv").write_text("seen\n0\n")
     for arguments in (("import", "hide.hoa"), ("mine", "play.csv")):
-        done = tltlc(*arguments, "--predicates", "hide.fspa.json")
-        assert (done.status, "error[TLT0722]: `hide.fspa.json` is an artefact" in done.err) == (2, True)
+        outcome = tltlc(*arguments, "--predicates", "hide.fspa.json")
+        assert (outcome.status, "error[TLT0722]: `hide.fspa.json` is an artefact" in outcome.err) == (2, True)
 
 
 @pytest.mark.parametrize("command", ["check", "fmt", "lint", "test"])
-def test_an_automaton_of_another_tool_is_no_source_text(command: str, tltlc: Command, inside: Path) -> None:
+def test_an_automaton_of_another_tool_is_rejected_as_a_source(command: str, tltlc: Command, inside: Path) -> None:
     Path("hide.hoa").write_text("HOA: v1\n")
     assert "error[TLT0652]: `hide.hoa` is an automaton in the Hanoi format" in tltlc(command, "hide.hoa").err
 
@@ -153,18 +153,18 @@ def test_pipes_and_devices_in_a_folder_are_not_read(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no named pipes in folders")
-def test_a_folder_of_pipes_alone_has_no_source(tltlc: Command, inside: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_with_only_pipes_has_no_source(tltlc: Command, inside: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("hide.tltl").unlink()
     pipes.put_beside(inside / "pipe.tltl")
     pipes.forbid(monkeypatch)
-    done = tltlc("check", ".")
-    assert (done.status, "there is no .tltl file in `.`" in done.err) == (2, True)
+    outcome = tltlc("check", ".")
+    assert (outcome.status, "there is no .tltl file in `.`" in outcome.err) == (2, True)
 
 
-def test_a_link_that_leads_nowhere_is_reported(tltlc: Command, inside: Path) -> None:
+def test_a_dangling_link_is_reported(tltlc: Command, inside: Path) -> None:
     Path("gone.tltl").symlink_to("nowhere")
-    done = tltlc("check", ".")
-    assert (done.status, "it is a link: what it leads to is gone" in done.err) == (3, True)
+    outcome = tltlc("check", ".")
+    assert (outcome.status, "it is a link: what it leads to is gone" in outcome.err) == (3, True)
 
 
 def test_a_folder_that_cannot_be_read_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

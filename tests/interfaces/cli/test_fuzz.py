@@ -1,4 +1,4 @@
-"""Whatever a file holds, `tltlc check` ends soon, with a status of its own and without a traceback."""
+"""Fuzzing of `tltlc check`: for any file, it ends soon with status 0 or 1, and without a traceback."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ EACH = settings(
 
 @st.composite
 def mutated(draw: st.DrawFn) -> str:
-    """An example with a few pieces cut out, doubled, swapped or replaced."""
+    """An example with a few pieces removed, doubled or replaced."""
     text = draw(st.sampled_from(SPECS))
     for _ in range(draw(st.integers(1, 4))):
         start = draw(st.integers(0, len(text)))
@@ -51,19 +51,19 @@ def check(content: bytes, folder: Path) -> None:
 
 @given(content=st.binary(max_size=200))
 @EACH
-def test_arbitrary_bytes(content: bytes, tmp_path: Path) -> None:
+def test_arbitrary_bytes_end_with_a_status(content: bytes, tmp_path: Path) -> None:
     check(content, tmp_path)
 
 
 @given(text=st.lists(st.sampled_from(WORDS), max_size=60).map(" ".join))
 @EACH
-def test_words_in_any_order(text: str, tmp_path: Path) -> None:
+def test_words_in_any_order_end_with_a_status(text: str, tmp_path: Path) -> None:
     check(text.encode(), tmp_path)
 
 
 @given(text=mutated())
 @EACH
-def test_mutated_examples(text: str, tmp_path: Path) -> None:
+def test_mutated_examples_end_with_a_status(text: str, tmp_path: Path) -> None:
     check(text.encode("utf-8", "surrogatepass"), tmp_path)
 
 
@@ -98,16 +98,16 @@ DEEP = 100_000
     ],
     ids=lambda text: text[:30],
 )
-def test_hostile_texts(text: str, tmp_path: Path) -> None:
-    # Measured: 38 for each character of a long text, and some thousands.
+def test_hostile_texts_are_checked_in_linear_time(text: str, tmp_path: Path) -> None:
+    # The measured value is 38 calls for each character of a long text, plus some thousands.
     assert calls(lambda: check(text.encode(), tmp_path)) < 100_000 + 200 * len(text)
 
 
-def test_a_file_imports_itself(tmp_path: Path) -> None:
+def test_a_file_may_import_itself(tmp_path: Path) -> None:
     check(b'import "fuzz.tltl"\nspec x = true', tmp_path)
 
 
-def test_the_recursion_limit_is_as_it_was() -> None:
+def test_the_recursion_limit_is_restored() -> None:
     before = sys.getrecursionlimit()
     with contextlib.suppress(SystemExit):
         main(["list", "codes"])

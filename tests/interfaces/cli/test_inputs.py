@@ -28,7 +28,7 @@ from tltlc.io.spec_file import split
         ("a.tltl:é", "a.tltl:é", None),
     ],
 )
-def test_split(argument: str, path: str, name: str | None, inside: Path) -> None:
+def test_arguments_are_split_into_path_and_name(argument: str, path: str, name: str | None, inside: Path) -> None:
     assert split(argument) == (path, name)
 
 
@@ -43,7 +43,7 @@ def test_a_drive_letter_is_not_split(monkeypatch: pytest.MonkeyPatch, inside: Pa
     assert split("C:spec") == ("C:spec", None)
 
 
-def test_standard_input(process) -> None:  # type: ignore[no-untyped-def]
+def test_standard_input_is_read_like_a_file(process) -> None:  # type: ignore[no-untyped-def]
     assert process("check", "-", stdin=HIDE.encode()).status == 0
     broken = process("check", "-", stdin=b"spec hide = G !seen")
     assert broken.status == 1
@@ -55,14 +55,14 @@ def test_standard_input(process) -> None:  # type: ignore[no-untyped-def]
     assert process("render", "-:seek", "-t", "dot", stdin=two).out.startswith("digraph seek")
 
 
-def test_byte_order_mark_and_other_line_ends(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_byte_order_marks_and_line_ends_are_accepted(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("bom.tltl").write_bytes(b"\xef\xbb\xbf" + HIDE.replace("\n", "\r\n").encode())
     assert tltlc("check", "bom.tltl").status == 0
     Path("late.tltl").write_bytes(b"\xef\xbb\xbfsignal seen: bool // \xe9\n")
     assert "late.tltl:1:22" in tltlc("check", "late.tltl").err
 
 
-def test_an_artefact_goes_where_a_source_goes(tltlc, process, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_artefact_is_accepted_in_place_of_a_source(tltlc, process, inside: Path) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("compile", "hide.tltl", "-o", "one", "-t", "json,dot").status == 0
     artefact = Path("one/hide.fspa.json")
     assert tltlc("check", artefact).status == 0
@@ -75,7 +75,7 @@ def test_an_artefact_goes_where_a_source_goes(tltlc, process, inside: Path) -> N
     assert process("render", "-", "-t", "dot", stdin=artefact.read_bytes()).out == Path("one/hide.dot").read_text()
 
 
-def test_params_of_sources_and_of_artefacts(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_params_apply_to_sources_and_artefacts(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     text = "signal d: length in [0 m, 100 m]\nparam far: length in [1 m, 50 m] = 20 m\n"
     Path("far.tltl").write_text(text + "predicate away in [-1, 1] = clamp(d / far - 1, -1, 1)\nspec go = F away\n")
     assert tltlc("compile", "far.tltl", "-t", "json", "-o", "plain").status == 0
@@ -101,7 +101,7 @@ def test_params_of_sources_and_of_artefacts(tltlc, inside: Path) -> None:  # typ
         (("check", "spoken_of"), None),
     ],
 )
-def test_a_spec_in_the_place_of_a_file_is_looked_for(  # type: ignore[no-untyped-def]
+def test_a_spec_name_in_place_of_a_file_gets_a_suggestion(  # type: ignore[no-untyped-def]
     command: tuple[str, ...], meant: str | None, tltlc, inside: Path
 ) -> None:
     for name, text in {
@@ -112,13 +112,13 @@ def test_a_spec_in_the_place_of_a_file_is_looked_for(  # type: ignore[no-untyped
     }.items():
         Path(name).parent.mkdir(parents=True, exist_ok=True)
         Path(name).write_text(text)
-    found = tltlc(*command)
-    assert found.status == 3
-    assert ("did you mean" in found.err) == (meant is not None)
-    assert meant is None or f"\n  help: did you mean `{meant}`?\n" in found.err
+    outcome = tltlc(*command)
+    assert outcome.status == 3
+    assert ("did you mean" in outcome.err) == (meant is not None)
+    assert meant is None or f"\n  help: did you mean `{meant}`?\n" in outcome.err
 
 
-def test_not_every_folder_is_searched_for_a_spec(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_the_search_for_a_spec_stops_after_some_folders(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     for number in range(300):
         Path(f"a{number:03}").mkdir()
     for name in ("a001", "a299"):
@@ -130,23 +130,23 @@ def test_not_every_folder_is_searched_for_a_spec(tltlc, inside: Path) -> None:  
 @pytest.mark.parametrize("text", [b"", b"\n", b"\xef\xbb\xbf"])
 @pytest.mark.parametrize("name", ["hide.fspa.json", "hide.tltl.json"])
 @pytest.mark.parametrize("command", ["check", "compile", "test", "explain", "render", "witness", "lint", "fmt"])
-def test_an_artefact_that_was_cut_off_is_an_error(
+def test_a_truncated_artefact_is_an_error(
     command: str,
     name: str,
     text: bytes,
     inside: Path,
     tltlc: Callable[..., Outcome],
 ) -> None:
-    """A full disk leaves an empty file: a build must not take it for one without specs."""
+    """A full disk leaves an empty file. A build must not treat it as a file without specs."""
     (inside / name).write_bytes(text)
-    done = tltlc(command, name)
+    outcome = tltlc(command, name)
     code, status = ("TLT0722", 2) if command in ("lint", "fmt") else ("TLT0601", 1)
-    assert done.status == status
-    assert f"error[{code}]: `{name}`" in done.err
+    assert outcome.status == status
+    assert f"error[{code}]: `{name}`" in outcome.err
 
 
-def test_an_empty_source_is_no_error(inside: Path, tltlc: Callable[..., Outcome]) -> None:
-    """A library of nothing, which others may import."""
+def test_an_empty_source_is_valid(inside: Path, tltlc: Callable[..., Outcome]) -> None:
+    """It is an empty library, which other files may import."""
     (inside / "empty.tltl").touch()
     (inside / "hide.tltl").write_text(f'import "empty.tltl"\n{HIDE}')
     assert tltlc("check", "empty.tltl", "hide.tltl").status == 0

@@ -1,4 +1,4 @@
-"""Ctrl-C, at the moments at which Python itself makes something else of it."""
+"""Ctrl-C at moments at which Python itself would handle it differently."""
 
 from __future__ import annotations
 
@@ -33,39 +33,40 @@ def _started(folder: Path, script: str) -> subprocess.Popen[str]:
 
 
 def _run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
-    """What becomes of a process that nobody interrupts but itself."""
+    """Run a process that is interrupted by itself at most."""
     with _started(folder, script) as running:
         out, err = running.communicate(timeout=HANG_S)
     return subprocess.CompletedProcess(running.args, running.returncode, out, err)
 
 
-def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
-    """What becomes of a process that is interrupted as soon as it prints ``told``: status, output, messages."""
+def _ended(folder: Path, script: str, expected_line: str) -> tuple[int, str, str]:
+    """Interrupt a process as soon as it prints ``expected_line``; return its status, output and
+    messages."""
     (folder / "slow.py").write_text(_SLOW, encoding="utf-8")
     with _started(folder, script) as running:
         assert running.stdout is not None
-        assert running.stdout.readline() == told
+        assert running.stdout.readline() == expected_line
         running.send_signal(signal.SIGINT)
         out, err = running.communicate(timeout=HANG_S)
     return running.returncode, out, err
 
 
-def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
+def test_an_import_finishes_before_its_interrupt(tmp_path: Path) -> None:
     script = "import time\nwith signals_end():\n    import slow\n    print('imported')\n    time.sleep(60)"
     status, out, err = _ended(tmp_path, script, "imports\n")
     assert (status, err) == (130, "")
-    # Where the machine is slow, the interrupt may come right behind the import.
+    # On a slow machine, the interrupt may arrive right after the import.
     assert out in ("", "imported\n")
 
 
-def test_an_import_that_does_not_end_ends_with_the_process(tmp_path: Path) -> None:
+def test_an_interrupt_ends_an_endless_import(tmp_path: Path) -> None:
     (tmp_path / "endless.py").write_text("import slow, time\nwhile True:\n    time.sleep(0.01)\n", encoding="utf-8")
     script = "with signals_end():\n    print('begins', flush=True)\n    import endless"
     status, _, err = _ended(tmp_path, script, "begins\n")
     assert (status, err) == (130, "")
 
 
-def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:
+def test_an_interrupt_at_exit_changes_nothing(tmp_path: Path) -> None:
     script = (
         "import atexit, sys, time\n"
         "atexit.register(lambda: (print('ends', flush=True), time.sleep(0.5)))\n"
@@ -74,7 +75,7 @@ def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:
     assert _ended(tmp_path, script, "ends\n") == (1, "", "")
 
 
-def test_what_is_ignored_stays_ignored(tmp_path: Path) -> None:
+def test_an_ignored_signal_stays_ignored(tmp_path: Path) -> None:
     script = (
         "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
         "with signals_end():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
@@ -82,7 +83,7 @@ def test_what_is_ignored_stays_ignored(tmp_path: Path) -> None:
     assert _ended(tmp_path, script, "works\n") == (0, "over\n", "")
 
 
-def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
+def test_an_error_after_an_interrupt_is_not_reported_as_a_bug(tmp_path: Path) -> None:
     script = (
         "import time\nfrom tltlc.interfaces.cli import command_line, main\n"
         "def broken(*_):\n"
@@ -97,13 +98,13 @@ def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_signal_behind_the_command_gives_its_own_status(name: str, tmp_path: Path) -> None:
+def test_a_signal_after_the_command_gives_its_own_status(name: str, tmp_path: Path) -> None:
     script = (
         "import signal, sys\nfrom tltlc.interfaces.cli import interrupts, main\n"
         "stop = interrupts._stop_listening\n"
         "def stop_late():\n"
         "    interrupts._stop_listening = stop\n"
-        # By then SIGINT is ignored; it comes a moment earlier.
+        # By then SIGINT is ignored; the test sends it a moment earlier.
         "    signal.signal(signal.SIGINT, interrupts.interrupt)\n"
         f"    signal.raise_signal(signal.{name})\n"
         "interrupts._stop_listening = stop_late\n"
@@ -121,13 +122,13 @@ for name in ("SIGINT", "SIGTERM", "SIGHUP"):
 """
 
 
-def test_a_program_that_is_started_has_the_defaults(tmp_path: Path) -> None:
+def test_a_child_process_has_the_default_handlers(tmp_path: Path) -> None:
     start = f"with signals_end():\n    import subprocess, sys\n    subprocess.run([sys.executable, '-c', {HANDLERS!r}])"
-    # That of SIGINT is Python's own.
+    # For SIGINT this is Python's own handler.
     assert _run(tmp_path, start).stdout.split() == ["default_int_handler", "default", "default"]
 
 
-def test_a_forked_copy_is_interrupted_and_has_the_other_defaults(tmp_path: Path) -> None:
+def test_a_forked_process_handles_sigint_and_has_the_other_defaults(tmp_path: Path) -> None:
     fork = (
         "import os\nwith signals_end():\n    child = os.fork()\n    if not child:\n"
         f"        exec({HANDLERS!r})\n        os._exit(0)\n    os.waitpid(child, 0)"

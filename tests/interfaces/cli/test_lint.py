@@ -1,4 +1,4 @@
-"""``tltlc lint`` as its user has it."""
+"""``tltlc lint`` on the command line."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ NOTED = "signal a: bool\nspec s { reach a }\n"
 
 
 @pytest.mark.parametrize("folder", ["examples", "stdlib_predicates"])
-def test_nothing_is_said_of_what_comes_with_tltlc(folder: str, tltlc: Command) -> None:
-    done = tltlc("lint", ROOT / folder)
-    assert (done.status, done.out) == (0, "")
-    assert done.err.endswith("files: nothing to report\n")
+def test_the_shipped_files_have_no_findings(folder: str, tltlc: Command) -> None:
+    outcome = tltlc("lint", ROOT / folder)
+    assert (outcome.status, outcome.out) == (0, "")
+    assert outcome.err.endswith("files: nothing to report\n")
 
 
-def test_statuses(tltlc: Command, inside: Path) -> None:
+def test_exit_statuses(tltlc: Command, inside: Path) -> None:
     texts = {"clean": "signal a: bool\nspec s = F a\n", "warned": UNUSED, "noted": NOTED, "broken": "spec s = F a\n"}
     for name, text in texts.items():
         Path(f"{name}.tltl").write_text(text)
@@ -37,77 +37,77 @@ def test_statuses(tltlc: Command, inside: Path) -> None:
     assert tltlc("lint", "--nonsense").status == 2
 
 
-def test_files_and_folders(tltlc: Command, inside: Path) -> None:
+def test_files_and_folders_are_linted(tltlc: Command, inside: Path) -> None:
     Path("levels/deep").mkdir(parents=True)
     Path("levels/.hidden").mkdir()
     for place in ("levels/one", "levels/deep/two", "levels/.hidden/three"):
         Path(f"{place}.tltl").write_text(UNUSED)
-    done = tltlc("lint")
-    assert done.err.count("warning[TLT0421]") == 2
-    assert "levels/one.tltl:2:8" in done.err and "hidden" not in done.err
+    outcome = tltlc("lint")
+    assert outcome.err.count("warning[TLT0421]") == 2
+    assert "levels/one.tltl:2:8" in outcome.err and "hidden" not in outcome.err
     assert tltlc("lint", "levels/deep", "hide.tltl").err.count("warning[") == 1
 
 
-def test_what_two_files_import_is_told_once(tltlc: Command, inside: Path) -> None:
+def test_a_finding_in_a_shared_import_is_reported_once(tltlc: Command, inside: Path) -> None:
     Path("jumpy.tltl").write_text("signal x in [0, 9]\npredicate p in [-1, 1] = when x < 5: x / 9 - 1 otherwise: 1\n")
     for name in ("one", "two"):
         Path(f"{name}.tltl").write_text("import jumpy\nspec s = F p\n")
     assert tltlc("lint", "one.tltl", "two.tltl").err.count("TLT0402") == 1
 
 
-def test_a_file_that_is_read_only_is_not_mended(tltlc: Command, inside: Path) -> None:
+def test_a_read_only_file_is_not_fixed(tltlc: Command, inside: Path) -> None:
     path = Path("unused.tltl")
     path.write_text(UNUSED)
     path.chmod(0o444)
-    done = tltlc("lint", "--fix", "unused.tltl")
+    outcome = tltlc("lint", "--fix", "unused.tltl")
     path.chmod(0o644)
-    assert done.status == 3
-    assert "error[TLT0005]: cannot write `unused.tltl`: it is read-only" in done.err
+    assert outcome.status == 3
+    assert "error[TLT0005]: cannot write `unused.tltl`: it is read-only" in outcome.err
     assert path.read_text() == UNUSED
 
 
-def test_standard_input(process) -> None:  # type: ignore[no-untyped-def]
-    done = process("lint", "-", stdin=UNUSED.encode())
-    assert done.status == 1 and "<stdin>:2:8" in done.err
+def test_standard_input_is_linted_but_not_fixed(process) -> None:  # type: ignore[no-untyped-def]
+    outcome = process("lint", "-", stdin=UNUSED.encode())
+    assert outcome.status == 1 and "<stdin>:2:8" in outcome.err
     assert process("lint", "-", "--fix", stdin=UNUSED.encode()).status == 2
 
 
-def test_fixes_are_written_and_told(tltlc: Command, inside: Path) -> None:
+def test_fixes_are_written_and_listed(tltlc: Command, inside: Path) -> None:
     Path("s.tltl").write_text("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
     before = Path("hide.tltl").stat().st_mtime_ns
-    done = tltlc("lint", "--fix", "s.tltl", "hide.tltl")
-    assert done.status == 0
+    outcome = tltlc("lint", "--fix", "s.tltl", "hide.tltl")
+    assert outcome.status == 0
     assert Path("s.tltl").read_text() == "signal a: bool\nspec s { reach a }\n"
-    assert "fixed s.tltl:3: nothing uses the let `c`\nfixed s.tltl:2: nothing uses the signal `b`\n" in done.err
-    assert "note[TLT0419]" in done.err
+    assert "fixed s.tltl:3: nothing uses the let `c`\nfixed s.tltl:2: nothing uses the signal `b`\n" in outcome.err
+    assert "note[TLT0419]" in outcome.err
     assert Path("hide.tltl").stat().st_mtime_ns == before
     again = tltlc("lint", "--fix", "s.tltl")
     assert "fixed" not in again.err
 
 
-def test_a_link_out_of_the_folder_is_left_as_it_is(tltlc: Command, inside: Path) -> None:
+def test_a_link_out_of_the_folder_is_not_changed(tltlc: Command, inside: Path) -> None:
     text = "signal a: bool\nsignal  u: bool\nspec s { limit 5 steps reach a }\n"
     (inside / "out").mkdir()
     (inside / "in").mkdir()
     (inside / "out" / "o.tltl").write_text(text)
     (inside / "in" / "link.tltl").symlink_to("../out/o.tltl")
     for command in (("lint", "--fix", "in"), ("fmt", "in")):
-        found = tltlc(*command)
-        assert "in/link.tltl is left as it is: it is a link out of the folder" in found.err
+        outcome = tltlc(*command)
+        assert "in/link.tltl is left as it is: it is a link out of the folder" in outcome.err
         assert (inside / "out" / "o.tltl").read_text() == text
     tltlc("lint", "--fix", "in/link.tltl")
     assert "u: bool" not in (inside / "out" / "o.tltl").read_text()
 
 
-def test_what_other_files_use_is_neither_unused_nor_removed(tltlc: Command, inside: Path) -> None:
+def test_names_that_other_files_use_are_kept(tltlc: Command, inside: Path) -> None:
     Path("deep").mkdir()
     level = "entity exit\nsignal at(e): bool\nlet out = F at(exit)\nlet later = F out\nsignal b: bool\n"
     Path("vault.tltl").write_text(level + "signal a: bool\nspec s = F a\n")
-    # Through a file between them, with an alias, and from another folder.
+    # The name is used through a file in between, with an alias, and from another folder.
     Path("between.tltl").write_text("import vault as first\nlet both = first.later & first.a\n")
     Path("deep/last.tltl").write_text('import "../between.tltl"\nspec t = both & X both\n')
-    done = tltlc("lint", "--fix", "vault.tltl")
-    assert "fixed vault.tltl:5: nothing uses the signal `b`\n" in done.err
+    outcome = tltlc("lint", "--fix", "vault.tltl")
+    assert "fixed vault.tltl:5: nothing uses the signal `b`\n" in outcome.err
     assert Path("vault.tltl").read_text() == level.replace("signal b: bool\n", "") + "signal a: bool\nspec s = F a\n"
     assert tltlc("check", "deep/last.tltl").status == 0
     Path("between.tltl").unlink()
@@ -116,7 +116,7 @@ def test_what_other_files_use_is_neither_unused_nor_removed(tltlc: Command, insi
     assert Path("vault.tltl").read_text() == "signal a: bool\nspec s = F a\n"
 
 
-def test_files_of_the_same_run_count_wherever_they_are(tltlc: Command, inside: Path) -> None:
+def test_uses_in_files_of_the_same_run_count(tltlc: Command, inside: Path) -> None:
     for folder in ("here/.git", "there/.git"):
         Path(folder).mkdir(parents=True)
     text = "entity exit\nsignal a: bool\nspec s = F a\n"
@@ -127,30 +127,30 @@ def test_files_of_the_same_run_count_wherever_they_are(tltlc: Command, inside: P
     assert (Path("here/level.tltl").read_text(), Path("there/user.tltl").read_text()) == (text, user)
 
 
-def test_formats(tltlc: Command, inside: Path) -> None:
+def test_output_formats(tltlc: Command, inside: Path) -> None:
     Path("s.tltl").write_text(UNUSED)
-    assert [each["code"] for each in json.loads(tltlc("lint", "--format", "json", "s.tltl").out)["diagnostics"]] == [
-        "TLT0421"
-    ]
+    assert [
+        diagnostic["code"] for diagnostic in json.loads(tltlc("lint", "--format", "json", "s.tltl").out)["diagnostics"]
+    ] == ["TLT0421"]
     assert json.loads(tltlc("lint", "--format", "sarif", "s.tltl").out)["runs"][0]["results"][0]["level"] == "warning"
     assert tltlc("lint", "--format", "github", "s.tltl").out.startswith("::warning file=s.tltl,line=2")
-    noted = tltlc("lint", "--format", "json", "--fix", "s.tltl")
-    assert (noted.status, json.loads(noted.out)["diagnostics"]) == (0, [])
+    fixed = tltlc("lint", "--format", "json", "--fix", "s.tltl")
+    assert (fixed.status, json.loads(fixed.out)["diagnostics"]) == (0, [])
 
 
-def test_the_project_decides(tltlc: Command, inside: Path) -> None:
+def test_the_project_sets_the_levels(tltlc: Command, inside: Path) -> None:
     Path("s.tltl").write_text(UNUSED)
     for level, expected in (("allow", 0), ("note", 0), ("warning", 1), ("error", 1)):
         Path("tltl.toml").write_text(f'[lint]\n{level} = ["TLT0421"]\n')
-        done = tltlc("lint", "s.tltl")
-        assert done.status == expected
-        assert (f"{level}[TLT0421]" in done.err) == (level != "allow")
+        outcome = tltlc("lint", "s.tltl")
+        assert outcome.status == expected
+        assert (f"{level}[TLT0421]" in outcome.err) == (level != "allow")
     Path("tltl.toml").write_text('[lint]\nallow = ["TLT0421"]\n')
     assert tltlc("lint", "--fix", "s.tltl").status == 0
     assert Path("s.tltl").read_text() == UNUSED
 
 
-def test_params_and_libraries(tltlc: Command, inside: Path) -> None:
+def test_params_and_libraries_are_options(tltlc: Command, inside: Path) -> None:
     Path("libraries").mkdir()
     Path("libraries/mine.tltl").write_text("signal a: bool\nparam n: number in [1, 9] = 2\n")
     Path("s.tltl").write_text("import mine\nsignal x in [0, 20]\nspec s = F a & F x > n\n")
@@ -158,10 +158,10 @@ def test_params_and_libraries(tltlc: Command, inside: Path) -> None:
     assert tltlc("lint", "s.tltl", "--library", "libraries", "--param", "n=3").status == 0
 
 
-def test_an_artefact_has_no_text(tltlc: Command, inside: Path) -> None:
+def test_an_artefact_cannot_be_linted(tltlc: Command, inside: Path) -> None:
     tltlc("compile", "hide.tltl", "-t", "json")
-    done = tltlc("lint", "hide.fspa.json")
-    assert done.status == 2 and "TLT0722" in done.err
+    outcome = tltlc("lint", "hide.fspa.json")
+    assert outcome.status == 2 and "TLT0722" in outcome.err
 
 
 @pytest.mark.parametrize(
@@ -176,18 +176,18 @@ def test_an_artefact_has_no_text(tltlc: Command, inside: Path) -> None:
     ],
     ids=["cover_and_hide", "navigation", "branching", "many goals", "many states"],
 )
-def test_it_takes_less_than_three_times_the_calls_of_compiling(text: str) -> None:
+def test_linting_costs_less_than_three_times_compiling(text: str) -> None:
     source = SourceFile("example.tltl", text)
-    lint(source)  # the libraries are read
+    lint(source)  # Warm up: read the libraries.
     assert calls(lambda: lint(source)) < 3 * calls(lambda: compile_source(source))
 
 
-def test_a_comment_in_a_list_of_entities_speaks_of_its_line(inside: Path, tltlc: Callable[..., Outcome]) -> None:
+def test_a_comment_in_a_list_of_entities_applies_to_its_line(inside: Path, tltlc: Callable[..., Outcome]) -> None:
     Path("list.tltl").write_text(
         "signal p: bool\nentity e,\n  // tltlc: allow TLT0421\n  f,\n  g,\n  h // tltlc: allow TLT0421\nspec a = F p\n"
     )
-    done = tltlc("lint", "list.tltl")
-    places = [line.strip() for line in done.err.splitlines() if "list.tltl:" in line]
+    outcome = tltlc("lint", "list.tltl")
+    places = [line.strip() for line in outcome.err.splitlines() if "list.tltl:" in line]
     assert places == [
         "list.tltl:2:8",
         "list.tltl:5:3",

@@ -1,4 +1,5 @@
-"""What a command loads, and what it must not: the start of the process is a cost that everybody feels."""
+"""The modules that a command imports. Heavy ones are forbidden, because every run pays for its
+start."""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ HEAVY = {
 
 
 def loaded(*arguments: str | Path, folder: Path) -> set[str]:
-    """The modules in a process at the end of a command."""
+    """Return the modules that are loaded at the end of a command."""
     program = (
         "import sys, atexit\n"
         "atexit.register(lambda: sys.stdout.write('\\nMODULES ' + ' '.join(sys.modules)))\n"
@@ -27,16 +28,16 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
         "from tltlc.interfaces.cli.main import main\n"
         "main(sys.argv[1:])\n"
     )
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-c", program, *map(str, arguments)],
         capture_output=True,
         cwd=folder,
         timeout=HANG_S,
         check=True,
-        # The cache of predicate checks is filled by the first run.
+        # The first run fills the cache of predicate checks.
         env={**os.environ, "XDG_CACHE_HOME": str(folder / "cache")},
     )
-    return set(done.stdout.decode().rpartition("\nMODULES ")[2].split())
+    return set(completed.stdout.decode().rpartition("\nMODULES ")[2].split())
 
 
 @pytest.mark.parametrize(
@@ -54,21 +55,21 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
     ],
     ids=lambda arguments: arguments[0],
 )
-def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
+def test_no_heavy_module_is_imported(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
     loaded("check", EXAMPLE, folder=tmp_path)
-    # The target `dot` is one of the default ones, and graphviz writes it.
+    # The target `dot` is a default target, and it uses graphviz.
     written = {"graphviz"} if arguments[0] == "compile" else set()
     assert not loaded(*arguments, folder=tmp_path) & HEAVY - written
 
 
-def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
+def test_only_infinite_specs_load_the_modules_for_them(tmp_path: Path) -> None:
     def rabin(*arguments: str | Path) -> set[str]:
         return {name for name in loaded(*arguments, folder=tmp_path) if name.startswith("tltlc.automaton.infinite")}
 
     assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
     assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
     assert rabin("explain", EXAMPLE) == {"tltlc.automaton.infinite", "tltlc.automaton.infinite.work"}
-    # Strongly connected components are the same for every graph.
+    # Strongly connected components are computed for any graph.
     assert rabin("witness", EXAMPLE) == {
         "tltlc.automaton.infinite",
         "tltlc.automaton.infinite.work",
@@ -77,7 +78,7 @@ def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
     endless = tmp_path / "again.tltl"
     endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
     assert "tltlc.automaton.infinite.construct" in rabin("compile", endless, "-t", "json")
-    # What an artefact says is checked, and nothing constructed.
+    # An artefact is checked; nothing is constructed.
     assert "tltlc.automaton.infinite.cycles" in rabin("compile", "again.fspa.json", "-t", "mermaid")
     assert "tltlc.automaton.infinite.construct" not in rabin("compile", "again.fspa.json", "-t", "mermaid")
 
@@ -105,13 +106,13 @@ def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
     assert modules <= line | shared
 
 
-def test_the_facade_loads_nothing(tmp_path: Path) -> None:
+def test_the_package_imports_no_module(tmp_path: Path) -> None:
     program = "import sys; sys.path.insert(0, sys.argv[1]); import tltlc; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program, str(ROOT)], capture_output=True, check=True, text=True)
-    assert {name for name in done.stdout.split() if name.startswith("tltlc")} == {"tltlc"}
+    completed = subprocess.run([sys.executable, "-c", program, str(ROOT)], capture_output=True, check=True, text=True)
+    assert {name for name in completed.stdout.split() if name.startswith("tltlc")} == {"tltlc"}
 
 
-def test_the_facade_offers_what_it_says() -> None:
+def test_the_package_exports_what_it_lists() -> None:
     import tltlc
 
     for name in tltlc.__all__:

@@ -15,7 +15,7 @@ from tests.waiting import HANG_S
 TRACE = EXAMPLE.with_suffix(".csv")
 
 
-def test_rows_and_judgement(tltlc) -> None:  # type: ignore[no-untyped-def]
+def test_rows_and_the_judgement_are_printed(tltlc) -> None:  # type: ignore[no-untyped-def]
     judged = tltlc("monitor", EXAMPLE, TRACE)
     assert (judged.status, judged.err) == (0, "")
     *rows, last = judged.out.splitlines()
@@ -26,7 +26,7 @@ def test_rows_and_judgement(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert last == f"accepted: {table[-1][2]} after {len(table) - 1} steps"
 
 
-def test_json_is_one_document(tltlc) -> None:  # type: ignore[no-untyped-def]
+def test_json_output_is_one_document(tltlc) -> None:  # type: ignore[no-untyped-def]
     judged = tltlc("monitor", f"{EXAMPLE}:cover_and_hide", TRACE, "--json")
     document = json.loads(judged.out)
     assert (document["accepted"], document["verdict"]) == (True, "holding")
@@ -34,14 +34,14 @@ def test_json_is_one_document(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert document["rows"][-1]["atoms"].keys() == {"near(s1)", "near(s2)", "near(exit)", "alive"}
 
 
-def test_not_accepted_is_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_trace_that_is_not_accepted_exits_with_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("part.csv").write_text("\n".join(TRACE.read_text().splitlines()[:3]) + "\n")
     judged = tltlc("monitor", EXAMPLE, "part.csv")
     assert (judged.status, judged.out.splitlines()[-1]) == (1, "not accepted: pending after 2 steps")
     assert json.loads(tltlc("monitor", EXAMPLE, "part.csv", "--json").out)["accepted"] is False
 
 
-def test_an_artefact_and_its_params(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_artefact_takes_params(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("compile", EXAMPLE, "-t", "json").status == 0
     artefact = "cover_and_hide.fspa.json"
     assert tltlc("monitor", artefact, TRACE).out == tltlc("monitor", EXAMPLE, TRACE).out
@@ -50,7 +50,7 @@ def test_an_artefact_and_its_params(tltlc, inside: Path) -> None:  # type: ignor
     assert wide != tltlc("monitor", EXAMPLE, TRACE).out
 
 
-def test_json_lines_from_standard_input(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_json_lines_are_read_from_standard_input(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
     lines = b'{"seen": false}\n{"seen": true}\n'
     assert process("monitor", "hide.tltl", "-", stdin=lines).status == 1
     assert process("monitor", "hide.tltl", "-", stdin=lines[:16]).status == 0
@@ -59,23 +59,23 @@ def test_json_lines_from_standard_input(process, inside: Path) -> None:  # type:
 
 
 @pytest.mark.parametrize("trace", ["nowhere.csv", "."])
-def test_an_unreadable_trace_is_3(trace: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_unreadable_trace_exits_with_3(trace: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("monitor", "hide.tltl", trace).status == 3
 
 
 @pytest.mark.parametrize(
     "text", ["", "seen\n", "other\n1\n", "seen\nperhaps\n", "seen\n0\nnan\n", "\0", "{", '{"seen": "x"}']
 )
-def test_a_broken_trace_is_1(text: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_invalid_trace_exits_with_1(text: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("trace").write_text(text)
-    found = tltlc("monitor", "hide.tltl", "trace")
-    assert found.status == 1
-    assert found.err.startswith("error[TLT06")
+    outcome = tltlc("monitor", "hide.tltl", "trace")
+    assert outcome.status == 1
+    assert outcome.err.startswith("error[TLT06")
     document = tltlc("monitor", "hide.tltl", "trace", "--json").out
     assert json.loads(document)["accepted"] is None
 
 
-def test_rows_come_while_the_trace_is_being_recorded(inside: Path) -> None:
+def test_rows_are_printed_while_the_trace_is_recorded(inside: Path) -> None:
     command = [sys.executable, "-m", "tltlc", "monitor", "hide.tltl", "-"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(
@@ -92,7 +92,7 @@ def test_rows_come_while_the_trace_is_being_recorded(inside: Path) -> None:
         assert running.wait(HANG_S) == 1
 
 
-def test_a_clamped_value_is_remarked_once(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_clamped_value_is_reported_once(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("fit.tltl").write_text("signal health in [0, 1]\nspec fit = G health > 0\n")
     Path("trace.csv").write_text("health\n2\n3\n")
     judged = tltlc("monitor", "fit.tltl", "trace.csv")
@@ -100,7 +100,7 @@ def test_a_clamped_value_is_remarked_once(tltlc, inside: Path) -> None:  # type:
     assert judged.err.count("warning[TLT0615]") == 1
 
 
-def test_tests_pass_and_fail(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_passed_and_failed_tests_are_listed(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     block = 'test "{}" for hide {{\n    step not seen\n    expect {}\n}}\n'
     Path("hide.tltl").write_text(Path("hide.tltl").read_text() + block.format("hidden", "holding"))
     good = tltlc("test", "hide.tltl")
@@ -123,7 +123,7 @@ test "the first must come" for first { step not a expect pending step a expect h
 """
 
 
-def test_over_infinite_traces_a_trace_is_accepted_that_ends_in_a_goal(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_infinite_trace_that_ends_in_a_goal_is_accepted(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("endless.tltl").write_text(ENDLESS)
     assert tltlc("test", "endless.tltl").out.endswith("2 passed, 0 failed\n")
     Path("trace.csv").write_text("a,p\n0,1\n0,1\n")
@@ -135,13 +135,13 @@ def test_over_infinite_traces_a_trace_is_accepted_that_ends_in_a_goal(tltlc, ins
     assert (judged.status, judged.out.splitlines()[-1]) == (1, "not accepted: pending after 2 steps")
 
 
-def test_a_file_without_tests_is_named(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_file_without_tests_is_reported(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("tested.tltl").write_text(Path("hide.tltl").read_text() + 'test "t" for hide { step seen expect violated }')
     Path("none").mkdir()
     Path("none/lib.tltl").write_text("signal a: bool")
-    found = tltlc("test", "hide.tltl", "tested.tltl", "none")
-    assert (found.status, found.out.splitlines()[-1]) == (0, "1 passed, 0 failed")
-    assert [line.partition(";")[0] for line in found.err.splitlines()] == [
+    outcome = tltlc("test", "hide.tltl", "tested.tltl", "none")
+    assert (outcome.status, outcome.out.splitlines()[-1]) == (0, "1 passed, 0 failed")
+    assert [line.partition(";")[0] for line in outcome.err.splitlines()] == [
         "hide.tltl: no test block",
         "none: no test block",
     ]
@@ -150,28 +150,28 @@ def test_a_file_without_tests_is_named(tltlc, inside: Path) -> None:  # type: ig
 
 def test_an_artefact_has_no_tests(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("compile", "hide.tltl", "-t", "json").status == 0
-    found = tltlc("test", "hide.fspa.json", "hide.tltl")
-    assert found.status == 2
-    assert found.err.startswith("error[TLT0722]: `hide.fspa.json` is an artefact")
-    assert found.out == "0 passed, 0 failed, 1 file with errors\n"
+    outcome = tltlc("test", "hide.fspa.json", "hide.tltl")
+    assert outcome.status == 2
+    assert outcome.err.startswith("error[TLT0722]: `hide.fspa.json` is an artefact")
+    assert outcome.out == "0 passed, 0 failed, 1 file with errors\n"
 
 
-def test_tests_of_folders(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_tests_of_a_folder_are_run(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("a/.hidden").mkdir(parents=True)
     assert tltlc("test", "a").status == 2
     Path("a/.hidden/broken.tltl").write_text("spec")
     assert tltlc("test", "a").status == 2
     Path("a/one.tltl").write_text(Path("hide.tltl").read_text() + 'test "t" for hide { step seen expect violated }')
     Path("a/broken.tltl").write_text("spec")
-    found = tltlc("test", "a")
-    assert found.status == 1
-    assert "1 passed, 0 failed" in found.out
+    outcome = tltlc("test", "a")
+    assert outcome.status == 1
+    assert "1 passed, 0 failed" in outcome.out
     assert tltlc("test", "nowhere").status == 3
 
 
-def test_the_libraries_and_examples_pass(tltlc) -> None:  # type: ignore[no-untyped-def]
-    found = tltlc("test", ROOT / "examples", ROOT / "stdlib_predicates")
-    assert (found.status, found.err) == (0, "")
+def test_the_tests_of_libraries_and_examples_pass(tltlc) -> None:  # type: ignore[no-untyped-def]
+    outcome = tltlc("test", ROOT / "examples", ROOT / "stdlib_predicates")
+    assert (outcome.status, outcome.err) == (0, "")
 
 
 def test_the_recorded_traces_are_accepted(tltlc) -> None:  # type: ignore[no-untyped-def]

@@ -1,4 +1,4 @@
-"""The starter project: what its README says is what there is."""
+"""The starter project contains what its README describes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.interfaces.cli.conftest import Outcome
 _COMMAND = re.compile(r"^    tltlc (.+?)(?:  +.*)?$", re.MULTILINE)
 
 
-def test_each_command_of_its_readme_succeeds(
+def test_each_command_of_the_readme_succeeds(
     tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -24,9 +24,9 @@ def test_each_command_of_its_readme_succeeds(
     assert {command: tltlc(*command.split()).status for command in commands} == dict.fromkeys(commands, 0)
 
 
-def test_a_folder_that_is_not_empty_is_not_to_be_removed(
+def test_the_help_does_not_suggest_removing_a_folder_with_files(
     tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = tltlc("new", "..")
-    assert (done.status, done.err.splitlines()[1]) == (2, "  help: choose another name, or an empty folder")
+    outcome = tltlc("new", "..")
+    assert (outcome.status, outcome.err.splitlines()[1]) == (2, "  help: choose another name, or an empty folder")

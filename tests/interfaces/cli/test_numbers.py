@@ -1,4 +1,4 @@
-"""Numbers on the command line are of a size that every part computes with."""
+"""Numbers on the command line are limited to sizes that every part can handle."""
 
 from __future__ import annotations
 
@@ -16,12 +16,17 @@ LARGE = ("9" * 20, "1" + "0" * 400, "9" * 5000, "-" + "9" * 5000, "+" + "9" * 30
 
 def _numbers() -> list[tuple[str, click.Parameter]]:
     kinds = (click.types.IntParamType, click.types.FloatParamType)
-    return [(name, each) for name, command in commands() for each in command.params if isinstance(each.type, kinds)]
+    return [
+        (name, parameter)
+        for name, command in commands()
+        for parameter in command.params
+        if isinstance(parameter.type, kinds)
+    ]
 
 
 @pytest.mark.parametrize(("command", "parameter"), _numbers(), ids=str)
-def test_every_option_refuses_what_is_too_large(command: str, parameter: click.Parameter) -> None:
-    # What a callback refuses is refused, too.
+def test_every_option_rejects_numbers_that_are_too_large(command: str, parameter: click.Parameter) -> None:
+    # A callback may reject the value, too.
     assert isinstance(parameter.type, (WholeRange, FiniteRange)) or parameter.callback
     whole = isinstance(parameter.type, click.types.IntParamType)
     for value in LARGE if whole else ("nan", "inf", "-inf", "1e400"):
@@ -30,7 +35,7 @@ def test_every_option_refuses_what_is_too_large(command: str, parameter: click.P
         assert len(error.value.message) < 200
 
 
-def test_whole_numbers() -> None:
+def test_whole_numbers_are_limited() -> None:
     assert WholeRange().convert(str(LARGEST), None, None) == LARGEST
     assert WholeRange().convert("0" * 30 + "7", None, None) == 7
     with pytest.raises(click.BadParameter, match=r"`9{20}…` is out of range: whole numbers go from -4,611,"):
@@ -42,10 +47,10 @@ def test_whole_numbers() -> None:
 @pytest.mark.parametrize(
     "variables", [{}, {"COMP_WORDS": "tltlc", "COMP_CWORD": "x"}, {"COMP_WORDS": "'", "COMP_CWORD": "9" * 5000}]
 )
-def test_a_completion_without_a_shell_is_wrong_usage(variables: dict[str, str], process) -> None:  # type: ignore[no-untyped-def]
-    found = process(_TLTLC_COMPLETE="bash_complete", **variables)
-    assert (found.status, found.out) == (2, "")
-    assert "_TLTLC_COMPLETE is for the scripts that `tltlc completion` prints" in found.err
+def test_completion_without_a_shell_is_wrong_usage(variables: dict[str, str], process) -> None:  # type: ignore[no-untyped-def]
+    outcome = process(_TLTLC_COMPLETE="bash_complete", **variables)
+    assert (outcome.status, outcome.out) == (2, "")
+    assert "_TLTLC_COMPLETE is for the scripts that `tltlc completion` prints" in outcome.err
 
 
 def test_a_usage_error_names_the_command(tltlc: Callable[..., Outcome]) -> None:

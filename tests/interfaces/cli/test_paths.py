@@ -1,4 +1,4 @@
-"""`-` as the path of an output is standard output, or is refused: no command makes a file of that name."""
+"""`-` as an output path is standard output or an error; no command creates a file of that name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tltlc.interfaces.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
 from tltlc.interfaces.cli.paths import OutputPath
 
 READ: Final = {"library", "pyodide", "resume", "config", "demonstrations", "policy", "suite", "baseline", "libraries"}
-"""Parameters whose paths are read."""
+"""Parameters whose paths are read, not written."""
 
 
 def commands() -> Iterator[tuple[str, click.Command]]:
@@ -34,12 +34,16 @@ def commands() -> Iterator[tuple[str, click.Command]]:
 
 
 def _paths() -> list[tuple[str, click.Parameter]]:
-    parameters = ((name, each) for name, command in commands() for each in command.params)
-    return [(name, each) for name, each in parameters if isinstance(each.type, click.Path) and each.name not in READ]
+    parameters = ((name, parameter) for name, command in commands() for parameter in command.params)
+    return [
+        (name, parameter)
+        for name, parameter in parameters
+        if isinstance(parameter.type, click.Path) and parameter.name not in READ
+    ]
 
 
 @pytest.mark.parametrize(("command", "parameter"), _paths(), ids=str)
-def test_every_output_knows_what_a_hyphen_means(command: str, parameter: click.Parameter) -> None:
+def test_every_output_handles_a_hyphen(command: str, parameter: click.Parameter) -> None:
     kind = parameter.type
     assert isinstance(kind, OutputPath)
     if kind.stdout:
@@ -61,27 +65,27 @@ def test_every_output_knows_what_a_hyphen_means(command: str, parameter: click.P
     ],
     ids=" ".join,
 )
-def test_folders_are_refused(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    found = tltlc(*arguments)
-    assert (found.status, found.out) == (2, "")
-    assert "a folder is needed, and `-` is none (`./-` is one of that name)" in found.err
+def test_a_hyphen_is_rejected_as_a_folder(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = tltlc(*arguments)
+    assert (outcome.status, outcome.out) == (2, "")
+    assert "a folder is needed, and `-` is none (`./-` is one of that name)" in outcome.err
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
 
 
-def test_a_picture_on_standard_output(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_picture_is_written_to_standard_output(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("render", EXAMPLE, "-t", "dot", "-o", "-") == tltlc("render", EXAMPLE, "-t", "dot")
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
     assert tltlc("render", "hide.tltl", "-t", "dot", "-o", "./-").status == 0
     assert Path("-").read_text(encoding="utf-8").startswith("digraph")
 
 
-def test_proposals_on_standard_output(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_proposals_are_written_to_standard_output(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("good.csv").write_text("seen\n0\n0\n", encoding="utf-8")
     Path("bad.csv").write_text("seen\n0\n1\n", encoding="utf-8")
     mine = ("mine", "good.csv", "--against", "bad.csv", "--top", "1", "-o")
     assert tltlc(*mine, "mined.tltl").status == 0
-    found = tltlc(*mine, "-")
-    assert (found.status, found.out) == (0, Path("mined.tltl").read_text(encoding="utf-8"))
+    outcome = tltlc(*mine, "-")
+    assert (outcome.status, outcome.out) == (0, Path("mined.tltl").read_text(encoding="utf-8"))
     assert not Path("-").exists()
     both = tltlc(*mine, "-", "--json")
     assert (both.status, both.out) == (2, "")
