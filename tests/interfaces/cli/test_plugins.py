@@ -1,4 +1,4 @@
-"""What other distributions add through entry points: commands, and what knows levels."""
+"""Plugins that other distributions add through entry points: commands, and options for levels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CODE = "import click\n\n@click.command()\ndef command():\n    'Dance.'\n    prin
 
 @pytest.fixture
 def installed(tmp_path: Path) -> str:
-    """A folder with two installed commands; the parts of one are missing."""
+    """A folder with a distribution of two commands; one of them lacks a module."""
     info = tmp_path / "dancer-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: dancer\nVersion: 1.0\n")
@@ -33,19 +33,19 @@ def installed(tmp_path: Path) -> str:
     return f"{ROOT}:{tmp_path}"
 
 
-def test_its_command_runs(process, installed: str) -> None:  # type: ignore[no-untyped-def]
+def test_a_command_of_a_plugin_runs(process, installed: str) -> None:  # type: ignore[no-untyped-def]
     assert process("dance", PYTHONPATH=installed).out == "dancing\n"
     assert "dance" in process("--help", PYTHONPATH=installed).out
     assert "did you mean `dance`?" in process("danec", PYTHONPATH=installed).err.lower()
 
 
-def test_help_loads_no_plugin(process, installed: str) -> None:  # type: ignore[no-untyped-def]
-    shown = process("--help", PYTHONPATH=installed)
-    assert shown.status == 0
-    assert "(needs the extra rl)" in shown.out
+def test_help_imports_no_plugin(process, installed: str) -> None:  # type: ignore[no-untyped-def]
+    outcome = process("--help", PYTHONPATH=installed)
+    assert outcome.status == 0
+    assert "(needs the extra rl)" in outcome.out
 
 
-def test_what_comes_with_tltlc_is_told_and_needs_an_extra() -> None:
+def test_built_in_plugins_are_known_and_need_an_extra() -> None:
     project = tomli.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     groups = project["entry-points"]
     assert groups["tltlc.commands"].keys() == OF_THE_RUNTIME.keys()
@@ -53,16 +53,16 @@ def test_what_comes_with_tltlc_is_told_and_needs_an_extra() -> None:
     assert all(entry.endswith((" [game]", " [rl]")) for entry in own)
 
 
-def test_a_missing_component_is_4(process, installed: str) -> None:  # type: ignore[no-untyped-def]
-    found = process("waltz", PYTHONPATH=installed)
-    assert found.status == 4
-    assert found.err == (
+def test_a_missing_component_exits_with_4(process, installed: str) -> None:  # type: ignore[no-untyped-def]
+    outcome = process("waltz", PYTHONPATH=installed)
+    assert outcome.status == 4
+    assert outcome.err == (
         "error[TLT0730]: `tltlc waltz` needs `a_module_that_nobody_has`, which is not installed\n"
         "  help: pip install 'dancer[rl]'\n"
     )
 
 
-def test_an_archive_has_plugins_too(process, installed: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_archive_may_contain_plugins(process, installed: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     archive = tmp_path / "dancer.zip"
     with zipfile.ZipFile(archive, "w") as file:
         for path in sorted(tmp_path.rglob("*.*")):
@@ -71,7 +71,7 @@ def test_an_archive_has_plugins_too(process, installed: str, tmp_path: Path) -> 
     assert process("dance", PYTHONPATH=f"{ROOT}:{archive}").out == "dancing\n"
 
 
-def test_the_first_of_two_distributions_of_one_name_counts(process, installed: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_the_first_of_two_distributions_of_the_same_name_is_used(process, installed: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     older = tmp_path / "older"
     info = older / "dancer-0.1.dist-info"
     info.mkdir(parents=True)
@@ -91,7 +91,7 @@ def command(levels, inputs, settings, report, map):
 
 @pytest.fixture
 def knows_levels(tmp_path: Path) -> str:
-    """A folder with an installed distribution that knows levels."""
+    """A folder with an installed distribution that provides levels."""
     info = tmp_path / "atlas-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: atlas\nVersion: 1.0\n")
@@ -100,9 +100,9 @@ def knows_levels(tmp_path: Path) -> str:
     return f"{ROOT}:{tmp_path}"
 
 
-def test_levels_have_options_of_their_own(process, knows_levels: str, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    found = process("check", "hide.tltl", "--level", "a:v1", "--level=b", "--map", "x", PYTHONPATH=knows_levels)
-    assert (found.status, found.out) == (0, "('a:v1', 'b') ['hide.tltl'] {} text x\n")
+def test_levels_have_their_own_options(process, knows_levels: str, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = process("check", "hide.tltl", "--level", "a:v1", "--level=b", "--map", "x", PYTHONPATH=knows_levels)
+    assert (outcome.status, outcome.out) == (0, "('a:v1', 'b') ['hide.tltl'] {} text x\n")
     assert process("check", "--level", "a", PYTHONPATH=knows_levels).out == "('a',) [] {} text None\n"
     assert "--map" in process("check", "--level", "a", "--help", PYTHONPATH=knows_levels).out
     assert "--map" not in process("check", "--help", PYTHONPATH=knows_levels).out
@@ -110,20 +110,20 @@ def test_levels_have_options_of_their_own(process, knows_levels: str, inside: Pa
     assert process("check", "missing.tltl", "--level", "a", PYTHONPATH=knows_levels).out == ""
 
 
-def test_levels_that_are_not_installed_are_4(process, knows_levels: str, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_missing_levels_exit_with_4(process, knows_levels: str, inside: Path) -> None:  # type: ignore[no-untyped-def]
     (inside / "atlas_module.py").write_text("import a_module_that_nobody_has\n")
-    found = process("check", "hide.tltl", "--level", "a", PYTHONPATH=knows_levels)
-    assert found.status == 4
-    assert found.err == (
+    outcome = process("check", "hide.tltl", "--level", "a", PYTHONPATH=knows_levels)
+    assert outcome.status == 4
+    assert outcome.err == (
         "error[TLT0730]: `tltlc check --level` needs `a_module_that_nobody_has`, which is not installed\n"
         "  help: pip install 'atlas[maps]'\n"
     )
 
 
-def test_a_missing_part_of_tltlc_is_4(tltlc, inside: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_a_missing_part_of_tltlc_exits_with_4(tltlc, inside: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setitem(sys.modules, "rich", None)
     monkeypatch.setitem(sys.modules, "rich.console", None)
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    found = tltlc("explain", "TLT0001")
-    assert found.status == 4
-    assert "pip install 'rich'" in found.err
+    outcome = tltlc("explain", "TLT0001")
+    assert outcome.status == 4
+    assert "pip install 'rich'" in outcome.err

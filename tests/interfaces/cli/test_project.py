@@ -15,23 +15,23 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.project import Project, project_for, read_project
 
 
-def test_no_project(inside: Path) -> None:
+def test_without_a_project_file_the_defaults_apply(inside: Path) -> None:
     assert project_for("hide.tltl") == Project()
     assert project_for("-") == Project()
 
 
-def test_the_nearest_project_upwards(inside: Path) -> None:
+def test_the_nearest_project_file_upwards_is_used(inside: Path) -> None:
     Path("levels/deep").mkdir(parents=True)
     Path("predicates").mkdir()
     Path("tltl.toml").write_text('libraries = ["predicates"]\r\ntargets = ["dot"]\r\n[style]\r\nnotation = "ascii"\r\n')
     assert project_for("levels/deep/x.tltl") == Project((Path("predicates"),), ("dot",), "ascii")
-    there = project_for(str(inside / "levels/deep/x.tltl"))
-    assert there.libraries == (inside / "predicates",)
+    project = project_for(str(inside / "levels/deep/x.tltl"))
+    assert project.libraries == (inside / "predicates",)
     Path("levels/tltl.toml").write_text("")
     assert project_for("levels/deep/x.tltl") == Project()
 
 
-def test_what_it_says_is_done(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_settings_of_the_project_apply(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("predicates").mkdir()
     Path("predicates/mine.tltl").write_text("signal health in [0, 1]\npredicate fit in [0, 1] = health\n")
     Path("level").mkdir()
@@ -54,17 +54,19 @@ def test_a_library_has_one_name_in_messages(tltlc, inside: Path) -> None:  # typ
     Path("specs/one.tltl").write_text("import arena\nspec one = F low\n")
     Path("specs/two.tltl").write_text("import arena\nspec two = G low\n")
     Path("tltl.toml").write_text('libraries = ["specs/../lib"]\n')
-    found = json.loads(tltlc("lint", ".", "--format", "json").out)["diagnostics"]
-    assert [(each["code"], each["labels"][0]["file"]) for each in found] == [("TLT0302", "lib/arena.tltl")]
+    diagnostics = json.loads(tltlc("lint", ".", "--format", "json").out)["diagnostics"]
+    assert [(diagnostic["code"], diagnostic["labels"][0]["file"]) for diagnostic in diagnostics] == [
+        ("TLT0302", "lib/arena.tltl")
+    ]
 
 
-def test_all_that_is_wrong_is_found(inside: Path) -> None:
+def test_all_errors_of_a_project_file_are_reported(inside: Path) -> None:
     text = 'librarys = []\ntargets = 3\nlibraries = ["no", "nor"]\n[style]\nnotaton = ""\nnotation = ["x"]\n'
     Path("tltl.toml").write_text(text)
     with pytest.raises(TltlError) as failure:
         read_project(inside / "tltl.toml")
-    found = [(d.code, d.title.partition("`")[2].partition("`")[0]) for d in failure.value.diagnostics]
-    assert found == [
+    codes_and_keys = [(d.code, d.title.partition("`")[2].partition("`")[0]) for d in failure.value.diagnostics]
+    assert codes_and_keys == [
         ("TLT0702", "librarys"),
         ("TLT0702", "notaton"),
         ("TLT0703", "targets"),
@@ -74,7 +76,7 @@ def test_all_that_is_wrong_is_found(inside: Path) -> None:
     ]
 
 
-def test_a_wrong_target_is_found(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_unknown_target_is_reported(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("tltl.toml").write_text('targets = ["jsno"]')
     assert "did you mean `json`?" in tltlc("compile", "hide.tltl").err
 
@@ -83,7 +85,7 @@ KEYS = st.from_regex(r"\A(libraries|targets|style|\[style\]\n?notation) ?=? ?[\[
 
 
 @given(st.text(max_size=60) | KEYS)
-def test_any_text_is_read_or_refused(text: str) -> None:
+def test_any_text_is_read_or_rejected(text: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "tltl.toml")
         path.write_bytes(text.encode())
@@ -93,7 +95,7 @@ def test_any_text_is_read_or_refused(text: str) -> None:
             assert {diagnostic.code for diagnostic in error.diagnostics} <= {"TLT0003", "TLT0701", "TLT0702", "TLT0703"}
 
 
-def test_a_deleted_current_folder_is_no_bug(
+def test_a_deleted_current_folder_is_not_reported_as_a_bug(
     tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gone = tmp_path / "gone"
@@ -104,18 +106,20 @@ def test_a_deleted_current_folder_is_no_bug(
     assert tltlc("check", "hide.tltl").status == 3
     (tmp_path / "above.tltl").write_text("signal a: bool\n", encoding="utf-8")
     (tmp_path / "main.tltl").write_text('import "above.tltl"\nspec s = F a\n', encoding="utf-8")
-    done = tltlc("check", "../main.tltl")
-    assert done.status == 1
-    assert "the current folder has been deleted: start tltlc in another one" in done.err
+    outcome = tltlc("check", "../main.tltl")
+    assert outcome.status == 1
+    assert "the current folder has been deleted: start tltlc in another one" in outcome.err
 
 
 @pytest.mark.parametrize("kind", ["link", "folder", "pipe"])
-def test_a_project_file_that_is_no_file_is_reported(inside: Path, tltlc: Callable[..., Outcome], kind: str) -> None:
+def test_a_project_file_that_is_no_regular_file_is_reported(
+    inside: Path, tltlc: Callable[..., Outcome], kind: str
+) -> None:
     if kind == "link":
         Path("tltl.toml").symlink_to("nowhere")
     elif kind == "folder":
         Path("tltl.toml").mkdir()
     else:
         os.mkfifo("tltl.toml")
-    done = tltlc("check", "hide.tltl")
-    assert (done.status, "error[TLT0001]" in done.err, "tltl.toml" in done.err) == (3, True, True)
+    outcome = tltlc("check", "hide.tltl")
+    assert (outcome.status, "error[TLT0001]" in outcome.err, "tltl.toml" in outcome.err) == (3, True, True)

@@ -1,4 +1,4 @@
-"""Whatever a file holds, its reader takes it or refuses it with a TltlError: readers of the compiler."""
+"""Fuzzing of the compiler's readers: each accepts a file, or rejects it with a TltlError."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ REQUEST: Final = {
 
 @given(seed=SEEDS)
 @times(200)
-def test_artefacts(seed: int) -> None:
+def test_artefacts_are_read_or_rejected(seed: int) -> None:
     random = Random(seed)
     text = mutated_json(random, random.choice(ARTEFACTS))
 
@@ -82,7 +82,7 @@ def test_artefacts(seed: int) -> None:
 
 @given(seed=SEEDS)
 @times(200)
-def test_automata_of_other_tools(seed: int) -> None:
+def test_hoa_files_are_read_or_rejected(seed: int) -> None:
     random = Random(seed)
     text = mutated_text(random, random.choice(AUTOMATA))
     options = ImportOptions(state_budget=500, work=200_000)
@@ -98,7 +98,7 @@ def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @given(seed=SEEDS)
 @times(200)
-def test_projects(seed: int, folder: Path) -> None:
+def test_project_files_are_read_or_rejected(seed: int, folder: Path) -> None:
     path = folder / "tltl.toml"
     path.write_text(mutated_text(Random(seed), PROJECT), encoding="utf-8", errors="replace")
     check(lambda: read_project(path))
@@ -111,7 +111,7 @@ def _trace(random: Random) -> bytes:
 
 @given(seed=SEEDS)
 @times(400)
-def test_traces(seed: int) -> None:
+def test_traces_are_read_or_rejected(seed: int) -> None:
     trace = BytesIO(_trace(Random(seed)))
     fspa = SPECS[1]
     check(lambda: outcome(run(Monitor(fspa), read_trace(trace, "it", fspa.signals))))
@@ -119,7 +119,7 @@ def test_traces(seed: int) -> None:
 
 @given(seed=SEEDS)
 @times(100)
-def test_traces_to_be_mined(seed: int) -> None:
+def test_traces_to_be_mined_are_read_or_rejected(seed: int) -> None:
     random = Random(seed)
     good, bad = (TraceFile(name, _trace(random)) for name in ("good", "bad"))
     library = random.choice((LIBRARY, None))
@@ -128,7 +128,7 @@ def test_traces_to_be_mined(seed: int) -> None:
 
 @given(seed=SEEDS)
 @times(50)
-def test_requests_to_the_playground(seed: int) -> None:
+def test_requests_to_the_playground_are_answered_or_rejected(seed: int) -> None:
     try:
         answered = answer(mutated_json(Random(seed), REQUEST))
     except RequestError:
@@ -137,7 +137,7 @@ def test_requests_to_the_playground(seed: int) -> None:
 
 
 @pytest.mark.parametrize("value", dict.fromkeys((*NUMBERS, *VALUES, *PIECES)))
-def test_params(value: str) -> None:
+def test_params_are_read_or_rejected(value: str) -> None:
     source = SourceFile("it.tltl", f"{LIBRARY.text}spec s = F p\n")
     check(lambda: compile_source(source, CompileOptions(params={"bound": value})))
 
@@ -157,25 +157,25 @@ def test_params(value: str) -> None:
     ],
     ids=lambda text: str(text)[:25],
 )
-def test_whole_numbers_of_json(text: str, value: float) -> None:
-    found = loads(text, ARTEFACT)
-    assert (found, type(found)) == (value, type(value))
+def test_whole_numbers_of_json_become_int_or_float(text: str, value: float) -> None:
+    number = loads(text, ARTEFACT)
+    assert (number, type(number)) == (value, type(value))
 
 
 @pytest.mark.parametrize(
     "number", ["1" + "0" * 400, "9" * 5000, "9223372036854775808", "-9_223_372_036_854_775_809", "0x" + "f" * 17]
 )
-def test_whole_numbers_of_toml_have_64_bits(number: str, folder: Path) -> None:
+def test_whole_numbers_of_toml_over_64_bits_are_rejected(number: str, folder: Path) -> None:
     (folder / "tltl.toml").write_text(f"targets = {number}\n", encoding="utf-8")
     with pytest.raises(TltlError, match="is not TOML: a whole number is too large") as error:
         read_project(folder / "tltl.toml")
-    (found,) = error.value.diagnostics
-    assert found.code == "TLT0701"
-    assert [label.source.text[label.span.start : label.span.end] for label in found.labels] == [number]
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0701"
+    assert [label.source.text[label.span.start : label.span.end] for label in diagnostic.labels] == [number]
 
 
 @pytest.mark.parametrize("number", ["9223372036854775807", "0x7fffffffffffffff", "-9_223_372_036_854_775_808"])
-def test_whole_numbers_of_toml_of_64_bits_are_read(number: str, folder: Path) -> None:
+def test_whole_numbers_of_toml_within_64_bits_are_read(number: str, folder: Path) -> None:
     (folder / "tltl.toml").write_text(f"targets = {number}\n", encoding="utf-8")
     with pytest.raises(TltlError, match="TLT0703"):
         read_project(folder / "tltl.toml")
@@ -188,14 +188,14 @@ HOA: Final = (
 
 @pytest.mark.parametrize("number", ["1234567890", "2147483648", "9" * 5000])
 @pytest.mark.parametrize("place", ["[0]", "Inf(0)", "{0}", "State: 0"])
-def test_large_numbers_of_hoa(place: str, number: str) -> None:
+def test_large_numbers_of_hoa_are_rejected(place: str, number: str) -> None:
     source = SourceFile("it.hoa", HOA.replace(place, place.replace("0", number)))
     with pytest.raises(TltlError) as error:
         load_hoa(source, LIBRARY, ImportOptions())
-    assert {found.code for found in error.value.diagnostics} == {"TLT0651"}
+    assert {diagnostic.code for diagnostic in error.value.diagnostics} == {"TLT0651"}
 
 
-def test_a_message_points_into_an_artefact_with_a_large_number() -> None:
+def test_an_error_in_an_artefact_with_a_large_number_is_reported() -> None:
     text = json.dumps(ARTEFACTS[1]).replace('"spec_size": ', '"more": ' + "9" * 5000 + ', "spec_size": "x", "": ')
     read: Callable[[], object] = lambda: read_artefact(SourceFile("it.fspa.json", text))  # noqa: E731
     assert not check(read)

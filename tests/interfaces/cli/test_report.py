@@ -1,4 +1,4 @@
-"""How many diagnostics of one kind people see, and programs."""
+"""How many diagnostics of one kind the text output and the documents contain."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.interfaces.cli.report import show
 
 
-def found(code: str, count: int, file: str = "a.toml") -> list[Diagnostic]:
+def diagnostics_of(code: str, count: int, file: str = "a.toml") -> list[Diagnostic]:
     label = Label(SourceFile(file, "key = 1\n"), Span(0, 3))
     return [Diagnostic(code, f"no key {number}", (label,)) for number in range(count)]
 
@@ -21,8 +21,10 @@ def text(diagnostics: list[Diagnostic], format_: str = "text") -> str:
     return stream.getvalue()
 
 
-def test_people_see_the_first_of_many_and_how_many_there_are() -> None:
-    shown = text([*found("TLT0802", 4000), *found("TLT0803", 1), *found("TLT0802", 21, "b.toml")])
+def test_text_shows_the_first_of_many_and_counts_the_rest() -> None:
+    shown = text(
+        [*diagnostics_of("TLT0802", 4000), *diagnostics_of("TLT0803", 1), *diagnostics_of("TLT0802", 21, "b.toml")]
+    )
     assert shown.count("error[TLT0802]: no key") == 40
     assert "no key 19\n" in shown and "no key 20\n" not in shown
     assert "error[TLT0803]: no key 0" in shown
@@ -32,10 +34,10 @@ def test_people_see_the_first_of_many_and_how_many_there_are() -> None:
     )
 
 
-def test_a_few_are_all_shown() -> None:
-    assert text(found("TLT0802", 20)).count("no key") == 20
-    assert "more like" not in text(found("TLT0802", 20))
+def test_a_few_diagnostics_are_all_shown() -> None:
+    assert text(diagnostics_of("TLT0802", 20)).count("no key") == 20
+    assert "more like" not in text(diagnostics_of("TLT0802", 20))
 
 
-def test_programs_get_all() -> None:
-    assert len(json.loads(text(found("TLT0802", 4000), "json"))["diagnostics"]) == 4000
+def test_documents_contain_all_diagnostics() -> None:
+    assert len(json.loads(text(diagnostics_of("TLT0802", 4000), "json"))["diagnostics"]) == 4000

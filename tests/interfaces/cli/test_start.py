@@ -1,4 +1,4 @@
-"""Ctrl-C while Python and the command line are being loaded, at every moment that Python tells of."""
+"""Ctrl-C while Python and the command line are loading, at every audit event of Python."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.waiting import HANG_S
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a process that can be continued twice")
 
-# At each event, a copy of the process interrupts itself, and goes on to whatever end that leads to.
+# At each audit event, a forked copy of the process interrupts itself and runs to its end.
 INTERRUPTING = """
 import os, signal, sys
 
@@ -51,11 +51,11 @@ sys.addaudithook(copies)
 """
 
 SCRIPT = "import re, sys; from tltlc.interfaces.cli.main import main; sys.exit(main())"
-"""What the installed command `tltlc` holds."""
+"""The code of the installed command `tltlc`."""
 
 
 @pytest.mark.parametrize("how", [("-c", SCRIPT), ("-m", "tltlc")], ids=["tltlc", "python -m tltlc"])
-def test_an_interrupt_at_the_start_shows_no_traceback_of_ours(how: tuple[str, str], tmp_path: Path) -> None:
+def test_an_interrupt_at_the_start_shows_no_traceback_of_tltlc(how: tuple[str, str], tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text(INTERRUPTING, encoding="utf-8")
     environment = {
         **os.environ,
@@ -63,7 +63,7 @@ def test_an_interrupt_at_the_start_shows_no_traceback_of_ours(how: tuple[str, st
         "ENDS": str(tmp_path / "ends"),
         "PYTHONDONTWRITEBYTECODE": "1",
     }
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, *how, "--version"],
         env=environment,
         cwd=tmp_path,
@@ -72,19 +72,17 @@ def test_an_interrupt_at_the_start_shows_no_traceback_of_ours(how: tuple[str, st
         check=True,
         text=True,
     )
-    assert done.stdout.startswith("tltlc ")
+    assert completed.stdout.startswith("tltlc ")
     ends: list[tuple[int, str, str, str]] = eval((tmp_path / "ends").read_text())
-    ours = [index for index, (*_, said) in enumerate(ends) if f'File "{ROOT}' in said]
+    ours = [index for index, (*_, output) in enumerate(ends) if f'File "{ROOT}' in output]
     assert [ends[index] for index in ours] == []
-    # From the first moment at which our code can do anything about it, it does, until the version is printed.
-    handled = [index for index, (status, *_, said) in enumerate(ends) if (status, said) == (130, "")]
+    # From the first event at which our code can handle the interrupt until the version is printed, it is handled.
+    handled = [index for index, (status, *_, output) in enumerate(ends) if (status, output) == (130, "")]
     assert len(handled) > 50
     first = handled[0]
-    # A signal that comes during an import is sent again a little later, which may be after the version was printed. The
-    # parser of the command line answers it with a blank line.
-    rest = {(status, said.replace("\n\n", "\n") if status == 130 else said) for status, _, _, said in ends[first:]}
-    assert {said for _, said in rest if said not in done.stdout} == set()
-    assert {(status, bool(said)) for status, said in rest} == {(130, False), (130, True), (0, True)}
-    # Up to there, only the modules of the entry point are loaded.
+    rest = {(status, output) for status, _, _, output in ends[first:]}
+    assert {output for _, output in rest if output not in completed.stdout} == set()
+    assert {(status, bool(output)) for status, output in rest} == {(130, False), (130, True), (0, True)}
+    # Before that, only the modules of the entry point are loaded.
     before = [what for _, event, what, _ in ends[:first] if event == "import" and what.startswith("tltlc")]
     assert set(before) <= {"tltlc", "tltlc.interfaces.cli", "tltlc.interfaces.cli.main", "tltlc.__main__"}

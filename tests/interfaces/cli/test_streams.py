@@ -1,4 +1,4 @@
-"""Commands whose standard input, output or error is closed: no bug, no message in a file, no result lost in silence."""
+"""Commands with closed standard streams: no crash, no message in a file, no result lost silently."""
 
 from __future__ import annotations
 
@@ -23,14 +23,15 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descripto
 
 OFTEN: Final = ("<&- >&-", "<&- >&- 2>&-")
 SELDOM: Final = (">&-", "<&-", "2>&-", ">&- 2>&-")
-"""Which streams are closed, as a shell writes it; the second row takes longer, and finds little more."""
+"""Redirections that close streams, in shell syntax. The second row takes longer and rarely finds
+more."""
 SPEC: Final = (
     'signal seen: bool\nspec hide = G !seen\ntest "caught" for hide {\n    step seen\n    expect violated\n}\n'
 )
 HOA: Final = 'HOA: v1\nStates: 1\nStart: 0\nAP: 1 "seen"\nAcceptance: 0 t\n--BODY--\nState: 0\n[t] 0\n--END--\n'
 RECORDING: Final = "demo/cover_and_hide-v0-0.episode.npz"
 NOWHERE: Final = ("nowhere.toml",)
-"""A level or a suite that is not there, for commands that would take long or open a window."""
+"""A level or suite that does not exist, for commands that would take long or open a window."""
 
 QUICK: Final[dict[str, list[tuple[str, ...]]]] = {
     "": [("--help",), ("--version",), ("bogus",), ()],
@@ -77,14 +78,14 @@ SLOW: Final[dict[str, list[tuple[str, ...]]]] = {
 }
 
 LASTING: Final = ("serve", "watch")
-"""Commands that stay until Ctrl-C."""
+"""Commands that run until Ctrl-C."""
 
 
 def _cases(table: dict[str, list[tuple[str, ...]]]) -> list[tuple[str, ...]]:
     return [(command, *arguments) if command else arguments for command, rows in table.items() for arguments in rows]
 
 
-def test_every_command_is_here() -> None:
+def test_the_tables_list_every_command() -> None:
     known = cli.commands.keys() | set(BUILT_IN) | set(OF_THE_RUNTIME)
     assert known == {*QUICK, *OF_GAMES, *LASTING} - {""}
 
@@ -117,7 +118,7 @@ def _inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(inputs: Path) -> Path:
-    """The inputs with a recording."""
+    """The inputs, and a recording of an episode."""
     if find_spec("pybullet") is None or find_spec("torch") is None:
         pytest.skip("needs the extra rl")
     ended = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
@@ -126,9 +127,9 @@ def _recorded(inputs: Path) -> Path:
 
 
 def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Ended:
-    """Run a command line in a folder, with the streams closed that a piece of a shell's text closes."""
+    """Run a command line in a folder, with streams closed by a redirection in shell syntax."""
     stdin = "" if "<" in closed else "</dev/null"
-    done = subprocess.run(
+    completed = subprocess.run(
         ["bash", "-c", f'exec "$@" {stdin} {closed}', "bash", sys.executable, "-m", "tltlc", *arguments],
         cwd=folder,
         capture_output=True,
@@ -138,9 +139,9 @@ def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Ended:
     )
     paths = [path for path in folder.rglob("*") if path.is_file()]
     return Ended(
-        done.returncode,
-        done.stdout,
-        done.stderr,
+        completed.returncode,
+        completed.stdout,
+        completed.stderr,
         {str(path.relative_to(folder)): path.read_bytes() for path in paths},
     )
 
@@ -148,7 +149,7 @@ def _run(folder: Path, arguments: tuple[str, ...], closed: str) -> Ended:
 def _check(
     inputs: Path, arguments: tuple[str, ...], folder: Path, streams: Sequence[str], *, same_bytes: bool = True
 ) -> None:
-    """Compare a run with open streams with those in which some are closed."""
+    """Compare a run with open streams to runs with closed streams."""
 
     def ended(closed: str) -> Ended:
         shutil.rmtree(folder, ignore_errors=True)
@@ -159,53 +160,57 @@ def _check(
     assert usual.status != 70 and b"Traceback" not in usual.err
     reads = "-" in arguments
     for closed in streams:
-        found = ended(closed)
-        says = found.err.decode()
-        wanted = usual.status
+        ended_run = ended(closed)
+        messages = ended_run.err.decode()
+        expected_status = usual.status
         if "<" in closed and reads:
-            wanted = 3
-            assert "2>" in closed or "cannot read standard input: it is closed" in says
+            expected_status = 3
+            assert "2>" in closed or "cannot read standard input: it is closed" in messages
         elif ">&-" in closed.replace("2>&-", "") and usual.out:
-            wanted = 3
-            assert "2>" in closed or "cannot write to standard output: it is closed" in says
+            expected_status = 3
+            assert "2>" in closed or "cannot write to standard output: it is closed" in messages
         elif same_bytes and "2>" not in closed:
-            assert found.err == usual.err, closed
-        assert found.status == wanted, (closed, says)
-        assert found.files.keys() == usual.files.keys(), closed
-        assert not same_bytes or found.files == usual.files, closed
-        assert b"Traceback" not in found.err and b"bug in tltlc" not in found.err, closed
-        if wanted == usual.status and found.out:
-            assert not same_bytes or found.out == usual.out, closed
+            assert ended_run.err == usual.err, closed
+        assert ended_run.status == expected_status, (closed, messages)
+        assert ended_run.files.keys() == usual.files.keys(), closed
+        assert not same_bytes or ended_run.files == usual.files, closed
+        assert b"Traceback" not in ended_run.err and b"bug in tltlc" not in ended_run.err, closed
+        if expected_status == usual.status and ended_run.out:
+            assert not same_bytes or ended_run.out == usual.out, closed
 
 
 @pytest.mark.parametrize("arguments", _cases(QUICK), ids=" ".join)
-def test_closed_streams(arguments: tuple[str, ...], inputs: Path, tmp_path: Path) -> None:
+def test_closed_streams_lose_no_result(arguments: tuple[str, ...], inputs: Path, tmp_path: Path) -> None:
     if arguments[:1] == ("lsp",):
         pytest.importorskip("pygls")
     _check(inputs, arguments, tmp_path / "inputs", OFTEN)
 
 
 @pytest.mark.parametrize("arguments", _cases(OF_GAMES), ids=" ".join)
-def test_closed_streams_of_games(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
+def test_closed_streams_of_game_commands_lose_no_result(
+    arguments: tuple[str, ...], recorded: Path, tmp_path: Path
+) -> None:
     _check(recorded, arguments, tmp_path / "inputs", OFTEN[-1:])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("arguments", _cases(QUICK) + _cases(OF_GAMES), ids=" ".join)
-def test_other_closed_streams(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
+def test_other_closed_streams_lose_no_result(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
     _check(recorded, arguments, tmp_path / "inputs", OFTEN[:-1] + SELDOM)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("arguments", _cases(SLOW), ids=" ".join)
-def test_closed_streams_where_something_is_played(arguments: tuple[str, ...], recorded: Path, tmp_path: Path) -> None:
-    # Records hold times.
+def test_closed_streams_of_slow_commands_lose_no_result(
+    arguments: tuple[str, ...], recorded: Path, tmp_path: Path
+) -> None:
+    # Recordings contain times, so their bytes differ.
     _check(recorded, arguments, tmp_path / "inputs", OFTEN + SELDOM, same_bytes=False)
 
 
 @pytest.mark.parametrize("closed", [">&-", "<&-", "<&- >&-"])
 @pytest.mark.parametrize("arguments", [("serve", "--port", "0"), ("watch", "hide.tltl")], ids=" ".join)
-def test_commands_that_stay_begin_and_end(
+def test_lasting_commands_start_and_end_with_closed_streams(
     arguments: tuple[str, ...], closed: str, inputs: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(inputs, tmp_path / "inputs")
@@ -228,12 +233,12 @@ def test_commands_that_stay_begin_and_end(
     assert (running.returncode, err) == (130, "")
 
 
-def test_messages_without_room_do_not_change_the_exit_status(inputs: Path) -> None:
+def test_full_standard_error_does_not_change_the_exit_status(inputs: Path) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("needs a device without room")
     with Path("/dev/full").open("wb") as full:
         command = [sys.executable, "-m", "tltlc", "check", "nowhere.tltl"]
-        done = subprocess.run(
+        completed = subprocess.run(
             command, stderr=full, cwd=inputs, env={**os.environ, "PYTHONPATH": str(ROOT)}, check=False
         )
-    assert done.returncode == 3
+    assert completed.returncode == 3

@@ -1,4 +1,4 @@
-"""``tltlc compile --watch``, as a person uses it: files are edited while it runs."""
+"""``tltlc compile --watch`` while files are edited."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SPECS = "import lib\nspec calm = G hidden\nspec found = F seen\n"
 
 
 class Watching:
-    """A running command, of which one reads what it says between one wait for changes and the next."""
+    """A running command; its messages are read from one wait for changes to the next."""
 
     def __init__(self, *arguments: str) -> None:
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -29,11 +29,11 @@ class Watching:
         self.process = subprocess.Popen(
             command, env=environment, stderr=subprocess.PIPE, text=True, preexec_fn=_interrupts_as_usual
         )
-        # A test that waits for what does not come ends.
+        # Kill the process so that a test does not wait for ever.
         self._timer = Timer(HANG_S, self.process.kill)
         self._timer.start()
 
-    def said(self) -> str:
+    def next_messages(self) -> str:
         assert self.process.stderr is not None
         lines: list[str] = []
         while not lines or lines[-1] != WAITS:
@@ -42,9 +42,9 @@ class Watching:
             lines.append(line)
         return "".join(lines[:-1])
 
-    def says_at_last(self, wanted: str) -> None:
-        """Read on until something is said: of two edits the first one may be seen alone."""
-        while wanted not in self.said():
+    def wait_for_messages(self, wanted: str) -> None:
+        """Read until a message contains a text; the first of two edits may be reported alone."""
+        while wanted not in self.next_messages():
             pass
 
     def end(self) -> int:
@@ -55,7 +55,7 @@ class Watching:
 
 
 def _interrupts_as_usual() -> None:
-    """Tests may run in the background of a shell, which ignores Ctrl-C."""
+    """Restore the handler of SIGINT: a shell ignores Ctrl-C for tests in the background."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -73,88 +73,89 @@ def watching(inside: Path) -> Iterator[Watching]:
 
 
 def _replace(path: Path, text: str) -> None:
-    """As editors do: under another name first."""
+    """Replace a file as editors do: write another file and rename it."""
     new = path.with_suffix(".new")
     new.write_text(text)
     new.replace(path)
 
 
-def test_the_files_of_what_has_changed_are_written(watching: Watching, inside: Path) -> None:
-    first = watching.said()
+def test_only_changed_files_are_written(watching: Watching, inside: Path) -> None:
+    first = watching.next_messages()
     assert [line.split()[0] for line in first.splitlines()] == ["wrote"] * 4
-    found = {path: path.stat().st_mtime_ns for path in (inside / "out").iterdir()}
+    times = {path: path.stat().st_mtime_ns for path in (inside / "out").iterdir()}
 
     _replace(inside / "specs.tltl", SPECS.replace("F seen", "F !seen"))
-    second = watching.said()
+    second = watching.next_messages()
     assert "changed: specs.tltl\n" in second
     assert "wrote out/found.fspa.json\nwrote out/found_monitor.lua\n2 files have not changed\n" in second
-    changed = {path.name for path, time in found.items() if path.stat().st_mtime_ns != time}
+    changed = {path.name for path, time in times.items() if path.stat().st_mtime_ns != time}
     assert changed == {"found.fspa.json", "found_monitor.lua"}
 
     _replace(inside / "lib.tltl", LIBRARY + "// nothing new\n")
-    assert watching.said().endswith("changed: lib.tltl\n4 files have not changed\n")
+    assert watching.next_messages().endswith("changed: lib.tltl\n4 files have not changed\n")
     assert watching.end() == 130
 
 
-def test_errors_are_shown_and_waited_out(watching: Watching, inside: Path) -> None:
-    watching.said()
+def test_compiling_resumes_after_errors_are_fixed(watching: Watching, inside: Path) -> None:
+    watching.next_messages()
     (inside / "lib.tltl").unlink()
-    assert "error[TLT0010]" in watching.said()
+    assert "error[TLT0010]" in watching.next_messages()
     _replace(inside / "lib.tltl", LIBRARY)
-    assert watching.said().endswith("changed: lib.tltl\n4 files have not changed\n")
+    assert watching.next_messages().endswith("changed: lib.tltl\n4 files have not changed\n")
     _replace(inside / "tltl.toml", "targets = 3")
-    assert "error[TLT0703]" in watching.said()
+    assert "error[TLT0703]" in watching.next_messages()
     (inside / "tltl.toml").unlink()
     (inside / "specs.tltl").unlink()
-    watching.says_at_last("error[TLT0001]")
+    watching.wait_for_messages("error[TLT0001]")
     _replace(inside / "specs.tltl", SPECS)
-    assert watching.said().endswith("changed: specs.tltl\n4 files have not changed\n")
+    assert watching.next_messages().endswith("changed: specs.tltl\n4 files have not changed\n")
     assert watching.end() == 130
 
 
-def test_two_specs_that_come_to_have_one_name_are_waited_out(inside: Path) -> None:
+def test_compiling_resumes_after_a_name_conflict_is_fixed(inside: Path) -> None:
     for name in "ab":
         (inside / f"{name}.tltl").write_text(f"signal seen: bool\nspec {name} = F seen\n")
     running = Watching("a.tltl", "b.tltl", "-o", "out", "-t", "json")
     try:
-        running.said()
+        running.next_messages()
         _replace(inside / "b.tltl", "signal seen: bool\nspec a = F seen\n")
-        said = running.said()
+        messages = running.next_messages()
         assert (
-            "error[TLT0700]: `a.tltl` and `b.tltl` both make `a.fspa.json`\n  help: rename one of the specs\n" in said
+            "error[TLT0700]: `a.tltl` and `b.tltl` both make `a.fspa.json`\n  help: rename one of the specs\n"
+            in messages
         )
         _replace(inside / "b.tltl", "signal seen: bool\nspec b = G seen\n")
-        assert "wrote out/b.fspa.json\n" in running.said()
+        assert "wrote out/b.fspa.json\n" in running.next_messages()
     finally:
         running.end()
 
 
-def test_a_new_file_of_a_folder_is_compiled(inside: Path) -> None:
+def test_a_new_file_in_a_folder_is_compiled(inside: Path) -> None:
     running = Watching(".", "-o", "out", "-t", "json")
     try:
-        assert running.said() == "wrote out/hide.fspa.json\n"
+        assert running.next_messages() == "wrote out/hide.fspa.json\n"
         _replace(inside / "new.tltl", "signal seen: bool\nspec found = F seen\n")
-        assert "wrote out/found.fspa.json" in running.said()
+        assert "wrote out/found.fspa.json" in running.next_messages()
     finally:
         running.end()
 
 
-def test_what_cannot_be_mended_by_a_change_ends_it(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    done = process("compile", "hide.tltl", "--watch", "-t", "pythn")
-    assert (done.status, done.err.splitlines()[0]) == (2, "error[TLT0710]: there is no target `pythn`")
-    done = process("compile", "-", "--watch")
-    assert (done.status, done.err.splitlines()[0]) == (
+def test_errors_that_no_edit_can_fix_end_the_command(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    outcome = process("compile", "hide.tltl", "--watch", "-t", "pythn")
+    assert (outcome.status, outcome.err.splitlines()[0]) == (2, "error[TLT0710]: there is no target `pythn`")
+    outcome = process("compile", "-", "--watch")
+    assert (outcome.status, outcome.err.splitlines()[0]) == (
         2,
         "error[TLT0700]: --watch takes files: standard input does not change",
     )
-    done = process("compile", "none.tltl", "--watch")
-    assert (done.status, done.err.splitlines()[0]) == (
+    outcome = process("compile", "none.tltl", "--watch")
+    assert (outcome.status, outcome.err.splitlines()[0]) == (
         3,
         "error[TLT0001]: cannot read `none.tltl`: there is no such file",
     )
 
 
-def test_a_file_that_changes_all_the_time_is_compiled_all_the_same(
+def test_a_file_that_changes_constantly_is_compiled_nevertheless(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tltlc.interfaces.cli import watching
