@@ -1,7 +1,8 @@
-"""A client of the protocol for tests.
+"""A client of the language server protocol, for tests.
 
-Its server never gives up an analysis, and that of :data:`tests.interfaces.lsp.texts.ENDLESS` never ends. So a test that
-waits for such an analysis hangs, and no other test depends on time.
+Its server never abandons an analysis, and the analysis of
+:data:`tests.interfaces.lsp.texts.ENDLESS` never ends. So a test that waits for such an analysis
+hangs, and no other test depends on time.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class Client:
     def __init__(self, folder: Path | None = None, encodings: tuple[str, ...] = (), **capabilities: Any) -> None:
         path = [str(Path(__file__).with_name("endless")), *sys.path]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
-        # Beside the folder, in which nothing else is to lie.
+        # The file lies beside the folder, which must contain only the files of the test.
         self._begun = folder.with_name(f"{folder.name}.begun") if folder else None
         if self._begun:
             self._begun.touch()
@@ -51,7 +52,7 @@ class Client:
             env=environment,
         )
         self.messages: queue.Queue[dict[str, Any]] = queue.Queue()
-        self.said: list[dict[str, Any]] = []
+        self.received: list[dict[str, Any]] = []
         self.errors: list[str] = []
         self._number = 0
         self._first_unread = 0
@@ -79,7 +80,7 @@ class Client:
         self._send({"method": method, "params": params})
 
     def start(self, method: str, params: Any) -> int:
-        """Ask without waiting for the answer; the number of the request."""
+        """Send a request without waiting for the answer, and return its number."""
         self._number += 1
         self._send({"id": self._number, "method": method, "params": params})
         return self._number
@@ -91,51 +92,42 @@ class Client:
         return answer["result"]
 
     def answer(self, number: int) -> dict[str, Any]:
-        """The answer to a request, which came already or comes."""
+        """Return the answer to a request, which has already arrived or will arrive."""
 
         def is_it(message: dict[str, Any]) -> bool:
             return message.get("id") == number and "method" not in message
 
-        return next(filter(is_it, self.said), None) or self._next(is_it)
+        return next(filter(is_it, self.received), None) or self._next(is_it)
 
     def diagnostics(self, uri: str, wanted: Callable[[list[Any]], bool] = lambda _: True) -> list[dict[str, Any]]:
-        """The next diagnostics of a document that are as wanted, since the last notification to the server.
-
-        They may have come before the answer to a request that was sent after the notification.
-        """
-
-        def is_it(message: dict[str, Any]) -> bool:
-            return (
+        """Return the next diagnostics of a document for which ``wanted`` is true."""
+        message = self._next(
+            lambda message: (
                 message.get("method") == "textDocument/publishDiagnostics"
                 and message["params"]["uri"] == uri
                 and wanted(message["params"]["diagnostics"])
             )
+        )
+        diagnostics: list[dict[str, Any]] = message["params"]["diagnostics"]
+        return diagnostics
 
-        for index in range(self._first_unread, len(self.said)):
-            if is_it(message := self.said[index]):
-                self._first_unread = index + 1
-                break
-        else:
-            message = self._next(is_it)
-            self._first_unread = len(self.said)
-        found: list[dict[str, Any]] = message["params"]["diagnostics"]
-        return found
-
-    def said_of(self, uri: str) -> list[list[dict[str, Any]]]:
-        """All diagnostics of a document so far, one list after another."""
-        told = [each["params"] for each in self.said if each.get("method") == "textDocument/publishDiagnostics"]
-        return [each["diagnostics"] for each in told if each["uri"] == uri]
+    def published(self, uri: str) -> list[list[dict[str, Any]]]:
+        """Return all lists of diagnostics published for a document so far, in order."""
+        published = [
+            message["params"] for message in self.received if message.get("method") == "textDocument/publishDiagnostics"
+        ]
+        return [params["diagnostics"] for params in published if params["uri"] == uri]
 
     def is_quiet(self, seconds: float) -> bool:
-        """Whether nothing more comes for a while: for measurements, since no test may depend on time."""
+        """Whether no message arrives for a while. Only for measurements; no test may depend on time."""
         try:
-            self.said.append(self.messages.get(timeout=seconds))
+            self.received.append(self.messages.get(timeout=seconds))
         except queue.Empty:
             return True
         return False
 
     def until_it_analyses(self, number: int = 1) -> None:
-        """Wait until the server has begun this many analyses that never end."""
+        """Wait until the server has started this many endless analyses."""
 
         def has_begun() -> bool:
             assert self._begun, "a client without a folder has no such analyses"
@@ -145,8 +137,9 @@ class Client:
         until(has_begun, "an analysis")
 
     def message(self, method: str) -> Any:
-        """What was said by a method, already or soon."""
-        earlier = [message for message in self.said if message.get("method") == method]
+        """Return the params of the last message with this method; if there is none yet, wait for
+        one."""
+        earlier = [message for message in self.received if message.get("method") == method]
         return (earlier or [self._next(lambda message: message.get("method") == method)])[-1]["params"]
 
     # --- documents ----------------------------------------------------------------------------
@@ -162,7 +155,7 @@ class Client:
         self.tell("textDocument/didChange", params)
 
     def at(self, method: str, uri: str, text: str, mark: str, **more: Any) -> Any:
-        """Ask about the place of a mark in a text, which stands once in it."""
+        """Send a request for the position of a mark, which occurs once in the text."""
         params = {"textDocument": {"uri": uri}, "position": place(text, text.index(mark)), **more}
         return self.ask(f"textDocument/{method}", params)
 
@@ -176,12 +169,12 @@ class Client:
         self.process.wait(HANG_S)
 
     def stop_reading(self) -> None:
-        """Close the server's standard output, as an editor does that has crashed."""
+        """Close the server's standard output, as a crashed editor does."""
         assert self.process.stdout
         os.dup2(os.open(os.devnull, os.O_RDONLY), self.process.stdout.fileno())
 
     def until_nobody_is_left(self) -> None:
-        """Wait until the processes that the server has started have ended, too: they share its standard error."""
+        """Wait until all processes started by the server have ended; they share its standard error."""
         self._listening.join(HANG_S)
         assert not self._listening.is_alive()
 
@@ -196,16 +189,16 @@ class Client:
     def _next(self, wanted: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         end = time.monotonic() + HANG_S
         while True:
-            left = end - time.monotonic()
-            assert left > 0, f"no such message came; the server said {self.errors}"
+            remaining = end - time.monotonic()
+            assert remaining > 0, f"no such message came; the server said {self.errors}"
             try:
-                message = self.messages.get(timeout=min(left, 1.0))
+                message = self.messages.get(timeout=min(remaining, 1.0))
             except queue.Empty:
                 assert self.process.poll() is None, f"the server has ended: {''.join(self.errors)}"
                 continue
             if "id" in message and "method" in message:
                 self._send({"id": message["id"], "result": None})
-            self.said.append(message)
+            self.received.append(message)
             if wanted(message):
                 return message
 
@@ -229,7 +222,7 @@ class Client:
 
 
 def place(text: str, offset: int, encoding: str = "utf-16") -> dict[str, int]:
-    """The position of a character, as the protocol has it."""
+    """Return the position of a character, as the protocol defines it."""
     before = text[:offset].replace("\r\n", "\n")
     line = before.rpartition("\n")[2]
     width = {"utf-8": 1, "utf-16": 2, "utf-32": 4}[encoding]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 if find_spec("pygls") is None:
-    # Without the extra `lsp` there is nothing to test; the extra `dev` has it.
+    # Without the extra `lsp` nothing can be tested; the extra `dev` includes it.
     collect_ignore_glob = ["test_*.py"]
 
 
@@ -19,5 +19,5 @@ def client(tmp_path: Path) -> Iterator[object]:
     yield started
     if started.process.poll() is None:
         started.kill()
-    # What nobody foresaw would be told here.
+    # Unexpected errors of the server would be printed there.
     assert not started.errors, "".join(started.errors)

@@ -1,4 +1,4 @@
-"""Ways out that editors offer: those that the messages name, and the fixes of the linter's rules."""
+"""Code actions: the suggestions of error messages, and the fixes of the linter's rules."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from tltlc.interfaces.lsp.edits import applied
 from tltlc.interfaces.lsp.positions import offset
 
 ERRORS = [case for case in cases("error") if re.match("TLT0[123]", case.name) and "input.tltl" in case.files]
-"""Errors of syntax, names and types."""
+"""Errors in syntax, names and types."""
 URI = "file:///x.tltl"
 
 
 def offered(document: Document, span: Span) -> dict[str, str]:
-    """The text after each action, by its title."""
-    found = {}
+    """Return the text after each action, by the action's title."""
+    texts = {}
     for action in actions(document, span, (), "utf-16", lambda _: URI, types.WorkspaceEdit):
         assert action.edit is not None
         assert action.edit.changes is not None
         edits = [edit_of(document.source, edit) for edit in action.edit.changes[URI]]
-        found[action.title] = applied(document.source.text, edits)
-    return found
+        texts[action.title] = applied(document.source.text, edits)
+    return texts
 
 
 def edit_of(source: SourceFile, edit: types.TextEdit) -> Edit:
@@ -64,27 +64,27 @@ def edit_of(source: SourceFile, edit: types.TextEdit) -> Edit:
         ),
     ],
 )  # fmt: skip
-def test_a_way_out(text: str, title: str, after: str) -> None:
+def test_an_action_produces_the_expected_text(text: str, title: str, after: str) -> None:
     document, at, _ = opened(text)
-    found = offered(document, Span(at, at))
-    assert found.get(title) == after, found
+    texts = offered(document, Span(at, at))
+    assert texts.get(title) == after, texts
 
 
 @pytest.mark.parametrize("case", ERRORS, ids=lambda case: case.name)
-def test_every_way_out_leaves_less_to_be_mended(case: Case, tmp_path: Path) -> None:
+def test_every_action_reduces_the_errors(case: Case, tmp_path: Path) -> None:
     case.unpack(tmp_path)
     document, _, _ = opened(case.files["input.tltl"].decode(), tmp_path)
-    for each in document.said:
-        label = label_in(each, document)
-        if label is not None and each.severity == "error":
+    for diagnostic in document.said:
+        label = label_in(diagnostic, document)
+        if label is not None and diagnostic.severity == "error":
             for text in offered(document, label.span).values():
                 after = Document(SourceFile(document.source.name, text), document.project, {})
                 assert wrong(after) < wrong(document)
 
 
 def wrong(document: Document) -> tuple[int, int]:
-    """How many errors of syntax there are, behind which others hide, and how many in all."""
-    return len(parse(document.source)[1]), sum(each.severity == "error" for each in document.said)
+    """The number of syntax errors, which hide others, and the number of all errors."""
+    return len(parse(document.source)[1]), sum(diagnostic.severity == "error" for diagnostic in document.said)
 
 
 def test_many_errors_have_a_fix(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""``tltlc lsp`` on a command line."""
+"""``tltlc lsp`` on the command line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from tltlc.interfaces.cli.main import main
 
 
-def test_what_is_missing_is_said_with_the_way_to_install_it(
+def test_a_missing_package_is_reported_with_the_command_that_installs_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for module in ("pygls", "pygls.lsp", "pygls.lsp.server"):
@@ -17,6 +17,6 @@ def test_what_is_missing_is_said_with_the_way_to_install_it(
     with pytest.raises(SystemExit) as ended:
         main(["lsp"])
     assert ended.value.code == 4
-    said = capsys.readouterr().err
-    assert "error[TLT0730]: `tltlc lsp` needs `pygls" in said
-    assert "'.[lsp]'" in said
+    message = capsys.readouterr().err
+    assert "error[TLT0730]: `tltlc lsp` needs `pygls" in message
+    assert "'.[lsp]'" in message

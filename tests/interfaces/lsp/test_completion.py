@@ -1,4 +1,4 @@
-"""What is offered where: each text has a mark at the cursor."""
+"""Completion: the items offered at the mark of each text."""
 
 from __future__ import annotations
 
@@ -67,37 +67,37 @@ def offered(text: str, folder: Path | None = None, before: str = BEFORE, **other
     ],
     ids=lambda value: value.replace("\n", " ") if isinstance(value, str) else "",
 )  # fmt: skip
-def test_what_is_offered(text: str, among: list[str], absent: list[str]) -> None:
-    found = offered(text)
-    assert [each for each in among if each not in found] == []
-    assert [each for each in absent if each in found] == []
+def test_the_offered_items_fit_the_place(text: str, among: list[str], absent: list[str]) -> None:
+    items = offered(text)
+    assert [item for item in among if item not in items] == []
+    assert [item for item in absent if item in items] == []
 
 
 def test_nothing_is_offered_twice() -> None:
-    found = offered("spec a { reach ¦")
-    assert len(found) == len(set(found))
+    items = offered("spec a { reach ¦")
+    assert len(items) == len(set(items))
 
 
-def test_a_choice_replaces_what_is_written_of_the_word() -> None:
+def test_a_choice_replaces_the_part_of_the_word() -> None:
     document, at, _ = opened("import core as c\nsignal n: ratio\nspec a = c.ab¦")
-    item = next(each for each in completions(document, at, "utf-16") if each.label == "c.above")
+    item = next(candidate for candidate in completions(document, at, "utf-16") if candidate.label == "c.above")
     assert item.text_edit is not None
     assert item.text_edit.range.start.character == len("spec a = ")
     assert item.text_edit.new_text == "c.above"
 
 
-def test_files_and_libraries_are_offered_also_where_they_are_not_saved(tmp_path: Path) -> None:
+def test_unsaved_files_and_libraries_are_offered(tmp_path: Path) -> None:
     (tmp_path / "saved.tltl").write_text("entity s1\n", encoding="utf-8")
     assert {"saved", "fresh"} <= set(offered("import ¦", tmp_path, "", fresh="entity s2"))
     assert {"saved.tltl", "fresh.tltl"} <= set(offered('import "¦', tmp_path, "", fresh="entity s2"))
     assert offered('test "¦', tmp_path, "", fresh="entity s2") == []
 
 
-def test_a_chosen_keyword_can_be_read_on() -> None:
-    """Every keyword that is offered at the start of a clause begins one."""
+def test_every_offered_keyword_can_start_a_clause() -> None:
+    """The parser accepts every keyword that is offered at the start of a clause."""
     document, at, _ = opened(BEFORE + "spec a {\n    keep alive\n    ¦\n}")
     for item in completions(document, at, "utf-16"):
         text = document.source.text[:at] + item.label + " (" + document.source.text[at:]
         assert applied(text, []) == text
-        again, _, _ = opened(text)
-        assert not any(f"found `{item.label}`" in each.title for each in again.said)
+        with_keyword, _, _ = opened(text)
+        assert not any(f"found `{item.label}`" in diagnostic.title for diagnostic in with_keyword.said)

@@ -1,4 +1,4 @@
-"""What is said at once, and what waits for the automata."""
+"""Diagnostics that are published at once, and those that need the automata."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from tltlc.interfaces.lsp.symbols import symbols
 from tltlc.io.files import is_file, read_source, unsaved
 
 
-def test_predicates_are_proved_later() -> None:
+def test_proofs_of_predicates_are_made_in_the_analysis() -> None:
     document, _, _ = opened("signal n: ratio\npredicate p in [-1, 1] = 3 * n\nspec a = F p\n")
     assert document.said == ()
-    found = analyse(Request(document.source, (), {}, {}))
-    assert [each.diagnostic.code for each in found.findings] == ["TLT0306"]
-    assert found.figures == ()
+    analysis = analyse(Request(document.source, (), {}, {}))
+    assert [finding.diagnostic.code for finding in analysis.findings] == ["TLT0306"]
+    assert analysis.figures == ()
 
 
-def test_an_error_of_syntax_hides_no_other_errors() -> None:
+def test_a_syntax_error_hides_no_other_error() -> None:
     document, _, _ = opened("import stealth\nspec a = G alive )\nspec b = F neer\n")
-    assert [each.code for each in document.said] == ["TLT0105", "TLT0201"]
+    assert [diagnostic.code for diagnostic in document.said] == ["TLT0105", "TLT0201"]
 
 
-def test_no_comment_hides_an_error() -> None:
+def test_a_comment_cannot_hide_an_error() -> None:
     document, _, _ = opened("signal a: bool\nspec x = F b // tltlc: allow TLT0201\n")
-    assert [each.code for each in document.said] == ["TLT0201"]
+    assert [diagnostic.code for diagnostic in document.said] == ["TLT0201"]
 
 
 WHOLE = """\
@@ -57,43 +57,43 @@ test "t" for leave { step near(s1)  expect pending }
         ("expect pending", "expect"),
     ],
 )
-def test_what_cannot_be_read_is_not_missed_elsewhere(read: str, unread: str) -> None:
+def test_a_syntax_error_makes_no_names_undefined_elsewhere(read: str, unread: str) -> None:
     text = WHOLE.replace("clock 20 Hz\n", "").replace("9 s", "9 steps") if "clock" not in read else WHOLE
     whole, _, _ = opened(text)
     assert whole.said == ()
     document, _, _ = opened(text.replace(read, unread))
     assert len(document.said) == 1
-    # What stands nowhere is missed all the same.
+    # A name that is declared nowhere is still reported.
     document, _, _ = opened(text.replace(read, unread) + "spec b = F neer\n")
-    assert [each.code for each in document.said][1:] == ([] if unread == "import" else ["TLT0201"])
+    assert [diagnostic.code for diagnostic in document.said][1:] == ([] if unread == "import" else ["TLT0201"])
 
 
-def test_what_is_wrong_in_a_test_is_said_while_another_text_cannot_be_read() -> None:
+def test_errors_in_tests_are_reported_beside_a_syntax_error() -> None:
     document, _, _ = opened(f'let let\n{WHOLE}test "u" for leave {{ expect progress > 2  expect pending }}\n')
-    assert [each.code for each in document.said] == ["TLT0106", "TLT0217"]
+    assert [diagnostic.code for diagnostic in document.said] == ["TLT0106", "TLT0217"]
 
 
-def test_the_levels_of_a_project_silence_remarks() -> None:
+def test_levels_of_the_project_silence_findings() -> None:
     text = "signal n: ratio\npredicate p = when n > 0: 1 otherwise: -1\nspec a { limit 3 steps reach p }"
-    found = analyse(Request(SourceFile("/nowhere/a.tltl", text), (), {}, {})).findings
-    assert {"TLT0402"} <= {each.diagnostic.code for each in found}
-    levels = {each.diagnostic.code: "allow" for each in found}
+    findings = analyse(Request(SourceFile("/nowhere/a.tltl", text), (), {}, {})).findings
+    assert {"TLT0402"} <= {finding.diagnostic.code for finding in findings}
+    levels = {finding.diagnostic.code: "allow" for finding in findings}
     assert analyse(Request(SourceFile("/nowhere/a.tltl", text), (), levels, {})).findings == ()
-    # Beside errors, too.
+    # This also holds beside errors.
     wrong = SourceFile("/nowhere/a.tltl", f"{text}\npredicate q in [-1, 1] = 3 * n\n")
-    assert [each.code for each in analyse(Request(wrong, (), levels, {})).said] == ["TLT0306"]
+    assert [diagnostic.code for diagnostic in analyse(Request(wrong, (), levels, {})).said] == ["TLT0306"]
 
 
-def test_examples_have_figures_and_nothing_to_say() -> None:
+def test_examples_have_figures_and_no_errors() -> None:
     for path in EXAMPLES:
         source = read_source(path)
-        found = analyse(Request(source, (), {}, {}))
-        assert not [each for each in found.findings if each.diagnostic.severity == "error"]
-        assert found.failures == ()
-        assert sum(each.passed for each in found.figures) > 0
+        analysis = analyse(Request(source, (), {}, {}))
+        assert not [finding for finding in analysis.findings if finding.diagnostic.severity == "error"]
+        assert analysis.failures == ()
+        assert sum(figures.passed for figures in analysis.figures) > 0
 
 
-def test_texts_that_are_not_saved_are_read(tmp_path: Path) -> None:
+def test_unsaved_texts_are_read(tmp_path: Path) -> None:
     saved, fresh = tmp_path / "saved.tltl", tmp_path / "fresh.tltl"
     saved.write_text("entity a\n", encoding="utf-8")
     with unsaved({str(saved): "entity b\n", str(fresh): "entity c\n"}):
@@ -104,7 +104,7 @@ def test_texts_that_are_not_saved_are_read(tmp_path: Path) -> None:
     assert not is_file(fresh)
 
 
-def test_a_difference_is_one_edit_that_leads_there() -> None:
+def test_a_difference_is_a_single_edit() -> None:
     source = SourceFile("a.tltl", "signal a:bool\r\nspec s = G a\r\n")
     edits = difference(source, "signal a: bool\nspec s = always a\n")
     assert applied(source.text, edits) == "signal a: bool\r\nspec s = always a\r\n"
@@ -112,40 +112,42 @@ def test_a_difference_is_one_edit_that_leads_there() -> None:
     assert source.text[edits[0].span.start :].startswith("bool")
 
 
-def test_what_cannot_be_read_is_not_laid_out() -> None:
+def test_a_text_with_syntax_errors_is_not_formatted() -> None:
     document, _, _ = opened("spec a = G (")
     assert formatting(document, "utf-16") is None
 
 
-def test_the_outline_holds_clauses_below_their_spec() -> None:
+def test_the_outline_nests_clauses_in_their_spec() -> None:
     document, _, _ = opened(
         "import stealth\nentity s1, s2\nspec a { reach near(s1) keep alive }\n"
         'test "t" for a { step alive expect pending }'
     )
-    found = symbols(document, "utf-16")
-    assert [each.name for each in found] == ["stealth", "s1", "s2", "a", "t"]
-    assert [each.name for each in found[3].children or ()] == ["reach near(s1)", "keep alive"]
-    for each in found:
-        assert each.range.start <= each.selection_range.start
-        assert each.selection_range.end <= each.range.end
+    outline = symbols(document, "utf-16")
+    assert [symbol.name for symbol in outline] == ["stealth", "s1", "s2", "a", "t"]
+    assert [child.name for child in outline[3].children or ()] == ["reach near(s1)", "keep alive"]
+    for symbol in outline:
+        assert symbol.range.start <= symbol.selection_range.start
+        assert symbol.selection_range.end <= symbol.range.end
 
 
-def test_what_may_be_left_out_is_shown_faded() -> None:
+def test_removable_code_is_shown_faded() -> None:
     document, _, _ = opened(
         "import stealth\nsignal unused: bool\nsignal a: bool\nspec s {\n    limit 3 steps\n    keep a\n    keep a\n"
         "    require always eventually a\n}\n"
     )
-    found = analyse(Request(document.source, (), {}, {})).findings
-    faded = {each.diagnostic.code for each in found if remark(each.diagnostic, document, "utf-16", str).tags}
+    findings = analyse(Request(document.source, (), {}, {})).findings
+    faded = {
+        finding.diagnostic.code for finding in findings if remark(finding.diagnostic, document, "utf-16", str).tags
+    }
     assert faded == {"TLT0421", "TLT0422", "TLT0425"}
-    # All of it is mended by removing something.
-    for each in found:
-        if each.diagnostic.code in faded:
-            assert not any(edit.text for edit in each.fix)
-    assert "TLT0424" in {each.diagnostic.code for each in found}
+    # The fix of each of these findings only removes text.
+    for finding in findings:
+        if finding.diagnostic.code in faded:
+            assert not any(edit.text for edit in finding.fix)
+    assert "TLT0424" in {finding.diagnostic.code for finding in findings}
 
 
-def test_a_layout_that_could_not_be_read_again_is_refused() -> None:
+def test_a_layout_over_the_size_limit_is_rejected() -> None:
     document, _, _ = opened("spec a {\n" + "//c\n" * 200_000 + "require true }\n")
     with pytest.raises(TltlError, match="would be larger than 1 MiB"):
         formatting(document, "utf-16")

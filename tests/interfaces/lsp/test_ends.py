@@ -1,4 +1,4 @@
-"""How a session ends: in order, or in any other way, also while an automaton is built."""
+"""The ways in which a session ends, with and without a running analysis."""
 
 from __future__ import annotations
 
@@ -52,8 +52,10 @@ if os.name == "posix":
 
 
 @pytest.mark.parametrize("busy", [False, True], ids=["idle", "busy"])
-@pytest.mark.parametrize(("end", "status"), ENDS, ids=lambda each: getattr(each, "__name__", None))
-def test_an_end(end: Callable[[Client], None], status: int, busy: bool, client: Client, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("end", "status"), ENDS, ids=lambda value: getattr(value, "__name__", None))
+def test_the_server_and_its_processes_end(
+    end: Callable[[Client], None], status: int, busy: bool, client: Client, tmp_path: Path
+) -> None:
     if busy:
         uri = client.open(tmp_path / "slow.tltl", ENDLESS)
         assert client.diagnostics(uri) == []
@@ -63,7 +65,7 @@ def test_an_end(end: Callable[[Client], None], status: int, busy: bool, client: 
     client.until_nobody_is_left()
 
 
-def test_nobody_reads_any_more(client: Client, tmp_path: Path) -> None:
+def test_a_closed_pipe_ends_the_server(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "a.tltl", "signal a: bool\n")
     client.diagnostics(uri)
     client.stop_reading()
@@ -71,7 +73,7 @@ def test_nobody_reads_any_more(client: Client, tmp_path: Path) -> None:
 
     def ends_while_a_text_changes() -> bool:
         version = next(versions)
-        # It may end in between.
+        # The server may end between two writes.
         with suppress(BrokenPipeError):
             client.change(uri, f"signal a{version}: bool\n", version)
         return client.process.poll() is not None
@@ -80,8 +82,8 @@ def test_nobody_reads_any_more(client: Client, tmp_path: Path) -> None:
     assert client.process.wait(HANG_S) == 141
 
 
-def test_what_nobody_asked_for_is_passed_over_in_silence(client: Client, tmp_path: Path) -> None:
-    """The fixture looks at standard error, which editors show as errors."""
+def test_unknown_notifications_are_ignored_silently(client: Client, tmp_path: Path) -> None:
+    """The fixture checks standard error, which editors show as errors."""
     client.tell("$/cancelRequest", {"id": 1})
     client.tell("workspace/didChangeConfiguration", {"settings": {}})
     client.tell("$/setTrace", {"value": "off"})
@@ -96,39 +98,39 @@ def test_what_nobody_asked_for_is_passed_over_in_silence(client: Client, tmp_pat
     assert client.close() == 0
 
 
-def test_a_document_that_is_closed_keeps_nobody_waiting(client: Client, tmp_path: Path) -> None:
+def test_a_closed_document_does_not_block_others(client: Client, tmp_path: Path) -> None:
     slow = client.open(tmp_path / "slow.tltl", ENDLESS)
     assert client.diagnostics(slow) == []
     client.until_it_analyses()
     other = client.open(tmp_path / "other.tltl", "signal a: bool\nspec s = G (a or not a)\n")
     assert client.diagnostics(other) == []
     client.tell("textDocument/didClose", {"textDocument": {"uri": slow}})
-    assert [each["code"] for each in client.diagnostics(other, bool)] == ["TLT0411"]
+    assert [diagnostic["code"] for diagnostic in client.diagnostics(other, bool)] == ["TLT0411"]
 
 
-def test_a_text_that_does_not_fit_into_a_pipe_stops_nobody(client: Client, tmp_path: Path) -> None:
-    """It waits for the process that is to read it, and that has yet to start; the editor does not."""
+def test_a_text_larger_than_a_pipe_blocks_nothing(client: Client, tmp_path: Path) -> None:
+    """The text waits for the analysis process to start and read it; the editor does not wait."""
     uri = client.open(tmp_path / "long.tltl", "signal a: bool\nspec s = G (a or not a)\n" + f"// {'a' * 900_000}\n")
     assert client.diagnostics(uri) == []
-    assert [each["code"] for each in client.diagnostics(uri, bool)] == ["TLT0411"]
+    assert [diagnostic["code"] for diagnostic in client.diagnostics(uri, bool)] == ["TLT0411"]
 
 
-def test_what_is_still_asked_at_the_end_is_dropped_without_a_word(tmp_path: Path) -> None:
+def test_requests_pending_at_the_end_are_dropped_silently(tmp_path: Path) -> None:
     uri = (tmp_path / "a.tltl").as_uri()
     document = {"uri": uri, "languageId": "tltl", "version": 1, "text": "signal a: bool\nspec s = F a\n"}
-    asked = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 7}, "newName": "b"}
+    params = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 7}, "newName": "b"}
     messages: list[dict[str, Any]] = [
         {"id": 1, "method": "initialize", "params": {"processId": None, "rootUri": None, "capabilities": {}}},
         {"method": "initialized", "params": {}},
         {"method": "textDocument/didOpen", "params": {"textDocument": document}},
-        {"id": 2, "method": "textDocument/rename", "params": asked},
+        {"id": 2, "method": "textDocument/rename", "params": params},
         {"id": 3, "method": "workspace/symbol", "params": {"query": ""}},
         {"id": 4, "method": "shutdown"},
         {"method": "exit"},
     ]
     bodies = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in messages]
-    said = b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(body), body) for body in bodies)
-    done = subprocess.run(
-        [sys.executable, "-m", "tltlc", "lsp"], input=said, capture_output=True, timeout=HANG_S, check=False
+    input_bytes = b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(body), body) for body in bodies)
+    completed = subprocess.run(
+        [sys.executable, "-m", "tltlc", "lsp"], input=input_bytes, capture_output=True, timeout=HANG_S, check=False
     )
-    assert (done.returncode, done.stderr) == (0, b"")
+    assert (completed.returncode, completed.stderr) == (0, b"")

@@ -1,4 +1,4 @@
-"""How bytes become messages: in whichever pieces they come, and whatever is wrong with them."""
+"""How bytes are split into messages, however they arrive and whatever is wrong with them."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def bodies(*pieces: bytes) -> list[bytes]:
     return [frame.data for frame in frames(*pieces) if isinstance(frame, Body)]
 
 
-def test_messages_are_cut_as_their_headers_say() -> None:
+def test_messages_are_split_by_their_headers() -> None:
     data = b"".join(map(framed, MESSAGES))
-    assert frames(data) == [Body(each) for each in MESSAGES]
-    assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(each) for each in MESSAGES]
+    assert frames(data) == [Body(message) for message in MESSAGES]
+    assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(message) for message in MESSAGES]
 
 
 @pytest.mark.parametrize(
@@ -50,27 +50,27 @@ def test_headers_may_be_written_in_several_ways(head: bytes) -> None:
 
 
 @pytest.mark.parametrize("extra", [*range(1, 80), 1000, MESSAGE.size - 100])
-def test_a_header_inside_of_a_body_ends_it(extra: int) -> None:
+def test_a_header_within_a_body_ends_the_body(extra: int) -> None:
     typed = b"Content-Type: a/b\r\n" + framed(b"[]")
-    for behind in (framed(b"[]") * 3, typed * 3):
-        data = framed(b"{}", extra) + behind
+    for following in (framed(b"[]") * 3, typed * 3):
+        data = framed(b"{}", extra) + following
         assert bodies(data) == [b"{}", b"[]", b"[]", b"[]"]
         assert bodies(*(data[at : at + 1] for at in range(len(data)))) == [b"{}", b"[]", b"[]", b"[]"]
 
 
-def test_a_body_that_is_broken_ends_at_the_next_header_too() -> None:
+def test_a_broken_body_also_ends_at_the_next_header() -> None:
     assert bodies(framed(b'{"a": "b', 40) + framed(b"[]")) == [b'{"a": "b', b"[]"]
 
 
 @pytest.mark.parametrize("extra", [1, 2, 80, MESSAGE.size - 1000])
 @pytest.mark.parametrize("message", MESSAGES)
-def test_a_body_is_given_at_its_last_bracket_whatever_its_length(message: bytes, extra: int) -> None:
+def test_a_body_is_complete_at_its_last_bracket(message: bytes, extra: int) -> None:
     """An editor that waits for the answer sends nothing more."""
     data = framed(message, extra)
     assert Frames().feed(data) == [Body(message)]
     reader = Frames()
     assert [reader.feed(data[at : at + 1]) for at in range(len(data))][-1] == [Body(message)]
-    # The fault is known only when more comes.
+    # The fault is detected only when more bytes arrive.
     assert reader.feed(framed(b"[]")) == [
         Fault(f"a message is shorter than its header says: {len(message)} bytes, not {len(message) + extra}"),
         Body(b"[]"),
@@ -84,41 +84,41 @@ def test_white_space_at_the_end_of_a_body_is_no_fault(padding: bytes) -> None:
     assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(b"{}")] * 2
 
 
-def test_what_stands_behind_the_last_bracket_is_told_once_and_passed_over() -> None:
+def test_bytes_after_the_last_bracket_are_reported_once_and_skipped() -> None:
     fault = Fault("a message is shorter than its header says: 2 bytes, not 10")
     for data in (framed(b"{} nothing", 0), framed(b"{} no\nthin"), framed(b"{}} = {}}", 1)):
         assert frames(data + framed(b"[]")) == [Body(b"{}"), fault, Body(b"[]")]
 
 
 @given(st.recursive(st.none() | st.text(), st.lists, max_leaves=20), st.integers(1, 200), st.integers(0, 10**9))
-def test_the_end_of_a_json_text_is_found_in_whichever_pieces_it_comes(value: object, size: int, more: int) -> None:
+def test_the_end_of_a_json_text_is_found_in_pieces_of_any_size(value: object, size: int, more: int) -> None:
     message = json.dumps({'\\"}': value}, ensure_ascii=more % 2 == 0).encode()
     end, data = JsonEnd(), bytearray()
     for at in range(0, len(message), size):
         assert end.find(data, len(message) + more) is None
-        # Each byte is looked at once, but for half an escape.
+        # Each byte is read only once, except the first half of an escape.
         assert end._at >= len(data) - 1
         data += message[at : at + size]
     assert end.find(data, len(message) + more) == len(message)
 
 
-def test_a_length_above_the_limit_is_told_at_once() -> None:
+def test_a_length_above_the_limit_is_reported_at_once() -> None:
     reader = Frames()
     (fault,) = reader.feed(b"Content-Length: %d\r\n\r\n" % (MESSAGE.size + 1))
     assert fault == Fault("a message is larger than 4 MiB, and is passed over", is_answered=True)
     assert reader.feed(b"{" + b"a" * 100_000 + b"}") == []
-    # No more is kept of what is passed over than a header can have.
+    # Of the skipped bytes, at most the size of a header is kept.
     assert len(reader._buffer) <= MESSAGE_HEAD.size
     assert reader.feed(framed(b"{}")) == [Body(b"{}")]
 
 
-def test_what_is_passed_over_is_told_once() -> None:
+def test_skipped_bytes_are_reported_once() -> None:
     (fault, *rest) = frames(b"Content-Length: -5\r\n\r\n{\n" + b' "a": 1,\n' * 1000 + b"}" + framed(b"{}"))
     assert fault == Fault(r"a message without a header `Content-Length` is passed over: b'Content-Length: -5\r\n'")
     assert rest == [Body(b"{}")]
 
 
-def test_what_is_left_at_the_end_is_a_message() -> None:
+def test_the_bytes_left_at_the_end_are_a_message() -> None:
     assert bodies(framed(b"{}", 5)) == [b"{}"]
     assert bodies(b"Content-Length: 5\r\n") == []
 
@@ -146,20 +146,23 @@ PIECES = st.one_of(
 
 
 @given(st.lists(PIECES, max_size=8).map(b"".join), st.lists(st.integers(1, 40), max_size=60))
-def test_any_bytes_are_cut_in_the_same_way_in_whichever_pieces_they_come(data: bytes, sizes: list[int]) -> None:
+def test_the_split_does_not_depend_on_the_pieces(data: bytes, sizes: list[int]) -> None:
     pieces, rest = [], data
     for size in sizes:
         pieces.append(rest[:size])
         rest = rest[size:]
     one, other = frames(data), frames(*pieces, rest)
-    assert [each for each in one if isinstance(each, Body)] == [each for each in other if isinstance(each, Body)]
-    assert [type(each) for each in one] == [type(each) for each in other]
+    assert [frame for frame in one if isinstance(frame, Body)] == [frame for frame in other if isinstance(frame, Body)]
+    assert [type(frame) for frame in one] == [type(frame) for frame in other]
 
 
 WRONG = st.sampled_from(
     [
-        *(b"Content-Length: %b\r\n\r\n{}" % each for each in (b"-2", b"+2", b"many", b"", b"2.0", b"\xb2", b"9" * 70)),
-        *(framed(b'{"a": 1}', more) for more in range(-7, 100)),
+        *(
+            b"Content-Length: %b\r\n\r\n{}" % length
+            for length in (b"-2", b"+2", b"many", b"", b"2.0", b"\xb2", b"9" * 70)
+        ),
+        *(framed(b'{"a": 1}', extra) for extra in range(-7, 100)),
         framed(b"{}", MESSAGE.size),
         b"Content-Length: 2\r\n{}",
         b"Content-Length: 1\r\nContent-Length: 2\r\n\r\n{}",
@@ -171,10 +174,10 @@ WRONG = st.sampled_from(
 
 
 @given(st.lists(WRONG, max_size=5).map(b"".join), st.sampled_from(MESSAGES))
-def test_whatever_was_wrong_a_right_message_behind_it_is_read(wrong: bytes, right: bytes) -> None:
+def test_a_valid_message_after_invalid_ones_is_read(wrong: bytes, right: bytes) -> None:
     assert bodies(wrong + framed(right))[-1] == right
 
 
 @given(st.recursive(st.none() | st.text(), st.lists, max_leaves=20).map(lambda value: json.dumps([value]).encode()))
-def test_a_right_message_is_never_cut(message: bytes) -> None:
+def test_a_valid_message_is_never_cut(message: bytes) -> None:
     assert frames(framed(message) * 2) == [Body(message)] * 2

@@ -1,4 +1,5 @@
-"""Any text, at any moment: the server answers all that an editor may ask, by the text that the editor has."""
+"""Fuzzing: for any text at any time, the server answers every request for the current text of the
+editor."""
 
 from __future__ import annotations
 
@@ -42,7 +43,7 @@ NOTHING = Analysis((), (), (Figures("branching", 6, 4, 1, 0),))
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_random_edits(path: Path) -> None:
+def test_random_edits_keep_all_answers_consistent(path: Path) -> None:
     generator = random.Random(path.stem)
     whole = path.read_text(encoding="utf-8")
     for _ in range(8):
@@ -55,12 +56,12 @@ def test_random_edits(path: Path) -> None:
             assert changed is not None
             assert (changed.source.text, workspace.version(uri)) == (text, version)
             ask_everything(changed, workspace, generator)
-        anew, _, _ = opened(text, path.parent)
-        assert (changed.said, changed.names, changed.module) == (anew.said, anew.names, anew.module)
+        reparsed, _, _ = opened(text, path.parent)
+        assert (changed.said, changed.names, changed.module) == (reparsed.said, reparsed.names, reparsed.module)
 
 
 def edited(text: str, generator: random.Random) -> str:
-    """A text after something that a hand on a keyboard may do."""
+    """Return a text after a random edit, as by typing."""
     start = generator.randint(0, len(text))
     end = min(len(text), start + generator.choice((0, 0, 1, 3, 20, 300)))
     words = text.split()
@@ -90,11 +91,11 @@ def ask_everything(document: Document, workspace: Workspace, generator: random.R
         quoted(source, at)
         completion.completions(document, at, encoding)
         hover.hover(document, at, NOTHING, encoding)
-        found = document.name_at(at)
-        if found is not None and generator.random() < 0.2:
-            references.references(found.symbol, workspace)
+        named = document.name_at(at)
+        if named is not None and generator.random() < 0.2:
+            references.references(named.symbol, workspace)
             try:
-                changed = references.rename(found.symbol, "brand_new", workspace)
+                changed = references.rename(named.symbol, "brand_new", workspace)
             except TltlError as error:
                 assert error.diagnostics[0].code in ("TLT0770", "TLT0771")
             else:
@@ -106,31 +107,31 @@ def ask_everything(document: Document, workspace: Workspace, generator: random.R
 
 
 def written(document: Document, where: types.Range, encoding: str) -> str:
-    """The text that an editor sees at a range."""
-    start, end = (offset(document.source, each, encoding) for each in (where.start, where.end))
+    """Return the text at a range of the editor."""
+    start, end = (offset(document.source, position_, encoding) for position_ in (where.start, where.end))
     assert start <= end
     return document.source.text[start:end]
 
 
 def check_remarks(document: Document, encoding: str) -> None:
-    """They stand where the compiler's diagnostics do, in the editor's columns."""
-    for each in document.said:
-        shown, label = remark(each, document, encoding, uri_of), label_in(each, document)
-        assert shown.message.startswith(each.title)
+    """Assert that the diagnostics are at the compiler's positions, in columns of the editor."""
+    for diagnostic in document.said:
+        shown, label = remark(diagnostic, document, encoding, uri_of), label_in(diagnostic, document)
+        assert shown.message.startswith(diagnostic.title)
         if label is not None:
             source, span = document.source, label.span
             assert written(document, shown.range, encoding) == written(document, range_of(source, span), "utf-16")
 
 
 def check_symbols(document: Document, encoding: str) -> None:
-    """The name of a declaration stands inside of it, and a search finds it."""
+    """Assert that the name of a declaration is within its range, and that a search finds it."""
     shown = symbols.symbols(document, encoding)
-    for each in shown:
-        own = written(document, each.selection_range, encoding)
-        assert own in written(document, each.range, encoding)
-        assert own == each.name or each.kind in (types.SymbolKind.Module, types.SymbolKind.Event)
-    found = {each.name for each in symbols.found(document, "", encoding, "file:///x")}
-    assert found == {each.name for each in shown if each.kind != types.SymbolKind.Module}
+    for symbol in shown:
+        own = written(document, symbol.selection_range, encoding)
+        assert own in written(document, symbol.range, encoding)
+        assert own == symbol.name or symbol.kind in (types.SymbolKind.Module, types.SymbolKind.Event)
+    names = {symbol.name for symbol in symbols.found(document, "", encoding, "file:///x")}
+    assert names == {symbol.name for symbol in shown if symbol.kind != types.SymbolKind.Module}
 
 
 def check_rename(document: Document, changed: list[tuple[Document, list[Edit]]]) -> None:
@@ -141,12 +142,12 @@ def check_rename(document: Document, changed: list[tuple[Document, list[Edit]]])
 
 def check_folds(document: Document) -> None:
     last, _ = document.source.position(len(document.source.text))
-    for each in folding.folds(document):
-        assert 0 <= each.start_line < each.end_line < last
+    for fold in folding.folds(document):
+        assert 0 <= fold.start_line < fold.end_line < last
 
 
 def check_tokens(document: Document, encoding: str) -> None:
-    """They stand in order and where the names stand."""
+    """Assert that the tokens are in order and at the positions of the names."""
     numbers = tokens.tokens(document, encoding)
     line = column = 0
     for at, name in zip(range(0, len(numbers), 5), document.names, strict=True):

@@ -1,4 +1,4 @@
-"""What is said of the word at the mark."""
+"""The hover text for the word at the mark."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ spec leave {
 """
 
 
-def said(at: str, text: str = TEXT) -> str:
+def hover_text(at: str, text: str = TEXT) -> str:
     document, offset, _ = opened(text.replace(at, "¦" + at, 1))
-    found = hover(document, offset, None, "utf-16")
-    assert found is not None
-    assert isinstance(found.contents, types.MarkupContent)
-    return found.contents.value
+    result = hover(document, offset, None, "utf-16")
+    assert result is not None
+    assert isinstance(result.contents, types.MarkupContent)
+    return result.contents.value
 
 
 @pytest.mark.parametrize(
@@ -54,49 +54,49 @@ def said(at: str, text: str = TEXT) -> str:
         ("keep", ("`keep a`", "Whenever fuel <= 0.1, keep")),
     ],
 )
-def test_hover(at: str, parts: tuple[str, ...]) -> None:
-    text = said(at)
+def test_the_hover_text_has_the_expected_parts(at: str, parts: tuple[str, ...]) -> None:
+    text = hover_text(at)
     for part in parts:
         assert part in text
 
 
-def test_a_spec_with_its_automaton() -> None:
+def test_the_hover_text_of_a_spec_describes_its_automaton() -> None:
     document, offset, _ = opened(TEXT.replace("leave {", "¦leave {"))
     analysis = analyse(Request(document.source, (), {}, {}))
-    found = hover(document, offset, analysis, "utf-16")
-    assert found is not None
-    assert isinstance(found.contents, types.MarkupContent)
+    result = hover(document, offset, analysis, "utf-16")
+    assert result is not None
+    assert isinstance(result.contents, types.MarkupContent)
     figures = analysis.figures[0]
-    assert f"{figures.states} states, distance 2." in found.contents.value
+    assert f"{figures.states} states, distance 2." in result.contents.value
 
 
-def test_nothing_is_said_of_a_space() -> None:
+def test_a_space_has_no_hover_text() -> None:
     document, _, _ = opened(TEXT)
     assert hover(document, TEXT.index("= 2 m"), None, "utf-16") is None
 
 
-def test_operators_of_infinite_specs_are_said_in_their_words() -> None:
+def test_operators_of_infinite_specs_are_explained_as_such() -> None:
     text = "signal a: bool\nspec again {\n    semantics infinite\n    require always eventually a\n}\n"
-    assert "again and again" in said("require", text)
+    assert "again and again" in hover_text("require", text)
 
 
-def test_a_name_that_covers_another_one_is_its_own() -> None:
+def test_a_name_that_shadows_another_is_resolved_correctly() -> None:
     document, offset, _ = opened("entity s1, s2\nsignal at(x: entity): bool\nspec a = all s in (s1, s2): F at(¦s)")
-    found = hover(document, offset, None, "utf-16")
-    assert found is not None
+    result = hover(document, offset, None, "utf-16")
+    assert result is not None
     assert isinstance(document, Document)
-    assert isinstance(found.contents, types.MarkupContent)
-    assert "all s in (s1, s2)" in found.contents.value
+    assert isinstance(result.contents, types.MarkupContent)
+    assert "all s in (s1, s2)" in result.contents.value
 
 
-def test_times_are_said_in_steps() -> None:
+def test_times_are_explained_in_steps() -> None:
     text = "clock 20 Hz\n" + TEXT.replace("import stealth\n", "").replace("40 steps", "2 s")
-    assert said("2 s", text) == "40 steps of 0.05 s."
-    assert said("limit", text) == "`limit 400 steps` or `limit 20 s`"
+    assert hover_text("2 s", text) == "40 steps of 0.05 s."
+    assert hover_text("limit", text) == "`limit 400 steps` or `limit 20 s`"
 
 
-def test_no_range_is_said_where_there_is_none() -> None:
+def test_a_missing_range_is_not_mentioned() -> None:
     text = "param most: length = 2 m\nsignal far: length\nsignal most_of: length in [0 m, inf]\n"
-    assert said("most: l", text).endswith("A length constant, 2 m.")
-    assert said("far", text).endswith("supplied by the game as metres.")
-    assert said("most_of", text).endswith("supplied by the game as metres; its range is [0 m, inf].")
+    assert hover_text("most: l", text).endswith("A length constant, 2 m.")
+    assert hover_text("far", text).endswith("supplied by the game as metres.")
+    assert hover_text("most_of", text).endswith("supplied by the game as metres; its range is [0 m, inf].")

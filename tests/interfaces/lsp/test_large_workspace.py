@@ -1,4 +1,4 @@
-"""Workspaces that hold much: requests end early, with an error, or because the editor cancels them."""
+"""Large workspaces: requests end early with an error, or when the editor cancels them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_a_workspace_that_is_too_large_is_not_parsed(
         asyncio.run(workspace.parse(lambda text: True))
 
 
-def test_only_texts_that_may_matter_are_parsed_and_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_relevant_texts_are_parsed_and_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     workspace = _workspace(tmp_path, 4)
     (tmp_path / "other.tltl").write_text(OTHER)
     monkeypatch.setattr(module, "WORKSPACE_PARSED", Limit(size=4 * len(TEXT)))
@@ -62,7 +62,7 @@ def test_only_texts_that_may_matter_are_parsed_and_count(tmp_path: Path, monkeyp
 def test_a_request_over_many_files_can_be_cancelled(
     client: Client, tmp_path: Path, method: str, more: dict[str, object]
 ) -> None:
-    """Cancelled in the same breath, long before the last of the files."""
+    """The request is cancelled immediately, long before it reaches the last file."""
     declarations = "".join(f"signal s{number}: bool\n" for number in range(2_000))
     for number in range(40):
         (tmp_path / f"{number}.tltl").write_text(f"{TEXT}{declarations}")
@@ -70,12 +70,12 @@ def test_a_request_over_many_files_can_be_cancelled(
     at = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 8}}
     number = client.start(method, {**at, **more})
     client.tell("$/cancelRequest", {"id": number})
-    # A later request is answered although the first one was not done.
+    # A later request is answered while the first one is unfinished.
     assert client.ask("textDocument/foldingRange", {"textDocument": {"uri": uri}}) is not None
     assert client.answer(number)["error"]["code"] == -32800
 
 
-def test_a_workspace_that_is_too_large_refuses_a_rename(client: Client, tmp_path: Path) -> None:
+def test_a_rename_in_a_workspace_that_is_too_large_is_rejected(client: Client, tmp_path: Path) -> None:
     filler = "// Nothing else.\n" * 60_000
     for number in range(6):
         (tmp_path / f"{number}.tltl").write_text(f"{TEXT}{filler}")

@@ -1,4 +1,4 @@
-"""Files and folders that get other names, and what imports them."""
+"""Renamed files and folders, and the files that import them."""
 
 from __future__ import annotations
 
@@ -52,28 +52,29 @@ FILES = {
     ],
     ids=["file", "folder", "no_name", "two", "importing"],
 )  # fmt: skip
-def test_imports_lead_where_they_led(moves: dict[str, str], expected: dict[str, str], tmp_path: Path) -> None:
+def test_imports_follow_renamed_files(moves: dict[str, str], expected: dict[str, str], tmp_path: Path) -> None:
     for name, text in FILES.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
     workspace = Workspace()
     workspace.folders = [str(tmp_path)]
-    found = edits_of_moves([(str(tmp_path / old), str(tmp_path / new)) for old, new in moves.items()], workspace)
+    moved = edits_of_moves([(str(tmp_path / old), str(tmp_path / new)) for old, new in moves.items()], workspace)
     after = {
-        str(Path(each.source.name).relative_to(tmp_path)): applied(each.source.text, edits) for each, edits in found
+        str(Path(document.source.name).relative_to(tmp_path)): applied(document.source.text, edits)
+        for document, edits in moved
     }
     assert after == expected
-    # Every text is as sound as before when the files are where they go.
+    # After the files are moved, every text is still free of errors.
     for name, text in after.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     for old, new in moves.items():
         (tmp_path / old).rename(tmp_path / new)
-    assert [each.said for each in workspace.all()] == [()] * 4
+    assert [document.said for document in workspace.all()] == [()] * 4
 
 
 @pytest.mark.parametrize("name", ['p"q', "p\nq", "p\rq"])
-def test_a_path_that_no_source_can_hold_is_not_written(name: str, tmp_path: Path) -> None:
-    """The import stays as it is, and then has a message."""
+def test_a_path_that_no_import_can_contain_is_not_written(name: str, tmp_path: Path) -> None:
+    """The import does not change, and then has an error."""
     for path, text in FILES.items():
         (tmp_path / path).parent.mkdir(exist_ok=True)
         (tmp_path / path).write_text(text, encoding="utf-8")
@@ -84,17 +85,20 @@ def test_a_path_that_no_source_can_hold_is_not_written(name: str, tmp_path: Path
 
 def test_an_editor_asks_before_it_renames(tmp_path: Path) -> None:
     client = Client(tmp_path, workspace={"fileOperations": {"willRename": True, "didRename": True}})
-    (filters,) = {str(each) for each in client.capabilities["workspace"]["fileOperations"].values()}
+    (filters,) = {
+        str(filters_of_operation)
+        for filters_of_operation in client.capabilities["workspace"]["fileOperations"].values()
+    }
     assert "**/*.tltl" in filters
     (tmp_path / "common.tltl").write_text("signal loud: bool\n", encoding="utf-8")
     text = 'import "common.tltl"\nspec hush = G !loud\n'
     uri = client.open(tmp_path / "main.tltl", text)
     files = [{"oldUri": (tmp_path / "common.tltl").as_uri(), "newUri": (tmp_path / "noise.tltl").as_uri()}]
     changes = client.ask("workspace/willRenameFiles", {"files": files})["changes"]
-    assert [each["newText"] for each in changes.pop(uri)] == ['"noise.tltl"']
+    assert [edit["newText"] for edit in changes.pop(uri)] == ['"noise.tltl"']
     assert changes == {}
     (tmp_path / "common.tltl").rename(tmp_path / "noise.tltl")
     client.change(uri, text.replace("common", "noise"))
     client.tell("workspace/didRenameFiles", {"files": files})
-    assert client.diagnostics(uri, lambda found: not found) == []
+    assert client.diagnostics(uri, lambda diagnostics: not diagnostics) == []
     assert client.close() == 0

@@ -1,4 +1,4 @@
-"""The order in which documents are analysed, whatever the clock says."""
+"""The order in which documents are analysed, independent of real time."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ FOUND = Analysis(())
 
 
 class Desk:
-    """A queue whose analyses go on until they are told to end, or given up; ``begun`` are all that there were."""
+    """A queue whose analyses run until they are ended or abandoned; ``begun`` lists all that were
+    started."""
 
     def __init__(self) -> None:
         self.queue = queue.Queue(self._analyse, self._give_up)
@@ -55,7 +56,7 @@ async def settled() -> None:
 
 
 def on_a_desk(long_s: float) -> Callable[[Callable[[Desk], Awaitable[None]]], Callable[[pytest.MonkeyPatch], None]]:
-    """A test of a desk where an analysis gives way after so many seconds."""
+    """A decorator for a test of a desk on which an analysis gives way after ``long_s`` seconds."""
 
     def decorated(test: Callable[[Desk], Awaitable[None]]) -> Callable[[pytest.MonkeyPatch], None]:
         def run(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,7 +76,7 @@ NEVER, AT_ONCE = 1e6, 0.0
 
 
 @on_a_desk(NEVER)
-async def test_what_was_looked_at_last_comes_first(desk: Desk) -> None:
+async def test_the_last_document_looked_at_is_analysed_first(desk: Desk) -> None:
     await desk.open("a", "b", "c", "d")
     assert desk.begun == ["d"]
     desk.queue.looked_at("b")
@@ -85,13 +86,13 @@ async def test_what_was_looked_at_last_comes_first(desk: Desk) -> None:
 
 
 @on_a_desk(AT_ONCE)
-async def test_what_takes_long_gives_way_and_begins_anew(desk: Desk) -> None:
+async def test_a_long_analysis_gives_way_and_starts_again(desk: Desk) -> None:
     await desk.open("large")
     await desk.open("small")
     assert desk.begun == ["large", "small"]
     await desk.end()
     assert desk.begun == ["large", "small", "large"]
-    # What nobody looked at since waits for its turn.
+    # A document that the user has not looked at waits for its turn.
     desk.queue.put("other", again=True)
     await settled()
     assert desk.begun[3:] == []
@@ -101,7 +102,7 @@ async def test_what_takes_long_gives_way_and_begins_anew(desk: Desk) -> None:
 
 
 @on_a_desk(NEVER)
-async def test_it_gives_way_also_when_nothing_more_is_asked(desk: Desk) -> None:
+async def test_an_analysis_gives_way_when_time_passes(desk: Desk) -> None:
     await desk.open("large")
     await desk.open("small")
     assert desk.begun == ["large"]
@@ -113,19 +114,19 @@ async def test_it_gives_way_also_when_nothing_more_is_asked(desk: Desk) -> None:
 
 
 @on_a_desk(AT_ONCE)
-async def test_answers_wait_until_an_analysis_ends_that_had_to_give_way(desk: Desk) -> None:
-    asked = asyncio.ensure_future(desk.queue.answer("large"))
+async def test_answers_wait_for_an_analysis_that_gave_way(desk: Desk) -> None:
+    answer = asyncio.ensure_future(desk.queue.answer("large"))
     await settled()
     await desk.open("small")
     await desk.end()
     assert desk.begun == ["large", "small", "large"]
-    assert not asked.done()
+    assert not answer.done()
     await desk.end()
-    assert asked.result() is FOUND
+    assert answer.result() is FOUND
 
 
 @on_a_desk(NEVER)
-async def test_what_is_dropped_is_answered_by_nothing(desk: Desk) -> None:
+async def test_dropped_documents_are_answered_with_none(desk: Desk) -> None:
     working, waiting = (asyncio.ensure_future(desk.queue.answer(uri)) for uri in ("a", "b"))
     await settled()
     (first,) = desk.begun
@@ -137,19 +138,19 @@ async def test_what_is_dropped_is_answered_by_nothing(desk: Desk) -> None:
 
 
 @on_a_desk(NEVER)
-async def test_an_analysis_that_fails_does_not_stop_the_next(desk: Desk) -> None:
-    asked = asyncio.ensure_future(desk.queue.answer("a"))
+async def test_a_failed_analysis_does_not_stop_the_next(desk: Desk) -> None:
+    answer = asyncio.ensure_future(desk.queue.answer("a"))
     await settled()
     assert desk._now is not None
     desk._now.set_exception(OSError("no more processes"))
     await settled()
-    assert asked.result() is None
+    assert answer.result() is None
     await desk.open("b")
     assert desk.begun == ["a", "b"]
 
 
 @on_a_desk(AT_ONCE)
-async def test_nothing_gives_way_to_what_is_closed(desk: Desk) -> None:
+async def test_no_analysis_gives_way_to_a_closed_document(desk: Desk) -> None:
     server = create()
     server.queue = desk.queue
     server.protocol.set_writer(io.BytesIO())
@@ -161,7 +162,7 @@ async def test_nothing_gives_way_to_what_is_closed(desk: Desk) -> None:
 
 
 def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Path) -> None:
-    """They are opened together; the analysis of the large one never ends."""
+    """Both are opened together. The analysis of the large file never ends."""
     slow = client.open(tmp_path / "slow.tltl", ENDLESS)
     small = client.open(tmp_path / "small.tltl", "signal a: bool\nspec s = G (a or not a)\n")
     assert codes(client.diagnostics(small, bool)) == ["TLT0411"]
@@ -170,7 +171,7 @@ def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Pa
     assert codes(client.diagnostics(other, bool)) == ["TLT0411"]
 
 
-def test_tests_are_run_on_demand_while_a_large_file_is_analysed(client: Client, tmp_path: Path) -> None:
+def test_tests_run_on_demand_beside_a_long_analysis(client: Client, tmp_path: Path) -> None:
     client.open(tmp_path / "slow.tltl", ENDLESS)
     small = client.open(
         tmp_path / "small.tltl", 'signal a: bool\nspec s = F a\ntest "t" for s { step a  expect satisfied }\n'

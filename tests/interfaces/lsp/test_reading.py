@@ -1,4 +1,4 @@
-"""What helps to read a text: colours by what names stand for, folds, links, and names that are looked for."""
+"""Aids for reading: semantic colours, folds, links, hints, and the search for symbols."""
 
 from __future__ import annotations
 
@@ -46,19 +46,19 @@ test "t" for leave {
 
 
 def coloured(document: Document, numbers: list[int]) -> list[tuple[str, str, set[str]]]:
-    """The names with their types and modifiers, as an editor reads the numbers."""
+    """Return the names with their token types and modifiers, decoded as an editor does."""
     names = []
     line = column = 0
     for at in range(0, len(numbers), 5):
         down, right, length, kind, bits = numbers[at : at + 5]
         line, column = line + down, (0 if down else column) + right
         start = offset(document.source, types.Position(line, column))
-        modifiers = {each for bit, each in enumerate(LEGEND.token_modifiers) if bits >> bit & 1}
+        modifiers = {modifier for bit, modifier in enumerate(LEGEND.token_modifiers) if bits >> bit & 1}
         names.append((document.source.text[start : start + length], LEGEND.token_types[kind], modifiers))
     return names
 
 
-def test_names_are_coloured_by_what_they_stand_for() -> None:
+def test_names_are_coloured_by_their_kind() -> None:
     document, _, _ = opened(TEXT)
     names = coloured(document, tokens(document, "utf-16"))
     for expected in (
@@ -82,8 +82,8 @@ def test_names_are_coloured_by_what_they_stand_for() -> None:
 def test_blocks_statements_comments_and_imports_fold() -> None:
     document, _, _ = opened(TEXT)
     lines = TEXT.splitlines()
-    shown = [(lines[each.start_line], lines[each.end_line], each.kind) for each in folds(document)]
-    assert shown == [
+    folded = [(lines[fold.start_line], lines[fold.end_line], fold.kind) for fold in folds(document)]
+    assert folded == [
         ("import stealth", "import core as c", types.FoldingRangeKind.Imports),
         ("// One door,", "// and a switch.", types.FoldingRangeKind.Comment),
         ("let calm(limit_of, x: entity) =", "    and not near(x)", None),
@@ -93,21 +93,21 @@ def test_blocks_statements_comments_and_imports_fold() -> None:
     ]
 
 
-def test_what_can_be_read_of_a_broken_text_folds() -> None:
+def test_the_valid_part_of_a_broken_text_folds() -> None:
     document, _, _ = opened(TEXT.replace("entity s1", "entity (s1"))
     assert document.is_broken
     assert len(folds(document)) == 6
 
 
-def test_names_are_looked_for_by_their_letters() -> None:
+def test_symbols_are_found_by_their_letters() -> None:
     document, _, _ = opened(TEXT)
-    assert [each.name for each in found(document, "LV", "utf-16", "")] == ["leave"]
-    assert [each.name for each in found(document, "", "utf-16", "")] == [
+    assert [symbol.name for symbol in found(document, "LV", "utf-16", "")] == ["leave"]
+    assert [symbol.name for symbol in found(document, "", "utf-16", "")] == [
         *("s1", "door", "most", "noise", "calm", "leave", "t"),
     ]
 
 
-def test_an_editor_gets_them(client: Client, tmp_path: Path) -> None:
+def test_an_editor_gets_all_reading_aids(client: Client, tmp_path: Path) -> None:
     (tmp_path / "common.tltl").write_text("signal loud: bool\n", encoding="utf-8")
     text = 'import "common.tltl"\nspec hush {\n    keep not loud\n}\n'
     uri = client.open(tmp_path / "main.tltl", text)
@@ -118,14 +118,14 @@ def test_an_editor_gets_them(client: Client, tmp_path: Path) -> None:
     (link,) = client.ask("textDocument/documentLink", here)
     assert link["target"] == (tmp_path / "common.tltl").as_uri()
     assert link["range"] == {"start": {"line": 0, "character": 7}, "end": {"line": 0, "character": 20}}
-    assert [each["name"] for each in client.ask("workspace/symbol", {"query": "u"})] == ["hush", "loud"]
+    assert [symbol["name"] for symbol in client.ask("workspace/symbol", {"query": "u"})] == ["hush", "loud"]
 
 
 def test_every_name_of_the_examples_has_a_colour() -> None:
     for path in EXAMPLES:
         document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
         names = coloured(document, tokens(document, "utf-16"))
-        assert [name for name, _, _ in names] == [each.symbol.name for each in document.names]
+        assert [name for name, _, _ in names] == [occurrence.symbol.name for occurrence in document.names]
 
 
 TIMES = """\
@@ -140,12 +140,12 @@ spec s {
 
 
 def steps_behind(document: Document, span: Span) -> list[tuple[str, str]]:
-    """The hints of a part of a document, and the unit in front of each."""
-    found = []
+    """Return the hints in a part of a document, each with the unit before it."""
+    units_and_labels = []
     for hint in hints(document, span, "utf-16"):
         before = document.source.text[: offset(document.source, hint.position)]
-        found.append((before.split()[-1], str(hint.label)))
-    return found
+        units_and_labels.append((before.split()[-1], str(hint.label)))
+    return units_and_labels
 
 
 def test_times_are_shown_in_steps() -> None:
@@ -171,16 +171,16 @@ def test_the_client_of_these_tests_finds_diagnostics_that_came_before_an_answer(
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
-def test_a_named_pipe_keeps_nobody_waiting(client: Client, tmp_path: Path) -> None:
+def test_a_named_pipe_blocks_nothing(client: Client, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.tltl")
     (tmp_path / "link.tltl").symlink_to("pipe.tltl")
     (tmp_path / "plain.tltl").write_text("signal noise: ratio\n", encoding="utf-8")
-    assert [each["name"] for each in client.ask("workspace/symbol", {"query": "n"})] == ["noise"]
+    assert [symbol["name"] for symbol in client.ask("workspace/symbol", {"query": "n"})] == ["noise"]
     for name in ("pipe.tltl", "link.tltl"):
         uri = (tmp_path / name).as_uri()
         assert client.ask("textDocument/documentSymbol", {"textDocument": {"uri": uri}}) is None
-    # In the editor it is a text like any other.
+    # A document opened in the editor is an ordinary text, whatever its file is.
     uri = client.open(tmp_path / "pipe.tltl", 'import "link.tltl"\nsignal noisy: bool\n')
-    assert [each["name"] for each in client.ask("workspace/symbol", {"query": "noisy"})] == ["noisy"]
-    (said,) = client.diagnostics(uri, bool)
-    assert "link.tltl" in said["message"]
+    assert [symbol["name"] for symbol in client.ask("workspace/symbol", {"query": "noisy"})] == ["noisy"]
+    (diagnostic,) = client.diagnostics(uri, bool)
+    assert "link.tltl" in diagnostic["message"]

@@ -1,4 +1,4 @@
-"""Where names lead to, where else they stand, and giving them others."""
+"""Definitions, references and renaming."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ ALIASED = 'import "common.tltl" as c\nspec other = G c.lurking & F c.careful(G c
 
 
 def renamed(at: str, name: str, *, text: str = MAIN, folder: Path = Path("/nowhere"), **others: str) -> dict[str, str]:
-    """The texts after a rename of the name at a place, by the names of the files."""
+    """Rename the name at a place; return the new texts by the stems of their files."""
     document, offset, workspace = opened(text.replace(at, f"¦{at}", 1), folder, **others)
-    found = document.name_at(offset)
-    assert found is not None
-    changed = rename(found.symbol, name, workspace)
-    return {Path(each.source.name).stem: applied(each.source.text, edits) for each, edits in changed}
+    occurrence = document.name_at(offset)
+    assert occurrence is not None
+    changed = rename(occurrence.symbol, name, workspace)
+    return {Path(document_.source.name).stem: applied(document_.source.text, edits) for document_, edits in changed}
 
 
 @pytest.mark.parametrize(
@@ -55,13 +55,13 @@ def renamed(at: str, name: str, *, text: str = MAIN, folder: Path = Path("/nowhe
         ("leave {", "leave", "flee", 2),
     ],
 )
-def test_a_name_of_the_file(at: str, old: str, new: str, count: int) -> None:
+def test_a_name_is_renamed_in_its_file(at: str, old: str, new: str, count: int) -> None:
     texts = renamed(at, new.partition(" ")[0].partition("(")[0], common=LIBRARY)
     assert texts == {"main": MAIN.replace(old, new)}
     assert MAIN.count(old) == count
 
 
-def test_a_predicate_is_renamed_in_every_file_and_behind_its_alias() -> None:
+def test_a_predicate_is_renamed_in_every_file_and_after_its_alias() -> None:
     texts = renamed("lurking(least = most) or", "hidden", common=LIBRARY, aliased=ALIASED)
     assert texts == {
         "main": MAIN.replace("lurking", "hidden"),
@@ -70,23 +70,23 @@ def test_a_predicate_is_renamed_in_every_file_and_behind_its_alias() -> None:
     }
 
 
-def test_a_parameter_is_renamed_where_it_is_given_by_name() -> None:
+def test_a_parameter_is_renamed_in_keyword_arguments() -> None:
     texts = renamed("least = most) or", "lowest", common=LIBRARY)
     assert texts == {"main": MAIN.replace("least", "lowest"), "common": LIBRARY.replace("least", "lowest")}
 
 
-def test_a_signal_that_two_files_declare_is_one() -> None:
+def test_a_signal_declared_in_two_files_is_one_symbol() -> None:
     first = "signal n: ratio\nlet low = n < 10 %\n"
     main = 'import "first.tltl"\nimport "second.tltl"\nspec a = G (low and high)\n'
     second = first.replace("low", "high")
     texts = renamed("n: ratio", "level_of_noise", text=first, first=second, second=second)
-    # The files have nothing to do with each other until a third one imports both.
+    # The two files are unrelated until a third one imports both.
     assert set(texts) == {"main"}
     document, _, workspace = opened(main, first=first, second=second)
     symbol = workspace.named("/nowhere/first.tltl")
     assert symbol is not None
     changed = rename(symbol.names[0].symbol, "m", workspace)
-    assert sorted(Path(each.source.name).stem for each, _ in changed) == ["first", "second"]
+    assert sorted(Path(document_.source.name).stem for document_, _ in changed) == ["first", "second"]
     assert document.source.text == main
 
 
@@ -101,13 +101,13 @@ def test_a_signal_that_two_files_declare_is_one() -> None:
         ("leave {", "a.b", "TLT0771"),
     ],
 )
-def test_what_is_refused(at: str, name: str, code: str) -> None:
+def test_invalid_new_names_are_rejected(at: str, name: str, code: str) -> None:
     with pytest.raises(TltlError) as refusal:
         renamed(at, name, common=LIBRARY)
     assert refusal.value.diagnostics[0].code == code
 
 
-def test_a_name_that_would_catch_another_one_is_refused() -> None:
+def test_a_name_that_would_capture_another_is_rejected() -> None:
     text = "entity door, gate\nsignal at(x: entity): bool\nspec a = all x in (door, gate): F (at(x) or at(gate))\n"
     with pytest.raises(TltlError, match="TLT0771"):
         renamed("x in (door", "gate", text=text)
@@ -115,7 +115,7 @@ def test_a_name_that_would_catch_another_one_is_refused() -> None:
     assert set(renamed("x in (door", "gate", text=harmless)) == {"main"}
 
 
-def test_a_name_of_a_library_is_refused() -> None:
+def test_names_of_a_library_cannot_be_renamed() -> None:
     text = (
         "import stealth\nentity s1\nsignal health: ratio in [0, 1]\nspec a = F near(s1) & G alive & F health > 50 %\n"
     )
@@ -129,20 +129,21 @@ def test_references_are_found_in_files_that_are_not_open(tmp_path: Path) -> None
     (tmp_path / "common.tltl").write_text(LIBRARY, encoding="utf-8")
     (tmp_path / "aliased.tltl").write_text(ALIASED, encoding="utf-8")
     document, offset, workspace = opened(MAIN.replace("careful(F", "¦careful(F"), tmp_path)
-    found = document.name_at(offset)
-    assert found is not None
-    places = {Path(each.source.name).stem: len(at) for each, at in references(found.symbol, workspace)}
+    occurrence = document.name_at(offset)
+    assert occurrence is not None
+    places = {Path(document_.source.name).stem: len(at) for document_, at in references(occurrence.symbol, workspace)}
     assert places == {"main": 1, "common": 1, "aliased": 1}
-    assert found.symbol.source.name == str(tmp_path / "common.tltl")
-    assert found.symbol.source.slice(found.symbol.span) == "careful"
+    assert occurrence.symbol.source.name == str(tmp_path / "common.tltl")
+    assert occurrence.symbol.source.slice(occurrence.symbol.span) == "careful"
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_a_rename_changes_names_alone(path: Path) -> None:
-    """Every name that an example declares gets another one, and back again; what is said stays as it was."""
+def test_a_rename_changes_only_names(path: Path) -> None:
+    """Every name that an example declares is renamed and renamed back; the diagnostics stay the
+    same."""
     text = path.read_text(encoding="utf-8")
     document, _, workspace = opened(text)
-    own = {each.symbol.key: each.symbol for each in document.names if each.declares}
+    own = {diagnostic.symbol.key: diagnostic.symbol for diagnostic in document.names if diagnostic.declares}
     assert own
     for symbol in own.values():
         try:
@@ -152,22 +153,22 @@ def test_a_rename_changes_names_alone(path: Path) -> None:
             continue
         changed = applied(text, edits)
         after, _, workspace_after = opened(changed)
-        assert [each.code for each in after.said] == [each.code for each in document.said]
+        assert [diagnostic.code for diagnostic in after.said] == [diagnostic.code for diagnostic in document.said]
         assert len(after.names) == len(document.names)
-        again = after.name_at(changed.index("another_name"))
-        assert again is not None
-        ((_, back),) = rename(again.symbol, symbol.name, workspace_after)
+        renamed_occurrence = after.name_at(changed.index("another_name"))
+        assert renamed_occurrence is not None
+        ((_, back),) = rename(renamed_occurrence.symbol, symbol.name, workspace_after)
         assert applied(changed, back) == text
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_tests_pass_after_a_rename(path: Path) -> None:
-    """Also those that expect a state, whose label has names in it."""
+    """This includes tests that expect a state whose label contains names."""
     text = path.read_text(encoding="utf-8")
     document, _, workspace = opened(text)
     before = analyse(Request(document.source, (), {}, {}))
-    for name in {each.symbol.name: None for each in document.names if each.declares}:
-        symbol = next(each.symbol for each in document.names if each.symbol.name == name)
+    for name in {occurrence.symbol.name: None for occurrence in document.names if occurrence.declares}:
+        symbol = next(occurrence.symbol for occurrence in document.names if occurrence.symbol.name == name)
         with suppress(TltlError):
             ((_, edits),) = rename(symbol, f"{name}_x", workspace)
             text = applied(text, edits)
@@ -175,8 +176,8 @@ def test_tests_pass_after_a_rename(path: Path) -> None:
     after = analyse(Request(document.source, (), {}, {}))
     assert "_x" in text
     assert after.failures == before.failures == ()
-    assert [(each.states, each.passed) for each in after.figures] == [
-        (each.states, each.passed) for each in before.figures
+    assert [(figures.states, figures.passed) for figures in after.figures] == [
+        (figures.states, figures.passed) for figures in before.figures
     ]
 
 
@@ -189,16 +190,16 @@ def test_the_label_of_a_state_has_no_aliases() -> None:
     assert texts["main"] == main.replace("lurking", "hidden")
 
 
-def test_a_closed_file_counts_as_it_is_now(tmp_path: Path) -> None:
+def test_a_closed_file_counts_with_its_saved_text(tmp_path: Path) -> None:
     (tmp_path / "common.tltl").write_text(LIBRARY, encoding="utf-8")
     other = tmp_path / "other.tltl"
     document, offset, workspace = opened(MAIN.replace("careful(F", "¦careful(F"), tmp_path)
-    found = document.name_at(offset)
-    assert found is not None
-    assert len(references(found.symbol, workspace)) == 2
+    occurrence = document.name_at(offset)
+    assert occurrence is not None
+    assert len(references(occurrence.symbol, workspace)) == 2
     other.write_text(ALIASED, encoding="utf-8")
-    assert len(references(found.symbol, workspace)) == 3
+    assert len(references(occurrence.symbol, workspace)) == 3
     other.write_text("signal careful: bool\n", encoding="utf-8")
-    assert len(references(found.symbol, workspace)) == 2
+    assert len(references(occurrence.symbol, workspace)) == 2
     other.unlink()
-    assert len(references(found.symbol, workspace)) == 2
+    assert len(references(occurrence.symbol, workspace)) == 2

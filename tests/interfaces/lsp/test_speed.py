@@ -1,4 +1,5 @@
-"""What a keystroke costs: syntax and names of a file of 500 lines, beside a bare parse of it; and long lines."""
+"""The cost of a keystroke in a file of 500 lines, compared with a parse of it; and the cost of long
+lines."""
 
 from __future__ import annotations
 
@@ -42,7 +43,7 @@ test "t%d" for s%d {
 """
 TEXT = "import stealth\nentity s1, s2, exit\n" + "".join(SPEC % (i, i, i) for i in range(36))
 MOST_PARSES = 6.0
-"""Measured: 2.4."""
+"""The measured value is 2.4."""
 
 
 def test_a_keystroke_costs_a_few_parses(tmp_path: Path) -> None:
@@ -56,21 +57,21 @@ def test_a_keystroke_costs_a_few_parses(tmp_path: Path) -> None:
         workspace.put(uri, version, TEXT + f"// {version}")
         document = workspace.document(uri)
         assert document is not None
-        assert [remark(each, document, "utf-16", uri_of) for each in document.said] == []
+        assert [remark(diagnostic, document, "utf-16", uri_of) for diagnostic in document.said] == []
 
-    keystroke()  # the libraries are read
-    parse(SourceFile("many.tltl", TEXT))  # the tables of the grammar are read
+    keystroke()  # Warm up: read the libraries.
+    parse(SourceFile("many.tltl", TEXT))  # Warm up: read the tables of the grammar.
     assert calls(keystroke) < MOST_PARSES * calls(lambda: parse(SourceFile("many.tltl", TEXT)))
 
 
-def test_an_editor_gets_its_answers(client: Client, tmp_path: Path) -> None:
-    """With the process, the protocol and the pause in which changes are gathered."""
+def test_an_editor_gets_diagnostics_after_each_change(client: Client, tmp_path: Path) -> None:
+    """This includes the process, the protocol and the pause in which changes are collected."""
     uri = client.open(tmp_path / "many.tltl", TEXT)
     client.diagnostics(uri)
     for version in range(2, 9):
         client.change(uri, TEXT + f"spec wrong{version} = neer\n", version)
-        (said,) = client.diagnostics(uri, bool)
-        assert "`neer`" in said["message"]
+        (diagnostic,) = client.diagnostics(uri, bool)
+        assert "`neer`" in diagnostic["message"]
 
 
 LONG_LINE = "signal a: bool let b = □ %sa"
@@ -82,14 +83,14 @@ def _tokens(document: Document, _: Workspace) -> object:
 
 
 def _ranges(document: Document, _: Workspace) -> object:
-    return [range_of(document.source, each.span, UTF_16) for each in document.names]
+    return [range_of(document.source, occurrence.span, UTF_16) for occurrence in document.names]
 
 
 def _offsets(document: Document, _: Workspace) -> object:
     return [offset(document.source, types.Position(0, column)) for column in range(0, len(document.names), 10)]
 
 
-def _said(document: Document, _: Workspace) -> object:
+def _diagnostics(document: Document, _: Workspace) -> object:
     return document.said
 
 
@@ -101,50 +102,50 @@ WORK: dict[str, tuple[Callable[[Document, Workspace], object], str, str]] = {
     "semantic tokens": (_tokens, LONG_LINE, "a & "),
     "highlights": (_ranges, LONG_LINE, "a & "),
     "offsets": (_offsets, LONG_LINE, "a & "),
-    "messages on a broken text": (_said, BROKEN, "let x# = missing#\n"),
+    "messages on a broken text": (_diagnostics, BROKEN, "let x# = missing#\n"),
     "renaming": (_rename, LONG_LINE, "a & "),
 }
 
 
 @pytest.mark.parametrize(("work", "text", "piece"), WORK.values(), ids=WORK)
-def test_twice_the_text_is_twice_the_work(work: Callable[..., object], text: str, piece: str) -> None:
+def test_the_work_is_linear_in_the_text(work: Callable[..., object], text: str, piece: str) -> None:
     def cost(count: int) -> int:
         document, _, workspace = opened(text % "".join(piece.replace("#", str(number)) for number in range(count)))
         assert document.resolution
         return calls(lambda: work(document, workspace))
 
-    cost(1)  # the tables of the grammar are read
+    cost(1)  # Warm up: read the tables of the grammar.
     assert cost(800) < 3 * cost(400)
 
 
 def test_symbols_read_each_declaration_once(monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[object] = []
 
-    def noting(declaration: Any, *arguments: Any, **options: Any) -> str:
+    def recording(declaration: Any, *arguments: Any, **options: Any) -> str:
         read.append(declaration)
-        return shown(declaration, *arguments, **options)
+        return original(declaration, *arguments, **options)
 
-    shown = symbols.declaration_text
-    monkeypatch.setattr(symbols, "declaration_text", noting)
+    original = symbols.declaration_text
+    monkeypatch.setattr(symbols, "declaration_text", recording)
     document, _, _ = opened(f"entity {', '.join(f'e{i}' for i in range(50))}")
     assert len(symbols.symbols(document, UTF_16)) == 50
-    assert [type(each) for each in read] == [EntityDecl]
+    assert [type(declaration) for declaration in read] == [EntityDecl]
 
 
-def test_the_label_of_a_state_is_read_without_the_text_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_label_of_a_state_is_parsed_on_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     sizes: list[int] = []
 
-    def noting(source: SourceFile) -> Any:
+    def recording(source: SourceFile) -> Any:
         sizes.append(len(source.text))
         return parse_formula(source)
 
     parse_formula = names.parse_formula
-    monkeypatch.setattr(names, "parse_formula", noting)
+    monkeypatch.setattr(names, "parse_formula", recording)
     label = 'step a\n    expect state "F a"\n'
     document, _, _ = opened(f'signal a: bool\nspec s = F a\ntest "t" for s {{\n{label * 30}}}')
-    found = [each.span for each in document.names if each.symbol.name == "a"]
-    assert {document.source.slice(each) for each in found} == {"a"}
-    assert len(found) == 2 + 2 * 30
+    spans = [occurrence.span for occurrence in document.names if occurrence.symbol.name == "a"]
+    assert {document.source.slice(span) for span in spans} == {"a"}
+    assert len(spans) == 2 + 2 * 30
     assert set(sizes) == {len("F a")}
 
 

@@ -1,4 +1,4 @@
-"""What stays while a text is being written, and what is done again only where that is needed."""
+"""Results that are kept while a text is being edited, and work that is not repeated."""
 
 from __future__ import annotations
 
@@ -16,42 +16,42 @@ IDLE = "spec idle = G (alive or not alive)\n"
 
 def titles(client: Client, uri: str) -> list[str]:
     lenses = client.ask("textDocument/codeLens", {"textDocument": {"uri": uri}})
-    return [each["command"]["title"] for each in lenses]
+    return [lens["command"]["title"] for lens in lenses]
 
 
-def test_lenses_and_remarks_stay_while_the_text_is_broken(client: Client, tmp_path: Path) -> None:
+def test_lenses_and_diagnostics_stay_while_the_text_is_broken(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "leave.tltl", SPEC + IDLE)
     (before,) = client.diagnostics(uri, bool)
-    shown = titles(client, uri)
-    assert shown == ["4 states, distance 2", "1 test passes", "1 state, distance 0"]
+    lens_titles = titles(client, uri)
+    assert lens_titles == ["4 states, distance 2", "1 test passes", "1 state, distance 0"]
     client.change(uri, "signal (\n" + SPEC + IDLE, 2)
-    found = client.diagnostics(uri, lambda found: len(found) > 1)
-    (after,) = (each for each in found if each["code"] == "TLT0411")
+    diagnostics = client.diagnostics(uri, lambda diagnostics: len(diagnostics) > 1)
+    (after,) = (diagnostic for diagnostic in diagnostics if diagnostic["code"] == "TLT0411")
     assert after["range"]["start"]["line"] == before["range"]["start"]["line"] + 1
-    assert titles(client, uri) == shown
-    # Of what is being edited, nothing is said that may not be so any more.
+    assert titles(client, uri) == lens_titles
+    # A diagnostic on edited code is dropped, since it may no longer be true.
     client.change(uri, SPEC + IDLE.replace("idle", "idler"), 3)
-    assert client.diagnostics(uri, lambda found: not found) == []
+    assert client.diagnostics(uri, lambda diagnostics: not diagnostics) == []
     assert codes(client.diagnostics(uri, bool)) == ["TLT0411"]
 
 
-def test_a_remark_stays_with_its_words() -> None:
+def test_a_diagnostic_moves_with_its_words() -> None:
     text = "signal a: bool\nspec s = G (a or not a)\n// end\n"
     document, _, _ = opened(text)
-    found = analyse(Request(document.source, (), {}, {}))
-    (said,) = found.said
-    place = document.source.slice(said.labels[0].span)
+    analysis = analyse(Request(document.source, (), {}, {}))
+    (diagnostic,) = analysis.said
+    place = document.source.slice(diagnostic.labels[0].span)
     for edited in ("// é\r\n" + text, text + "spec t = ", text.replace("bool", "ratio"), text):
         now, _, _ = opened(edited)
-        (left,) = kept(document, found, now)
-        assert left.labels[0].source == now.source
-        assert now.source.slice(left.labels[0].span) == place
+        (moved,) = kept(document, analysis, now)
+        assert moved.labels[0].source == now.source
+        assert now.source.slice(moved.labels[0].span) == place
     for edited in (text.replace("s =", "st ="), text.replace("spec s", "spec  s"), ""):
         now, _, _ = opened(edited)
-        assert kept(document, found, now) == ()
+        assert kept(document, analysis, now) == ()
 
 
-def test_a_file_that_is_saved_is_looked_at_no_more(client: Client, tmp_path: Path) -> None:
+def test_saving_an_open_file_publishes_nothing(client: Client, tmp_path: Path) -> None:
     common = tmp_path / "common.tltl"
     common.write_text("signal loud: bool\n", encoding="utf-8")
     uri = client.open(common, "signal loud: bool\n")
@@ -59,19 +59,19 @@ def test_a_file_that_is_saved_is_looked_at_no_more(client: Client, tmp_path: Pat
     client.diagnostics(uri)
     client.diagnostics(main)
     client.diagnostics(main)
-    while len(client.said_of(uri)) < 2:
+    while len(client.published(uri)) < 2:
         client.diagnostics(uri)
     assert titles(client, main) == ["2 states, distance 0"]
     common.write_text("signal loud: bool\n\n", encoding="utf-8")
-    before = client.said_of(uri), client.said_of(main)
+    before = client.published(uri), client.published(main)
     client.tell("workspace/didChangeWatchedFiles", {"changes": [{"uri": uri, "type": 2}]})
-    # What is said of a document that is opened after that comes behind what would be said of these.
+    # Diagnostics of a document that is opened now would arrive after any that were published for the others.
     other = client.open(tmp_path / "other.tltl", IDLE.replace("alive", "true"))
     assert codes(client.diagnostics(other, bool)) == ["TLT0411"]
-    assert (client.said_of(uri), client.said_of(main)) == before
+    assert (client.published(uri), client.published(main)) == before
 
 
-def test_changes_of_files_matter_to_those_that_are_made_of_them(client: Client, tmp_path: Path) -> None:
+def test_a_changed_file_affects_only_its_importers(client: Client, tmp_path: Path) -> None:
     main = client.open(tmp_path / "main.tltl", 'import "common.tltl"\nspec hush = quiet\n')
     other = client.open(tmp_path / "other.tltl", "signal a: bool\nspec s = F a\n")
     assert codes(client.diagnostics(main, bool)) == ["TLT0010"]
@@ -81,11 +81,11 @@ def test_changes_of_files_matter_to_those_that_are_made_of_them(client: Client, 
     client.tell(
         "workspace/didChangeWatchedFiles", {"changes": [{"uri": (tmp_path / "common.tltl").as_uri(), "type": 1}]}
     )
-    assert client.diagnostics(main, lambda found: not found) == []
-    assert len(client.said_of(other)) == 2
+    assert client.diagnostics(main, lambda diagnostics: not diagnostics) == []
+    assert len(client.published(other)) == 2
 
 
-def test_a_folder_with_an_imported_file_is_renamed(client: Client, tmp_path: Path) -> None:
+def test_a_renamed_folder_affects_its_importers(client: Client, tmp_path: Path) -> None:
     (tmp_path / "shared").mkdir()
     (tmp_path / "shared" / "common.tltl").write_text("signal loud: bool\n", encoding="utf-8")
     main = client.open(tmp_path / "main.tltl", 'import "shared/common.tltl"\nspec hush = G !loud\n')
@@ -96,11 +96,11 @@ def test_a_folder_with_an_imported_file_is_renamed(client: Client, tmp_path: Pat
     assert codes(client.diagnostics(main, bool)) == ["TLT0010"]
     (tmp_path / "common").rename(tmp_path / "shared")
     client.tell("workspace/didDeleteFiles", {"files": [{"uri": (tmp_path / "common").as_uri()}]})
-    assert client.diagnostics(main, lambda found: not found) == []
+    assert client.diagnostics(main, lambda diagnostics: not diagnostics) == []
 
 
-def test_project_files_of_several_folders(client: Client, tmp_path: Path) -> None:
-    """One that is wrong stays so, whatever is written beside another one."""
+def test_project_files_of_several_folders_are_independent(client: Client, tmp_path: Path) -> None:
+    """An error in one project file stays, whatever is changed beside another one."""
     (tmp_path / "inner").mkdir()
     outer = tmp_path / "tltl.toml"
     outer.write_text("libaries = []\n", encoding="utf-8")
@@ -111,13 +111,13 @@ def test_project_files_of_several_folders(client: Client, tmp_path: Path) -> Non
     client.diagnostics(inner)
     client.change(inner, "signal c: bool\n")
     client.diagnostics(inner)
-    assert [codes(each) for each in client.said_of(outer.as_uri())] == [["TLT0702"]]
+    assert [codes(diagnostics) for diagnostics in client.published(outer.as_uri())] == [["TLT0702"]]
     outer.unlink()
     client.tell("workspace/didChangeWatchedFiles", {"changes": [{"uri": outer.as_uri(), "type": 3}]})
     assert client.diagnostics(outer.as_uri()) == []
 
 
-def test_edits_are_for_the_version_that_they_were_made_for(tmp_path: Path) -> None:
+def test_edits_name_the_version_of_their_document(tmp_path: Path) -> None:
     client = Client(tmp_path, workspace={"workspaceEdit": {"documentChanges": True}})
     (tmp_path / "common.tltl").write_text("signal loud: bool\n", encoding="utf-8")
     text = 'import "common.tltl"\nspec hush = G !loud\n'
@@ -125,25 +125,25 @@ def test_edits_are_for_the_version_that_they_were_made_for(tmp_path: Path) -> No
     client.change(uri, text + "\n", 7)
     changes = client.at("rename", uri, text, "loud", newName="noisy")["documentChanges"]
     assert sorted(
-        (each["textDocument"]["uri"].rpartition("/")[2], each["textDocument"]["version"]) for each in changes
+        (change["textDocument"]["uri"].rpartition("/")[2], change["textDocument"]["version"]) for change in changes
     ) == [
         ("common.tltl", None),
         ("main.tltl", 7),
     ]
     client.change(uri, text.replace("loud", "luod"), 8)
-    (found,) = client.diagnostics(uri, bool)
-    where = {"textDocument": {"uri": uri}, "range": found["range"], "context": {"diagnostics": [found]}}
-    (action,) = client.ask("textDocument/codeAction", where)
+    (diagnostic,) = client.diagnostics(uri, bool)
+    params = {"textDocument": {"uri": uri}, "range": diagnostic["range"], "context": {"diagnostics": [diagnostic]}}
+    (action,) = client.ask("textDocument/codeAction", params)
     (change,) = action["edit"]["documentChanges"]
     assert (change["textDocument"]["version"], change["edits"][0]["newText"]) == (8, "loud")
-    where["context"]["only"] = ["source.fixAll"]
-    assert client.ask("textDocument/codeAction", where) is None
-    where["context"]["only"] = ["quickfix"]
-    assert len(client.ask("textDocument/codeAction", where)) == 1
+    params["context"]["only"] = ["source.fixAll"]
+    assert client.ask("textDocument/codeAction", params) is None
+    params["context"]["only"] = ["quickfix"]
+    assert len(client.ask("textDocument/codeAction", params)) == 1
     assert client.close() == 0
 
 
-def test_folders_that_are_added_are_looked_through(client: Client, tmp_path: Path) -> None:
+def test_added_folders_are_searched(client: Client, tmp_path: Path) -> None:
     added = tmp_path.parent / f"{tmp_path.name}_added"
     added.mkdir()
     (tmp_path / "common.tltl").write_text("signal loud: bool\n", encoding="utf-8")
@@ -159,7 +159,7 @@ def test_folders_that_are_added_are_looked_through(client: Client, tmp_path: Pat
     assert set(client.at("rename", uri, "signal loud: bool\n", "loud", newName="noisy")["changes"]) == {uri}
 
 
-def test_tests_that_could_not_run(client: Client, tmp_path: Path) -> None:
+def test_tests_that_could_not_run_are_reported(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "leave.tltl", SPEC)
     request = {"command": "tltlc.runTests", "arguments": [uri, "leave"]}
     client.start("workspace/executeCommand", request)
@@ -168,14 +168,14 @@ def test_tests_that_could_not_run(client: Client, tmp_path: Path) -> None:
     assert text == "the tests of `leave` did not run: a text changed, or its automata take over 60 s"
 
 
-def test_what_takes_long_gives_way_to_what_is_being_written(client: Client, tmp_path: Path) -> None:
+def test_a_long_analysis_gives_way_to_the_edited_document(client: Client, tmp_path: Path) -> None:
     slow = client.open(tmp_path / "slow.tltl", ENDLESS)
     assert client.diagnostics(slow) == []
     uri = client.open(tmp_path / "main.tltl", "signal a: bool\n")
     assert client.diagnostics(uri) == []
     assert client.diagnostics(uri) == []
     for version in (2, 3):
-        # It is begun anew after each analysis that it gave way to.
+        # It starts again after each analysis to which it gave way.
         client.until_it_analyses(version - 1)
         client.change(uri, f"signal a{version}: bool\nspec s = G (a{version} or not a{version})\n", version)
         assert client.diagnostics(uri) == []
@@ -189,10 +189,10 @@ def test_hints_follow_the_clock_of_another_file(tmp_path: Path) -> None:
     client = Client(tmp_path, workspace={"inlayHint": {"refreshSupport": True}})
     common = client.open(tmp_path / "common.tltl", "clock 20 Hz\nsignal a: bool\n")
     main = client.open(tmp_path / "main.tltl", 'import "common.tltl"\nspec s = F within 2 s a\n')
-    asked = {"textDocument": {"uri": main}, "range": {"start": {"line": 0, "character": 0}, "end": END}}
+    params = {"textDocument": {"uri": main}, "range": {"start": {"line": 0, "character": 0}, "end": END}}
 
     def hints() -> list[tuple[int, str]]:
-        return [(each["position"]["character"], each["label"]) for each in client.ask("textDocument/inlayHint", asked)]
+        return [(hint["position"]["character"], hint["label"]) for hint in client.ask("textDocument/inlayHint", params)]
 
     def refreshed() -> None:
         client._next(lambda message: message.get("method") == "workspace/inlayHint/refresh")

@@ -1,4 +1,4 @@
-"""The process that analyses, where the machine has none to give."""
+"""The analysis process on a machine that cannot start another process."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from tltlc.interfaces.lsp.analysis import Request
 from tltlc.interfaces.lsp.worker import Worker
 
 
-def test_where_no_process_can_be_started_the_next_analysis_tries_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_next_analysis_retries_after_a_failed_start(monkeypatch: pytest.MonkeyPatch) -> None:
     request = Request(SourceFile("a.tltl", "signal a: bool\nspec x = F a\n"), (), {}, {})
     context = multiprocessing.get_context("spawn")
     failing = iter([OSError(11, "Resource temporarily unavailable")])
     start = context.Process.start
 
-    def started(process: multiprocessing.context.SpawnProcess) -> None:
+    def failing_start(process: multiprocessing.context.SpawnProcess) -> None:
         for error in failing:
             raise error
         start(process)
 
-    monkeypatch.setattr(context.Process, "start", started)
+    monkeypatch.setattr(context.Process, "start", failing_start)
 
     async def analyses() -> list[object]:
         worker = Worker()
@@ -32,5 +32,5 @@ def test_where_no_process_can_be_started_the_next_analysis_tries_again(monkeypat
         finally:
             worker.abandon()
 
-    none, found = asyncio.run(analyses())
-    assert none is None and found is not None
+    first, second = asyncio.run(analyses())
+    assert first is None and second is not None

@@ -1,4 +1,4 @@
-"""However texts and files came to be as they are, what is said of them is what would be said of them anew."""
+"""Incremental updates of the workspace give the same results as a new workspace."""
 
 from __future__ import annotations
 
@@ -45,45 +45,46 @@ Said = tuple[Diagnostic, ...]
 
 
 def said_of(workspace: Workspace, uri: str) -> tuple[Said, Said]:
-    """What is said of a document and of its project, less the advice, for which whole folders are looked through."""
+    """Return the diagnostics of a document and of its project, without help and fixes, which search
+    whole folders."""
     document = workspace.document(uri)
     assert document is not None
-    said = tuple(replace(each, help=None, fixes=()) for each in document.said)
-    return said, workspace.project(document.source.name)[1]
+    diagnostics = tuple(replace(diagnostic, help=None, fixes=()) for diagnostic in document.said)
+    return diagnostics, workspace.project(document.source.name)[1]
 
 
 @given(st.integers(0, 2), st.lists(STEPS, min_size=1, max_size=12))
 @settings(max_examples=200)
-def test_every_history_ends_the_same(main: int, steps: list[tuple[str, str, int]]) -> None:
+def test_every_history_gives_the_results_of_a_new_workspace(main: int, steps: list[tuple[str, str, int]]) -> None:
     times = count(1)
     with TemporaryDirectory() as place:
         folder = Path(place)
         (folder / "shared").mkdir()
         workspace, shown, texts = Workspace(), {}, {}
-        for what, name, number in (*BEGINNING, ("type", "main.tltl", main), *steps):
+        for action, name, number in (*BEGINNING, ("type", "main.tltl", main), *steps):
             file, text = folder / name, TEXTS[name][number % len(TEXTS[name])]
             uri = file.as_uri()
-            if what == "type":
+            if action == "type":
                 texts[uri] = text
                 touched = workspace.put(uri, None, text)
-            elif what == "close":
+            elif action == "close":
                 texts.pop(uri, None)
                 shown.pop(uri, None)
                 touched = workspace.close(uri)
             else:
-                if what == "write":
+                if action == "write":
                     file.write_text(text, encoding="utf-8")
-                    # The clock of files is too slow for such a hand.
+                    # The file system's clock is too coarse for edits this fast, so the times are set.
                     os.utime(file, ns=(next(times), next(times)))
                 else:
                     file.unlink(missing_ok=True)
                 touched = workspace.refresh()
-            for each in touched:
-                shown[each] = said_of(workspace, each)
-        anew = Workspace()
+            for changed_uri in touched:
+                shown[changed_uri] = said_of(workspace, changed_uri)
+        fresh = Workspace()
         for uri, text in texts.items():
-            anew.put(uri, None, text)
-        assert shown == {uri: said_of(anew, uri) for uri in texts}
+            fresh.put(uri, None, text)
+        assert shown == {uri: said_of(fresh, uri) for uri in texts}
 
 
 def test_pipes_in_the_folders_of_the_workspace_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,4 +93,4 @@ def test_pipes_in_the_folders_of_the_workspace_are_not_read(tmp_path: Path, monk
     pipes.forbid(monkeypatch)
     workspace = Workspace()
     workspace.folders = [str(tmp_path)]
-    assert [Path(each.source.name).name for each in workspace.all()] == ["main.tltl"]
+    assert [Path(document.source.name).name for document in workspace.all()] == ["main.tltl"]

@@ -1,4 +1,4 @@
-"""Documents without an editor."""
+"""Documents for tests without an editor."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.workspace import Workspace
 
 MARK = "¦"
-"""Where the cursor is in a text."""
+"""Marks the cursor in a text."""
 
 ENDLESS = f"signal a: bool\nspec slow = F a\n{NEVER_ENDS}"
-"""In the servers of :mod:`tests.interfaces.lsp.client` its analysis never ends."""
+"""A text whose analysis never ends in the servers of :mod:`tests.interfaces.lsp.client`."""
 
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.tltl"))
 
 
 def opened(marked: str, folder: Path | None = None, **others: str) -> tuple[Document, int, Workspace]:
-    """A document, the place of the mark in it, and its workspace; other files by their names, open as well."""
+    """Return a document, the position of the mark in it, and its workspace; ``others`` are open
+    files by name."""
     text, at = marked.replace(MARK, ""), max(0, marked.find(MARK))
     folder = folder or Path("/nowhere")
     workspace = Workspace()

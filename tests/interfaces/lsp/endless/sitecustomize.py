@@ -1,7 +1,8 @@
-"""Python runs this as each process of a test's server starts: the analysis of a text that says so never ends.
+"""Python runs this file at the start of each process of a test's server. It makes the analysis of
+marked texts endless.
 
-So nothing depends on how long an automaton takes. ``BEGUN`` in the environment names a file that gets a line for each
-such analysis.
+So no test depends on how long it takes to build an automaton. The environment variable ``BEGUN``
+names a file that gets a line for each such analysis.
 """
 
 from __future__ import annotations
