@@ -1,4 +1,4 @@
-"""Neovim without a screen, given keys and asked what it shows."""
+"""A headless Neovim that gets keys, and whose state can be queried."""
 
 from __future__ import annotations
 
@@ -20,22 +20,23 @@ PROGRAM = os.environ.get("NVIM") or shutil.which("nvim")
 
 
 def version() -> tuple[int, ...]:
-    """(0, 11, 4), for example."""
-    said = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, timeout=HANG_S).stdout
-    found = re.search(r"v(\d+)\.(\d+)\.(\d+)", said)
-    assert found, said
-    return tuple(map(int, found.groups()))
+    """The version of Neovim, for example (0, 11, 4)."""
+    output = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, timeout=HANG_S).stdout
+    match = re.search(r"v(\d+)\.(\d+)\.(\d+)", output)
+    assert match, output
+    return tuple(map(int, match.groups()))
 
 
 def settings() -> str:
-    """What the guide has for this version in `init.lua`, of which the last block is for those before 0.11."""
+    """The guide's settings in `init.lua` for this version. The guide's last block is for versions
+    before 0.11."""
     part = GUIDE.read_text(encoding="utf-8").partition("## Neovim\n")[2].partition("\n## ")[0]
     blocks = re.findall(r"```lua\n(.*?)```", part, re.DOTALL)
     return "\n".join(blocks[:-1] if version() >= (0, 11) else blocks[-1:])
 
 
 class Neovim:
-    """One that runs in a folder, with the `tltlc` of this checkout."""
+    """A Neovim that runs in a folder, with the `tltlc` of this checkout."""
 
     def __init__(self, home: Path, folder: Path) -> None:
         programs = home / "bin"
@@ -49,7 +50,10 @@ class Neovim:
         self._environment = {
             **os.environ,
             "HOME": str(home),
-            **{f"XDG_{each}_HOME": str(home / each.lower()) for each in ("CONFIG", "DATA", "STATE", "CACHE")},
+            **{
+                f"XDG_{directory}_HOME": str(home / directory.lower())
+                for directory in ("CONFIG", "DATA", "STATE", "CACHE")
+            },
             "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
             "PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)]),
             "TLTLC_CACHE_DIR": "",
@@ -67,28 +71,29 @@ class Neovim:
         self.until(self._answers, "Neovim to start")
 
     def keys(self, text: str) -> None:
-        """Type, with `<CR>`, `<Esc>` and the like for keys that are no signs."""
+        """Type keys; special keys are written `<CR>`, `<Esc>` and so on."""
         self._remote("--remote-send", text)
 
     def lua(self, expression: str) -> Any:
-        """The value of an expression in Lua."""
-        # By way of a file: some versions print an answer to standard error, and no more than its first thousand signs.
+        """Return the value of a Lua expression."""
+        # The answer goes through a file: some versions print it to standard error, and only its first 1,000
+        # characters.
         answer = self.home / "answer.json"
         quoted = expression.replace("'", "''")
         self._remote("--remote-expr", f"writefile([json_encode(luaeval('{quoted}'))], '{answer}')")
         return json.loads(answer.read_text(encoding="utf-8"))
 
     def lines(self) -> list[str]:
-        """The text that is shown."""
-        found: list[str] = self.lua("vim.api.nvim_buf_get_lines(0, 0, -1, true)")
-        return found
+        """The text of the current buffer, in lines."""
+        buffer_lines: list[str] = self.lua("vim.api.nvim_buf_get_lines(0, 0, -1, true)")
+        return buffer_lines
 
     def diagnostics(self) -> list[str]:
-        """The messages at the text that is shown."""
-        return [each["message"] for each in self.lua("vim.diagnostic.get(0)")]
+        """The messages of the diagnostics in the current buffer."""
+        return [diagnostic["message"] for diagnostic in self.lua("vim.diagnostic.get(0)")]
 
     def until(self, holds: Callable[[], Any], what: str) -> Any:
-        """Wait until something is there, and give it back."""
+        """Wait until ``holds`` returns something true, and return it."""
 
         def happened() -> Any:
             assert self.process.poll() is None, self.errors()
@@ -97,22 +102,22 @@ class Neovim:
         return until(happened, what, 0.1)
 
     def errors(self) -> str:
-        """The end of what Neovim wrote."""
+        """The last 1,000 characters that Neovim wrote."""
         return (self.home / "errors").read_text(encoding="utf-8")[-1000:]
 
     def left(self) -> list[str]:
-        """The commands of the processes that were started from here and are still there, on Linux."""
-        found = []
+        """The command lines of processes started by this Neovim that are still running; on Linux."""
+        command_lines = []
         for process in Path("/proc").glob("[0-9]*"):
             try:
                 if str(self.home).encode() in (process / "environ").read_bytes():
-                    found.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode())
+                    command_lines.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode())
             except OSError:
                 continue
-        return [each for each in found if each]
+        return [command_line for command_line in command_lines if command_line]
 
     def end(self) -> None:
-        """Leave nothing behind, whatever happened."""
+        """Kill Neovim if it still runs, and close its log."""
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()

@@ -1,4 +1,4 @@
-"""The extension's colours know every word and sign of the language: its grammar is held against tltl.lark."""
+"""The extension's TextMate grammar covers every word and sign of tltl.lark."""
 
 from __future__ import annotations
 
@@ -33,24 +33,25 @@ SCOPES = {
     **dict.fromkeys(["COLON", "COMMA"], "punctuation.separator"),
     **dict.fromkeys(["LPAR", "RPAR", "LBRACE", "RBRACE", "LSQB", "RSQB"], "punctuation.bracket"),
 }
-"""The scope of each terminal; every other one is an operator of formulas."""
+"""The scope of each terminal. All other terminals are operators of formulas."""
 
 
 def rules(patterns: list[dict[str, object]]) -> Iterator[dict[str, object]]:
-    """The rules of the grammar in the order in which they are tried."""
-    for each in patterns:
-        if "include" in each:
-            yield from rules(GRAMMAR["repository"][str(each["include"])[1:]]["patterns"])
+    """Yield the rules of the grammar in the order in which they are tried."""
+    for pattern in patterns:
+        if "include" in pattern:
+            yield from rules(GRAMMAR["repository"][str(pattern["include"])[1:]]["patterns"])
         else:
-            yield each
+            yield pattern
 
 
 RULES = [(re.compile(str(rule["match"])), rule) for rule in rules(GRAMMAR["patterns"])]
 
 
 def coloured(text: str) -> dict[int, tuple[str, str]]:
-    """The pieces of a text that have a scope, as an editor finds them: line by line, the earliest match first."""
-    found = {}
+    """Return the scoped pieces of a text as an editor finds them: line by line, the earliest match
+    first."""
+    pieces = {}
     start = 0
     for line in text.splitlines(keepends=True):
         at = 0
@@ -62,7 +63,7 @@ def coloured(text: str) -> dict[int, tuple[str, str]]:
             ]
             if not matches:
                 break
-            _, order, match = min(matches, key=lambda each: each[:2])
+            _, order, match = min(matches, key=lambda candidate: candidate[:2])
             rule = RULES[order][1]
             captures = rule.get("captures", {"0": {"name": rule.get("name")}})
             assert isinstance(captures, dict)
@@ -70,21 +71,21 @@ def coloured(text: str) -> dict[int, tuple[str, str]]:
                 piece = match.group(int(group))
                 if piece and piece.strip():
                     blank = len(piece) - len(piece.lstrip())
-                    found[start + match.start(int(group)) + blank] = (piece.strip(), scope["name"])
+                    pieces[start + match.start(int(group)) + blank] = (piece.strip(), scope["name"])
             at = max(match.end(), at + 1)
         start += len(line)
-    return found
+    return pieces
 
 
 @pytest.mark.parametrize(("spelling", "terminal"), [*load().words.items(), *load().signs.items()])
-def test_every_word_and_sign_has_its_colour(spelling: str, terminal: str) -> None:
+def test_every_word_and_sign_has_its_scope(spelling: str, terminal: str) -> None:
     piece, scope = coloured(f"{spelling} ")[0]
     assert piece == spelling
     assert scope.startswith(SCOPES.get(terminal, "keyword.operator"))
 
 
 @pytest.mark.parametrize("unit", load().units)
-def test_every_unit_has_its_colour(unit: str) -> None:
+def test_every_unit_has_its_scope(unit: str) -> None:
     for space in ("", " "):
         assert coloured(f"x > 1.5{space}{unit}")[len(f"x > 1.5{space}")] == (unit, "keyword.other.unit.tltl")
 
@@ -108,26 +109,26 @@ def test_every_unit_has_its_colour(unit: str) -> None:
         ('test "t" for s {', ("for",)),
     ],
 )
-def test_the_small_words_have_theirs(text: str, words: tuple[str, ...]) -> None:
+def test_contextual_keywords_have_a_scope(text: str, words: tuple[str, ...]) -> None:
     names = {piece for piece, scope in coloured(text).values() if not scope.startswith("variable.")}
     assert set(words) <= names
 
 
-def test_the_small_words_are_covered() -> None:
+def test_all_contextual_keywords_are_tested() -> None:
     assert {"after", "as", "at", "expect", "for", "in", "step", "x", "within"} == set(load().soft)
 
 
-def test_real_files_are_cut_as_the_compiler_cuts_them() -> None:
+def test_real_files_are_split_like_the_compiler_splits_them() -> None:
     folders = ("examples", "stdlib_predicates", "tltlc", "runtime", "tests", "editors")
     count = 0
     for path in (path for folder in folders for path in (ROOT / folder).rglob("*.tltl")):
         source = SourceFile(path.name, path.read_bytes().decode("utf-8", "replace"))
-        _, wrong = parse(source)
-        if not wrong:
+        _, syntax_errors = parse(source)
+        if not syntax_errors:
             count += 1
-            found = coloured(source.text)
+            pieces = coloured(source.text)
             for token in tokenize(source.text).tokens[:-1]:
-                assert found[token.start][0] == token.text, path
+                assert pieces[token.start][0] == token.text, path
     assert count > 100
 
 
@@ -137,7 +138,7 @@ def test_other_editors_know_every_word(file: str) -> None:
     assert set(load().words) <= set(words)
 
 
-def test_comments_and_texts_are_left_alone() -> None:
+def test_comments_and_strings_are_not_coloured_inside() -> None:
     assert coloured("// spec a = G b")[0] == ("// spec a = G b", "comment.line.double-slash.tltl")
     assert coloured("/// spec a")[0][1] == "comment.line.documentation.tltl"
     assert coloured('"spec a // b"')[0] == ('"spec a // b"', "string.quoted.double.tltl")

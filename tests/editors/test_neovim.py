@@ -1,4 +1,4 @@
-"""Neovim with the settings of the guide: what its user sees, from the first key to the last process."""
+"""Neovim with the settings of the guide, from the first key to the end of all processes."""
 
 from __future__ import annotations
 
@@ -58,32 +58,32 @@ def editor(tmp_path: Path) -> Iterator[Neovim]:
     started.end()
 
 
-def test_a_session(editor: Neovim) -> None:
+def test_an_editing_session(editor: Neovim) -> None:
     editor.keys(":edit main.tltl<CR>")
     editor.until(lambda: editor.lua("vim.bo.filetype") == "tltl", "the file")
     lenses = editor.until(lambda: refreshed_lenses(editor), "lenses")
-    assert [each["command"]["title"] for each in lenses] == ["5 states, distance 1", "1 test passes"]
+    assert [lens["command"]["title"] for lens in lenses] == ["5 states, distance 1", "1 test passes"]
 
-    # A misspelt word is marked as it is typed, and mended by what is offered.
+    # A misspelt word is marked while it is typed, and a quick fix corrects it.
     editor.keys(":lua vim.ui.select = function(items, _, choose) choose(items[1], 1) end<CR>")
     editor.keys("/near(s1)<CR>cwneer<Esc>")
-    said = editor.until(editor.diagnostics, "a diagnostic")
-    assert said == ["no predicate `neer` here: did you mean `near` (from common.tltl)?"]
+    messages = editor.until(editor.diagnostics, "a diagnostic")
+    assert messages == ["no predicate `neer` here: did you mean `near` (from common.tltl)?"]
     editor.keys(":lua vim.lsp.buf.code_action()<CR>")
     editor.until(lambda: editor.lines() == MAIN.splitlines(), "the quick fix")
     editor.until(lambda: not editor.diagnostics(), "no diagnostic")
 
-    # What is known there is offered, and comes into the text.
+    # Completion offers the names that are known at the cursor.
     editor.keys("/keep<CR>oavoid see<C-x><C-o>")
     menu = editor.until(lambda: editor.lua('vim.fn.complete_info({"items"}).items'), "names")
-    assert "seen" in [each["word"] for each in menu]
+    assert "seen" in [item["word"] for item in menu]
     editor.keys("<C-e><Esc>u")
 
     editor.keys("/near(s1)<CR>:lua vim.lsp.buf.hover()<CR>")
-    shown = editor.until(lambda: floating(editor), "what a name means")
-    assert "Closeness to `target`" in shown
+    hover_text = editor.until(lambda: floating(editor), "what a name means")
+    assert "Closeness to `target`" in hover_text
 
-    # Another name, in both files.
+    # Rename a symbol in both files.
     editor.keys('/leave<CR>:lua vim.lsp.buf.rename("get_out")<CR>')
     editor.until(lambda: "    require get_out" in editor.lines(), "the new name")
     editor.keys(":silent wall<CR>:edit common.tltl<CR>")
@@ -103,7 +103,7 @@ def test_a_session(editor: Neovim) -> None:
     assert_nothing_is_left(editor)
 
 
-def test_an_editor_that_dies_takes_the_server_along(editor: Neovim) -> None:
+def test_a_killed_editor_ends_the_server(editor: Neovim) -> None:
     editor.keys(":edit main.tltl<CR>")
     editor.until(lambda: refreshed_lenses(editor), "lenses")
     editor.process.kill()
@@ -115,7 +115,7 @@ def test_words_have_their_colours(editor: Neovim) -> None:
     for path in SOURCES:
         editor.keys(f":edit! {path}<CR>")
         editor.until(lambda: editor.lua("vim.api.nvim_buf_get_name(0)") == str(path), path.name)  # noqa: B023
-        # Asked column by column, as they are drawn: what a unit is depends on the number before it.
+        # The groups are queried column by column, as they are drawn: a unit depends on the number before it.
         groups = editor.lua(
             "vim.tbl_map(function(line) return vim.tbl_map("
             "function(column) return vim.fn.synIDattr(vim.fn.synID(line, column, 1), 'name') end,"
@@ -140,11 +140,11 @@ GROUPS = {
     "UNIT": ("tltlUnit",),
     "STRING": ("tltlString",),
 }
-"""The colours of each terminal; every other one is an operator."""
+"""The highlight groups of each terminal. All other terminals are operators."""
 
 
 def refreshed_lenses(editor: Neovim) -> object:
-    # Asked for too early, some versions never ask again.
+    # If the lenses are requested before the client is initialized, some versions never ask again.
     if not editor.lua("#vim.tbl_filter(function(client) return client.initialized end, vim.lsp.get_active_clients())"):
         return None
     editor.keys(":lua vim.lsp.codelens.refresh()<CR>")
@@ -152,7 +152,7 @@ def refreshed_lenses(editor: Neovim) -> object:
 
 
 def floating(editor: Neovim) -> str:
-    """The text of the window that lies over the others, if there is one."""
+    """The text of the floating window, if there is one."""
     lines: list[str] = editor.lua(
         "vim.tbl_flatten(vim.tbl_map(function(window) return vim.api.nvim_win_get_config(window).relative ~= ''"
         " and vim.api.nvim_buf_get_lines(vim.api.nvim_win_get_buf(window), 0, -1, true) or {} end,"

@@ -1,4 +1,5 @@
-"""The extension for VS Code is built, its colours are tested by its own means, and it is packaged."""
+"""The extension for VS Code: it builds, its grammar tests pass, it is packaged, and it starts the
+server."""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ def npm(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the extension, built; skipped where node is missing, or the packages are."""
+    """A built copy of the extension; skipped if node or the packages are missing."""
     if shutil.which("node") is None or shutil.which("npm") is None:
         pytest.skip("node and npm build the extension; they are not installed")
     folder = tmp_path_factory.mktemp("vscode")
@@ -51,12 +52,12 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_its_colours(built: Path) -> None:
+def test_the_grammar_tests_pass(built: Path) -> None:
     done = npm(built, "test")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_its_package(built: Path) -> None:
+def test_the_package_is_complete(built: Path) -> None:
     done = npm(built, "run", "package")
     assert done.returncode == 0, done.stdout + done.stderr
     with zipfile.ZipFile(built / "tltl.vsix") as package:
@@ -77,18 +78,20 @@ def started(
     drawn: Path | None = None,
     trusted: bool = True,
 ) -> list[str]:
-    """What the extension does at its start, with stand-ins for the editor and its client; then a file is drawn."""
+    """Run the extension with stand-ins for the editor and its client, then draw a file; return the
+    log."""
     script = built / "start.js"
     script.write_text(STAND_IN, encoding="utf-8")
     words = ["node", str(script), json.dumps([str(folder), setting, answer, fails, drawn and str(drawn), trusted])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    done = subprocess.run(words, cwd=built, env=environment, capture_output=True, text=True, timeout=HANG_S)
-    assert done.returncode == 0, done.stderr
-    return done.stdout.splitlines()
+    completed = subprocess.run(words, cwd=built, env=environment, capture_output=True, text=True, timeout=HANG_S)
+    assert completed.returncode == 0, completed.stderr
+    return completed.stdout.splitlines()
 
 
-def test_it_starts_the_server(built: Path, tmp_path: Path) -> None:
-    """The command of the settings, with `lsp`, in the folder of the workspace; else that of the folder's `.venv`."""
+def test_the_server_is_started(built: Path, tmp_path: Path) -> None:
+    """The command comes from the settings and gets `lsp`; by default it is the one in the folder's
+    `.venv`, if any."""
     commands = "commands tltl.restart,tltl.showPicture"
     own = tmp_path / ".venv" / "bin" / "tltlc"
     assert started(built, tmp_path, ["tltlc"]) == [f"start tltlc lsp in {tmp_path}", commands]
@@ -99,25 +102,25 @@ def test_it_starts_the_server(built: Path, tmp_path: Path) -> None:
     assert started(built, tmp_path, ["tltlc"], trusted=False) == [f"start tltlc lsp in {Path.home()}", commands]
 
 
-def test_it_says_once_why_the_server_does_not_start(built: Path, tmp_path: Path) -> None:
+def test_a_failed_start_is_reported_once(built: Path, tmp_path: Path) -> None:
     missing = started(built, tmp_path, ["no-such-tltlc"], fails=True)
     assert missing[-1].startswith("error TLTL: `no-such-tltlc` is not found. Install tltlc with its extra `lsp`")
-    refused = [sys.executable, "-c", "raise SystemExit('error: no pygls')"]
-    *_, said = started(built, tmp_path, refused, fails=True)
-    assert said.endswith("lsp` does not start. error: no pygls")
-    again = started(built, tmp_path, ["no-such-tltlc"], fails=True, answer="Try Again")
-    assert [line.split()[0] for line in again] == ["start", "commands", "error", "start"]
+    failing_command = [sys.executable, "-c", "raise SystemExit('error: no pygls')"]
+    *_, message = started(built, tmp_path, failing_command, fails=True)
+    assert message.endswith("lsp` does not start. error: no pygls")
+    retried = started(built, tmp_path, ["no-such-tltlc"], fails=True, answer="Try Again")
+    assert [line.split()[0] for line in retried] == ["start", "commands", "error", "start"]
 
 
-def test_it_draws_automata_and_draws_them_anew(built: Path, tmp_path: Path) -> None:
+def test_automata_are_drawn_and_redrawn(built: Path, tmp_path: Path) -> None:
     file = tmp_path / "a.tltl"
     tltlc = [sys.executable, "-m", "tltlc"]
     file.write_text("signal p: bool\nspec alone = G p\n", encoding="utf-8")
-    *_, drawn, again = started(built, tmp_path, tltlc, drawn=file)
-    assert drawn == again == "picture alone <!DOCTYPE html>"
+    *_, drawn, redrawn = started(built, tmp_path, tltlc, drawn=file)
+    assert drawn == redrawn == "picture alone <!DOCTYPE html>"
     file.write_text("signal p: bool\nspec alone = G q\n", encoding="utf-8")
-    *_, said = started(built, tmp_path, tltlc, drawn=file)
-    assert said.startswith("error TLTL: `alone` cannot be drawn: error[TLT0201]: ")
+    *_, message = started(built, tmp_path, tltlc, drawn=file)
+    assert message.startswith("error TLTL: `alone` cannot be drawn: error[TLT0201]: ")
     file.write_text("signal p: bool\nspec one = G p\nspec two = F p\n", encoding="utf-8")
     assert started(built, tmp_path, tltlc, drawn=file)[-1] == "picture two <!DOCTYPE html>"
 
@@ -196,8 +199,8 @@ spec another = F goal
 
 
 @pytest.mark.parametrize("name", SNIPPETS)
-def test_its_snippets_compile(name: str) -> None:
-    """With what stands in them before anything is typed, by each choice that they offer."""
+def test_the_snippets_compile(name: str) -> None:
+    """With their placeholders, for each choice that they offer."""
     body = SNIPPETS[name]["body"]
     text = body if isinstance(body, str) else "\n".join(body)
     text = re.sub(r"\$\{\d+:([^}]*)\}", r"\1", text)
@@ -212,7 +215,7 @@ def test_its_snippets_compile(name: str) -> None:
         assert tltlc.compile_text(AROUND + chosen)
 
 
-def test_no_file_names_a_host_of_packages() -> None:
+def test_no_file_names_a_package_registry() -> None:
     for path in FILES:
         if path.suffix != ".png":
             text = path.read_text(encoding="utf-8")
@@ -220,11 +223,11 @@ def test_no_file_names_a_host_of_packages() -> None:
             assert "registry." not in text, path
 
 
-def test_its_version_is_that_of_the_compiler() -> None:
+def test_the_version_is_that_of_the_compiler() -> None:
     assert json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))["version"] == tltlc.__version__
 
 
-def test_its_settings_are_in_the_guide() -> None:
+def test_the_settings_are_in_the_guide() -> None:
     manifest = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
     guide = (EXTENSION.parents[1] / "docs" / "guides" / "editors.md").read_text(encoding="utf-8")
     for setting in manifest["contributes"]["configuration"]["properties"]:

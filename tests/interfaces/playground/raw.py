@@ -14,28 +14,28 @@ def connected(server: Server) -> socket.socket:
 
 
 def read_to_end(connection: socket.socket) -> bytes:
-    """Everything until the server hangs up."""
-    found = b""
+    """Read everything until the server closes the connection."""
+    received = b""
     while chunk := connection.recv(1 << 16):
-        found += chunk
-    return found
+        received += chunk
+    return received
 
 
 def statuses(answers: bytes) -> list[int]:
-    """The statuses of answers that came one behind the other."""
-    found = []
+    """Return the status codes of consecutive answers."""
+    codes = []
     while answers:
         head, _, rest = answers.partition(b"\r\n\r\n")
         status = re.match(rb"HTTP/1\.1 (\d{3}) ", head)
         assert status, answers[:80]
         length = re.search(rb"\r\nContent-Length: (\d+)", head)
-        found.append(int(status[1]))
+        codes.append(int(status[1]))
         answers = rest[int(length[1]) if length else 0 :]
-    return found
+    return codes
 
 
 def refused(server: Server, data: bytes) -> list[int]:
-    """The same where the server is to hang up by itself."""
+    """Return the status codes if the server closes the connection itself."""
     with connected(server) as connection:
         connection.sendall(data)
         return statuses(read_to_end(connection))

@@ -1,4 +1,4 @@
-"""Which files a text can have read: those of the folder of the server, and the libraries of tltlc."""
+"""The files that a text may read: only files in the server's folder, and the libraries of tltlc."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ needs_links = pytest.mark.skipif(os.name == "nt", reason="Windows allows few use
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """The folder of the server, with a secret beside it."""
+    """The folder of the server, with a secret file beside it."""
     (tmp_path / "secret.tltl").write_text(SECRET, encoding="utf-8")
     own = tmp_path / "own"
     (own / "below").mkdir(parents=True)
@@ -35,12 +35,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         yield own
 
 
-def said(text: str) -> list[tuple[str, str]]:
-    """The codes and titles of the messages on a text; nothing of the secret is in any part of the answer."""
-    found: dict[str, Any] = view(text)
-    assert "password" not in json.dumps(found)
-    assert "12345" not in json.dumps(found)
-    return [(each["code"], each["title"]) for each in found["diagnostics"]]
+def messages(text: str) -> list[tuple[str, str]]:
+    """Return the codes and titles of the diagnostics for a text, and assert that the answer
+    contains no part of the secret."""
+    answer: dict[str, Any] = view(text)
+    assert "password" not in json.dumps(answer)
+    assert "12345" not in json.dumps(answer)
+    return [(diagnostic["code"], diagnostic["title"]) for diagnostic in answer["diagnostics"]]
 
 
 def refusal(name: str) -> list[tuple[str, str]]:
@@ -63,68 +64,68 @@ def refusal(name: str) -> list[tuple[str, str]]:
         "/dev/zero",
     ],
 )
-def test_a_path_that_leads_out_is_refused_whether_there_is_a_file_or_not(folder: Path, target: str) -> None:
-    assert said(f'import "{target}"\n{SPEC}')[:1] == refusal(target)
+def test_a_path_that_leads_out_is_rejected_even_without_a_file(folder: Path, target: str) -> None:
+    assert messages(f'import "{target}"\n{SPEC}')[:1] == refusal(target)
 
 
-def test_an_absolute_path_is_as_good_as_another(folder: Path) -> None:
-    assert said(f'import "{(folder.parent / "secret.tltl").as_posix()}"\n{SPEC}')[0][0] == "TLT0777"
-    assert said(f'import "{(folder / "below" / "common.tltl").as_posix()}"\nspec x = F a\n') == []
+def test_an_absolute_path_is_treated_like_a_relative_one(folder: Path) -> None:
+    assert messages(f'import "{(folder.parent / "secret.tltl").as_posix()}"\n{SPEC}')[0][0] == "TLT0777"
+    assert messages(f'import "{(folder / "below" / "common.tltl").as_posix()}"\nspec x = F a\n') == []
 
 
-def test_a_tilde_is_no_home_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tilde_is_not_expanded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(folder.parent))
-    assert said(f'import "~/secret.tltl"\n{SPEC}')[0][0] == "TLT0010"
+    assert messages(f'import "~/secret.tltl"\n{SPEC}')[0][0] == "TLT0010"
 
 
 @needs_links
-def test_links_count_for_what_they_lead_to(folder: Path) -> None:
+def test_links_are_judged_by_their_targets(folder: Path) -> None:
     (folder / "linked.tltl").symlink_to(folder.parent / "secret.tltl")
     (folder / "up").symlink_to(folder.parent)
     (folder / "inside.tltl").symlink_to(folder / "below" / "common.tltl")
-    assert said(f'import "linked.tltl"\n{SPEC}')[:1] == refusal("linked.tltl")
-    assert said(f"import linked\n{SPEC}")[:1] == refusal("linked")
-    assert said(f'import "up/secret.tltl"\n{SPEC}')[:1] == refusal("up/secret.tltl")
-    assert said(f"import up.secret\n{SPEC}")[:1] == refusal("up.secret")
-    # After links are followed, this is the folder above again.
-    assert said(f'import "up/own/../secret.tltl"\n{SPEC}')[:1] == refusal("up/own/../secret.tltl")
-    assert said('import "inside.tltl"\nspec x = F a\n') == []
-    # A name that is much like one of a folder outside does not show that name.
-    assert "secret" not in said("import up.secre\nspec x = true\n")[0][1].replace("up.secre", "")
+    assert messages(f'import "linked.tltl"\n{SPEC}')[:1] == refusal("linked.tltl")
+    assert messages(f"import linked\n{SPEC}")[:1] == refusal("linked")
+    assert messages(f'import "up/secret.tltl"\n{SPEC}')[:1] == refusal("up/secret.tltl")
+    assert messages(f"import up.secret\n{SPEC}")[:1] == refusal("up.secret")
+    # After links are resolved, this is the folder above again.
+    assert messages(f'import "up/own/../secret.tltl"\n{SPEC}')[:1] == refusal("up/own/../secret.tltl")
+    assert messages('import "inside.tltl"\nspec x = F a\n') == []
+    # A suggestion must not reveal the name of a file outside.
+    assert "secret" not in messages("import up.secre\nspec x = true\n")[0][1].replace("up.secre", "")
 
 
-def test_what_is_imported_can_lead_no_further(folder: Path) -> None:
+def test_an_imported_file_cannot_import_from_outside(folder: Path) -> None:
     (folder / "first.tltl").write_text('import "../secret.tltl"\n', encoding="utf-8")
-    assert said(f'import "first.tltl"\n{SPEC}')[:1] == refusal("../secret.tltl")
+    assert messages(f'import "first.tltl"\n{SPEC}')[:1] == refusal("../secret.tltl")
 
 
 def test_files_below_and_the_libraries_of_tltlc_are_read(folder: Path) -> None:
     text = 'import stealth\nimport "below/common.tltl"\nimport below.common as c\nspec x = F (alive and a)\n'
-    assert not [each for each in view(text)["diagnostics"] if each["severity"] == "error"]
+    assert not [diagnostic for diagnostic in view(text)["diagnostics"] if diagnostic["severity"] == "error"]
 
 
 def test_a_project_file_above_is_not_read(folder: Path) -> None:
     (folder.parent / "tltl.toml").write_text("the_password = 12345\n", encoding="utf-8")
-    assert said("signal a: bool\nspec x = F a\n") == []
+    assert messages("signal a: bool\nspec x = F a\n") == []
 
 
 @needs_links
-def test_a_project_file_that_is_a_link_out_is_not_read(folder: Path) -> None:
+def test_a_project_file_that_links_outside_is_not_read(folder: Path) -> None:
     (folder.parent / "other.toml").write_text("the_password = 12345\n", encoding="utf-8")
     (folder / "tltl.toml").symlink_to(folder.parent / "other.toml")
-    assert said("signal a: bool\nspec x = F a\n") == []
+    assert messages("signal a: bool\nspec x = F a\n") == []
 
 
-def test_libraries_outside_are_refused(folder: Path) -> None:
+def test_libraries_outside_are_rejected(folder: Path) -> None:
     for library in ("..", "../none", "/etc", "below/../.."):
         (folder / "tltl.toml").write_text(f'libraries = ["{library}"]\n', encoding="utf-8")
-        assert said("import secret\n") == refusal(library)
+        assert messages("import secret\n") == refusal(library)
     (folder / "tltl.toml").write_text('libraries = ["below"]\n', encoding="utf-8")
-    assert said("import common\nspec x = F a\n") == []
+    assert messages("import common\nspec x = F a\n") == []
 
 
 @needs_links
-def test_libraries_are_read_where_the_folder_of_the_server_was_deleted(
+def test_libraries_are_read_if_the_folder_of_the_server_was_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "secret.tltl").write_text(SECRET, encoding="utf-8")
@@ -133,15 +134,15 @@ def test_libraries_are_read_where_the_folder_of_the_server_was_deleted(
     monkeypatch.chdir(gone)
     gone.rmdir()
     with confined(readable_folders()):
-        assert said("import stealth\nspec x = G alive\n") == []
-        assert said("import none\nspec x = true\n")[0] == ("TLT0010", "there is no library `none`")
-        # The system would still lead from there to the folder above.
+        assert messages("import stealth\nspec x = G alive\n") == []
+        assert messages("import none\nspec x = true\n")[0] == ("TLT0010", "there is no library `none`")
+        # The system would still resolve the parent of the deleted folder.
         for target in ("secret.tltl", "../secret.tltl", "../none.tltl"):
-            assert said(f'import "{target}"\nspec x = true\n')[0][0] == "TLT0010"
-        assert said(f'import "{tmp_path.as_posix()}/secret.tltl"\nspec x = true\n')[0][0] == "TLT0777"
+            assert messages(f'import "{target}"\nspec x = true\n')[0][0] == "TLT0010"
+        assert messages(f'import "{tmp_path.as_posix()}/secret.tltl"\nspec x = true\n')[0][0] == "TLT0777"
 
 
-def test_nothing_outside_is_read_or_seen_by_any_reader(folder: Path) -> None:
+def test_no_reader_sees_a_file_outside(folder: Path) -> None:
     secret = folder.parent / "secret.tltl"
     for path in (secret, Path("../secret.tltl"), folder / ".." / "secret.tltl", Path("a\0b")):
         assert not (may_read(path) or exists(path) or is_file(path) or is_dir(path))
@@ -149,14 +150,14 @@ def test_nothing_outside_is_read_or_seen_by_any_reader(folder: Path) -> None:
     with pytest.raises(Exception, match="is outside the folder of the playground"):
         read_source(secret)
     assert may_read(standard_library() / "stealth.tltl")
-    # A folder whose name only begins in the same way is another one.
+    # A folder whose name has the same prefix is a different folder.
     (folder.parent / "own2").mkdir()
     assert not may_read(folder.parent / "own2" / "a.tltl")
     assert not may_read(f"{folder}2")
     assert outside("a").code == "TLT0777"
 
 
-def test_without_confinement_everything_is_read(tmp_path: Path) -> None:
+def test_without_confinement_everything_may_be_read(tmp_path: Path) -> None:
     assert may_read(tmp_path / "a")
     assert may_read("/")
 
@@ -166,7 +167,7 @@ NAMES = st.lists(st.sampled_from(["..", ".", "", "below", "up", "loop", "own", "
 
 @needs_links
 @given(st.booleans(), NAMES)
-def test_whatever_may_be_read_is_inside(
+def test_every_allowed_path_is_inside(
     tmp_path_factory: pytest.TempPathFactory, absolute: bool, names: list[str]
 ) -> None:
     root = tmp_path_factory.getbasetemp() / "fuzzed"
@@ -184,7 +185,7 @@ def test_whatever_may_be_read_is_inside(
         assert Path(os.path.realpath(path)).is_relative_to(os.path.realpath(own))
 
 
-def test_the_server_confines_what_it_is_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_server_confines_its_requests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "secret.tltl").write_text(SECRET, encoding="utf-8")
     (tmp_path / "own").mkdir()
     monkeypatch.chdir(tmp_path / "own")
@@ -192,12 +193,14 @@ def test_the_server_confines_what_it_is_asked(tmp_path: Path, monkeypatch: pytes
         for target in ("../secret.tltl", "/etc/passwd"):
             text = json.dumps({"text": f'import "{target}"\n{SPEC}'})
             answer = json.loads(ask(server, "POST", "/api", text, JSON)[2])
-            assert [(each["code"], each["title"]) for each in answer["diagnostics"]] == refusal(target)
+            assert [(diagnostic["code"], diagnostic["title"]) for diagnostic in answer["diagnostics"]] == refusal(
+                target
+            )
             assert answer["diagnostics"][0]["labels"][0]["start"] == len("import ")
 
 
 @pytest.mark.parametrize("target", ["\0", "a\0.tltl", "a\0b/c.tltl", "below/\0", "../\0"])
-def test_a_path_that_no_system_has_is_no_file(folder: Path, target: str) -> None:
-    """It leads nowhere, and so not out of the folder either."""
-    (code, title), *_ = said(f'import "{target}"\n{SPEC}')
+def test_a_path_with_a_nul_is_reported_as_missing(folder: Path, target: str) -> None:
+    """Such a path leads nowhere, so it does not lead out of the folder."""
+    (code, title), *_ = messages(f'import "{target}"\n{SPEC}')
     assert (code, title) == ("TLT0010", f"there is no file `{target}` beside this one")

@@ -1,4 +1,5 @@
-"""Many connections, slow ones, and a system without room for more: the server answers, and sleeps in between."""
+"""Many connections, slow clients, and too few descriptors: the server answers, and sleeps in
+between."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ NEVER_S = 1e6
 
 @pytest.fixture
 def room() -> Iterator[None]:
-    """Enough descriptors for both ends of many connections."""
+    """Raise the limit of descriptors, for both ends of many connections."""
     import resource
 
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -42,29 +43,29 @@ def room() -> Iterator[None]:
 
 @pytest.fixture
 def turns(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How often a server was woken: the length of the list."""
-    found: list[int] = []
+    """A list that grows by one whenever the server wakes up."""
+    wakeups: list[int] = []
     select = selectors.DefaultSelector.select
 
     def counted(selector: Any, timeout: float | None = None) -> Any:
-        found.append(0)
+        wakeups.append(0)
         return select(selector, timeout)
 
     monkeypatch.setattr(selectors.DefaultSelector, "select", counted)
-    return found
+    return wakeups
 
 
 @contextmanager
 def held(server: Server, number: int, data: bytes = b"") -> Iterator[list[socket.socket]]:
-    """Connections on which this is sent and then nothing more."""
+    """Connections on which this data is sent, and nothing more."""
     made = [connected(server) for _ in range(number)]
     try:
-        for each in made:
-            each.sendall(data)
+        for connection in made:
+            connection.sendall(data)
         yield made
     finally:
-        for each in made:
-            each.close()
+        for connection in made:
+            connection.close()
 
 
 def is_answered(server: Server) -> bool:
@@ -74,31 +75,34 @@ def is_answered(server: Server) -> bool:
 @pytest.mark.skipif(os.name != "posix", reason="raises a limit that only POSIX has")
 @pytest.mark.parametrize("data", [b"", b"GET / HT", b"POST /api HTTP/1.1\r\nHost: localhost\r\nA"], ids=repr)
 @pytest.mark.usefixtures("room")
-def test_hundreds_of_connections_that_say_little_stop_nobody(data: bytes, turns: list[int]) -> None:
+def test_hundreds_of_idle_connections_block_nothing(data: bytes, turns: list[int]) -> None:
     with serving(connections=replace(PATIENT, idle_s=NEVER_S, request_s=NEVER_S)) as server:
         with held(server, MANY) as made:
-            for each in made[-PLAYGROUND.most // 2 :]:
-                each.sendall(data)
+            for connection in made[-PLAYGROUND.most // 2 :]:
+                connection.sendall(data)
             for _ in range(3):
                 assert is_answered(server)
             assert len(server.open) <= PLAYGROUND.most
-            # It is woken a few times by each thing that happens, and by nothing else, however long all of this takes.
+            # Every event wakes the server a few times, and nothing else wakes it, however long the test takes.
             assert len(turns) < 20 * MANY
         assert eventually(lambda: len(server.open) == 0)
         assert is_answered(server)
 
 
-def test_the_one_that_was_idle_longest_gives_way() -> None:
+def test_the_connection_idle_longest_is_closed_first() -> None:
     with serving(connections=replace(FEW, idle_s=NEVER_S)) as server, held(server, FEW.most) as made:
         assert eventually(lambda: len(server.open) == FEW.most)
-        # All but the second one have had an answer since.
-        for each in (made[0], *made[2:]):
-            each.sendall(b"GET /none HTTP/1.1\r\nHost: localhost\r\n\r\n" if each is made[3] else index(b""))
-            assert each.recv(1 << 16)
+        # Every connection but the second has had an answer since.
+        for connection in (made[0], *made[2:]):
+            connection.sendall(
+                b"GET /none HTTP/1.1\r\nHost: localhost\r\n\r\n" if connection is made[3] else index(b"")
+            )
+            assert connection.recv(1 << 16)
         with connected(server) as another:
             another.sendall(index(b"Connection: close\r\n"))
             assert statuses(read_to_end(another)) == [200]
-        # The fourth one was refused and is to hang up: it matters less than one that may ask again.
+        # The fourth connection was rejected and is to be closed, so it gives way to connections that may be
+        # used again.
         assert read_to_end(made[3]) == b""
         made[1].sendall(index(b"Connection: close\r\n"))
         assert statuses(read_to_end(made[1])) == [200]
@@ -119,13 +123,13 @@ def test_an_idle_connection_is_closed_after_a_while() -> None:
     [b"G", b"GET / HTTP/1.1\r\nHost: local", b"\r\n\r\n"],
     ids=repr,
 )
-def test_a_request_that_does_not_end_in_time_is_refused(begun: bytes) -> None:
+def test_a_request_that_is_not_completed_in_time_is_rejected(begun: bytes) -> None:
     with serving(connections=replace(PATIENT, request_s=0.05)) as server, connected(server) as connection:
         connection.sendall(begun)
         assert statuses(read_to_end(connection)) == [408]
 
 
-def test_a_body_that_comes_slowly_has_no_more_time_than_the_whole_request() -> None:
+def test_a_slow_body_has_no_more_time_than_the_whole_request() -> None:
     with serving(connections=replace(PATIENT, request_s=0.5)) as server, connected(server) as connection:
         head = request(server, " " * 1_000_000).partition(b"\r\n\r\n")[0]
         connection.sendall(head + b"\r\n\r\n")
@@ -135,14 +139,14 @@ def test_a_body_that_comes_slowly_has_no_more_time_than_the_whole_request() -> N
             try:
                 return connection.recv(1 << 16)
             except TimeoutError:
-                # A byte now and then is no reason to wait for longer.
+                # Single bytes do not extend the time limit.
                 connection.sendall(b" ")
                 return b""
 
         assert statuses(until(answer, "the answer")) == [408]
 
 
-def test_who_does_not_read_its_answer_is_left() -> None:
+def test_a_client_that_does_not_read_its_answer_is_disconnected() -> None:
     with serving(connections=replace(PATIENT, write_s=0.05)) as server:
         server.page.files["main.js"] = b"a" * (64 << 20)
         with connected(server) as connection:
@@ -151,7 +155,7 @@ def test_who_does_not_read_its_answer_is_left() -> None:
             assert eventually(lambda: len(server.open) == 0)
 
 
-def test_more_bytes_than_the_next_request_can_have_end_the_connection() -> None:
+def test_too_many_bytes_after_a_request_end_the_connection() -> None:
     with serving() as server, connected(server) as connection:
         connection.sendall(request(server, json.dumps({"text": SLOW})))
         with pytest.raises(OSError, match=r"(?i)reset|pipe|abort"):
@@ -160,7 +164,7 @@ def test_more_bytes_than_the_next_request_can_have_end_the_connection() -> None:
         assert eventually(lambda: not server.children._running)
 
 
-def test_while_every_connection_waits_for_its_answer_a_new_one_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_new_connection_is_rejected_while_all_others_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "MOST_AT_ONCE", FEW.most)
     with serving(connections=FEW) as server:
         with held(server, FEW.most, request(server, json.dumps({"text": SLOW}))):
@@ -171,7 +175,7 @@ def test_while_every_connection_waits_for_its_answer_a_new_one_is_told_so(monkey
 
 
 class Full:
-    """A listener whose system has no file descriptors left, until the test frees them."""
+    """A listener that reports missing file descriptors until the test clears ``is_full``."""
 
     def __init__(self, listener: socket.socket) -> None:
         self.listener = listener
@@ -188,15 +192,15 @@ class Full:
         return getattr(self.listener, name)
 
 
-def test_without_descriptors_it_looks_again_in_a_while_and_not_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_descriptors_the_server_retries_after_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.interfaces.playground.server._AGAIN_S", NEVER_S)
     with serving() as server, held(server, 3) as made:
         assert eventually(lambda: len(server.open) == 3)
         full = Full(server._listener)
         server._loop.call_soon_threadsafe(setattr, server, "_listener", full)
         with connected(server) as waiting:
-            # The three that are idle give way, one at each look; after that nothing is left to do but to wait.
-            assert [read_to_end(each) for each in made] == [b""] * 3
+            # At each attempt one of the three idle connections gives way; after that, the server only waits.
+            assert [read_to_end(connection) for connection in made] == [b""] * 3
             assert eventually(lambda: server._again is not None)
             full.is_full = False
             assert full.looks == 4
@@ -223,7 +227,7 @@ with Server(0, {HANG_S}) as server:
 
 @pytest.mark.skipif(os.name != "posix", reason="lowers a limit that only POSIX has")
 @pytest.mark.usefixtures("room")
-def test_a_server_with_few_descriptors_answers_beside_hundreds_of_idle_connections() -> None:
+def test_a_server_with_few_descriptors_answers_beside_idle_connections() -> None:
     program = f"import sys; sys.path[:] = {sys.path!r}\n{LOW}"
     with subprocess.Popen(
         [sys.executable, "-c", program],

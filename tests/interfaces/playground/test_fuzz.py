@@ -1,4 +1,5 @@
-"""Any bytes as requests, in any pieces: they are refused or answered, and in the same way whatever the pieces."""
+"""Fuzzing with any bytes in any pieces: each request is answered or rejected, independent of the
+pieces."""
 
 from __future__ import annotations
 
@@ -126,7 +127,7 @@ class Echo:
 
 
 class Wire:
-    """The other end of a connection that takes everything at once."""
+    """A transport that accepts everything immediately."""
 
     def __init__(self) -> None:
         self.sent = b""
@@ -155,14 +156,14 @@ class Wire:
 
 
 async def answered(pieces: list[bytes]) -> bytes:
-    """What is sent back for bytes that come in these pieces, and then no more."""
+    """Return the bytes sent in answer to these pieces, after which the connection ends."""
     wire = Wire()
     connections = Open(PLAYGROUND)
     connection = Connection(Echo(), connections)
     connection.connection_made(cast("Any", wire))
     for piece in pieces:
         connection.data_received(piece)
-        # Until all of it is answered, as it is before the network has more.
+        # Wait until the piece is answered, before more data arrives.
         while connection._task and not connection._task.done():
             await connection._task
     connection.eof_received()
@@ -183,48 +184,46 @@ def undated(answers: bytes) -> list[bytes]:
 
 
 @given(st.lists(REQUEST, max_size=5).map(b"".join), st.lists(st.integers(1, 60), max_size=40))
-def test_requests_are_answered_in_the_same_way_in_whichever_pieces_they_come(
-    loop: asyncio.AbstractEventLoop, data: bytes, sizes: list[int]
-) -> None:
+def test_answers_do_not_depend_on_the_pieces(loop: asyncio.AbstractEventLoop, data: bytes, sizes: list[int]) -> None:
     pieces, rest = [], data
     for size in sizes:
         pieces.append(rest[:size])
         rest = rest[size:]
     whole = loop.run_until_complete(answered([data]))
     cut = loop.run_until_complete(answered([*pieces, rest]))
-    found = statuses(whole)
-    # Where a body is agreed to, that depends on whether it has come already.
-    assert [each for each in statuses(cut) if each != 100] == [each for each in found if each != 100]
+    codes = statuses(whole)
+    # Whether `100 Continue` is sent depends on whether the body has already arrived.
+    assert [code for code in statuses(cut) if code != 100] == [code for code in codes if code != 100]
     if b"100-continue" not in data:
         assert undated(whole) == undated(cut)
-    # Nothing is answered behind a refusal.
-    assert all(status < 400 for status in found[:-1])
+    # Nothing is answered after a rejection.
+    assert all(status < 400 for status in codes[:-1])
 
 
 @given(st.lists(st.one_of(st.just(RIGHT), st.builds(post, st.binary(max_size=20))), max_size=6))
-def test_right_requests_are_all_answered(loop: asyncio.AbstractEventLoop, requests: list[bytes]) -> None:
+def test_all_valid_requests_are_answered(loop: asyncio.AbstractEventLoop, requests: list[bytes]) -> None:
     sent = loop.run_until_complete(answered([b"".join(requests) + LAST + RIGHT]))
     assert statuses(sent) == [200] * (len(requests) + 1)
 
 
 @given(st.one_of(REQUEST, st.binary(), st.lists(REQUEST).map(b"".join)))
-def test_a_head_is_read_or_refused(data: bytes) -> None:
+def test_a_head_is_read_or_rejected(data: bytes) -> None:
     try:
-        found = read_head(data)
+        result = read_head(data)
     except RefusedError as error:
         assert 400 <= error.status.value < 600
         return
-    if found is None:
+    if result is None:
         assert len(data) <= 2 * REQUEST_HEAD.size + REQUEST_LINE.size + 2
         return
-    head, end = found
+    head, end = result
     assert 0 < end <= len(data)
     assert head.path == "*" or head.path.startswith("/")
     assert head.path.isprintable() or not head.path.isascii()
     assert head.length is None or 0 <= head.length < 10**18
     assert all(name == name.lower() and "\n" not in value and "\r" not in value for name, value in head.headers.items())
-    # What is behind a head changes nothing about it.
-    assert read_head(data[:end]) == read_head(data[:end] + b"\r\n: junk") == found
+    # Bytes after a head do not change it.
+    assert read_head(data[:end]) == read_head(data[:end] + b"\r\n: junk") == result
 
 
 VALUE = st.recursive(
@@ -239,12 +238,12 @@ ASKED = st.one_of(
 
 
 @given(st.one_of(ASKED.map(json.dumps), st.text(), st.text(alphabet='{}[]",:text0e9.-NaIfiny')))
-def test_a_request_of_json_is_understood_or_refused(request_: str) -> None:
+def test_a_json_request_is_read_or_rejected(request_: str) -> None:
     try:
-        found = question(request_)
+        parsed = question(request_)
     except RequestError:
         return
-    if found is not None:
-        assert isinstance(found, Question)
-        assert isinstance(found.text, str)
-        assert all(isinstance(letter, (list, dict)) for letter in found.letters)
+    if parsed is not None:
+        assert isinstance(parsed, Question)
+        assert isinstance(parsed.text, str)
+        assert all(isinstance(letter, (list, dict)) for letter in parsed.letters)

@@ -1,4 +1,5 @@
-"""The page in a real browser: specs are typed and mended, traces clicked through, links restore everything."""
+"""The page in a real browser: type and fix specs, click through traces, and restore everything from
+links."""
 
 from __future__ import annotations
 
@@ -28,10 +29,10 @@ if not chromium.MISSING:
 
 SIGNALS = "signal a: bool\nsignal b: bool\nsignal broken: bool\n"
 BROKEN = f"{SIGNALS}spec plan {{ limit 9 steps  reach a then c  keep not broken }}\n"
-MENDED = BROKEN.replace("then c", "then b")
+FIXED = BROKEN.replace("then c", "then b")
 
 PYODIDE_FOLDER = Path(os.environ.get("PYODIDE", "node_modules/pyodide"))
-"""The npm package `pyodide`, where there is one."""
+"""The npm package `pyodide`, if it is installed."""
 
 
 @pytest.fixture(scope="module")
@@ -54,30 +55,31 @@ def page(browser: Browser, address: str) -> Iterator[Page]:
 def opened(
     browser: Browser, address: str, wrong: list[str] | None = None, link: str = "", **context: Any
 ) -> Iterator[Page]:
-    """A page on which nothing goes wrong, and that asks nobody else; ``wrong`` is the list that it writes to.
+    """A page that logs no error and sends requests only to its own server; errors are appended to
+    ``wrong``.
 
-    ``link`` is a fragment to open in place of that of the address, by a browser that knows the token already.
+    ``link`` is a fragment that replaces the address's own; the browser then has the token already.
     """
-    made = browser.new_context(**context)
-    made.set_default_timeout(chromium.HANG_MS)
+    context_ = browser.new_context(**context)
+    context_.set_default_timeout(chromium.HANG_MS)
     try:
-        page = made.new_page()
+        page = context_.new_page()
         base, _, token = address.partition("#token=")
         if link:
             page.add_init_script(f"localStorage.setItem('token', '{token}')")
             address = base + link
         wrong = [] if wrong is None else wrong
-        asked: list[str] = []
+        requested: list[str] = []
         page.on("console", lambda message: wrong.append(message.text))
         page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("request", lambda request: asked.append(request.url))
+        page.on("request", lambda request: requested.append(request.url))
         page.goto(address)
         expect(page.locator("#picture svg")).to_be_visible()
         yield page
         assert wrong == []
-        assert [url for url in asked if not url.startswith((address.partition("#")[0], "data:"))] == []
+        assert [url for url in requested if not url.startswith((address.partition("#")[0], "data:"))] == []
     finally:
-        made.close()
+        context_.close()
 
 
 def write(page: Page, text: str) -> None:
@@ -85,7 +87,7 @@ def write(page: Page, text: str) -> None:
 
 
 def kept_address(page: Page, before: str = "") -> str:
-    """The address once it holds a text that was not in it before: the page writes it there in a while."""
+    """Wait until the page has written a new text into its address, and return the address."""
     page.wait_for_url(lambda url: "#1." in url and url != before)
     return page.url
 
@@ -100,30 +102,30 @@ def current(page: Page) -> str | None:
     return lit.get_attribute("data-states")
 
 
-def test_a_mistake_is_underlined_at_its_place_and_mended(page: Page) -> None:
+def test_an_error_is_underlined_and_can_be_fixed(page: Page) -> None:
     write(page, BROKEN)
     summary(page, "^1 error; what is shown is of an earlier text$")
     marked = page.locator("#backdrop .mark.error")
     expect(marked).to_have_text("c")
-    said = page.locator("#messages li")
-    expect(said).to_contain_text("no predicate c here")
-    # What is underlined stands exactly below what is typed.
+    messages = page.locator("#messages li")
+    expect(messages).to_contain_text("no predicate c here")
+    # The underlined text is exactly below the typed text.
     area = page.get_by_label("Specification")
     expect(area).to_have_attribute("aria-invalid", "true")
     assert area.bounding_box() == page.locator("#backdrop").bounding_box()
-    said.get_by_role("button", name="line 4").click()
+    messages.get_by_role("button", name="line 4").click()
     chosen = "area => area.value.slice(area.selectionStart, area.selectionEnd)"
     assert area.evaluate(chosen) == "c"
     page.keyboard.type("b")
     summary(page, "^It compiles$")
-    expect(said).to_have_count(0)
+    expect(messages).to_have_count(0)
     expect(area).to_have_attribute("aria-invalid", "false")
     expect(page.locator("#english h2")).to_have_text("plan")
     expect(page.locator("#english ol li")).to_have_text(["a", "b"])
     expect(page.locator("#picture .state")).to_have_count(4)
 
 
-def test_a_way_out_of_an_error_is_taken_by_a_button_and_undone(page: Page) -> None:
+def test_a_suggested_fix_is_applied_by_a_button_and_undone(page: Page) -> None:
     write(page, "spec plan { limit 9 steps  reach alive }\n")
     summary(page, "^1 error")
     page.get_by_role("button", name="Add import stealth").click()
@@ -136,15 +138,15 @@ def test_a_way_out_of_an_error_is_taken_by_a_button_and_undone(page: Page) -> No
     assert area.input_value() == "spec plan { limit 9 steps  reach alive }\n"
 
 
-def test_a_fix_of_the_linter_is_made_by_a_button(page: Page) -> None:
-    write(page, f"// 🎮\nentity nobody\n{MENDED}")
+def test_a_fix_of_the_linter_is_applied_by_a_button(page: Page) -> None:
+    write(page, f"// 🎮\nentity nobody\n{FIXED}")
     summary(page, "^It compiles; 1 warning$")
     page.get_by_role("button", name="Remove it").click()
     summary(page, "^It compiles$")
-    assert page.get_by_label("Specification").input_value() == f"// 🎮\n{MENDED}"
+    assert page.get_by_label("Specification").input_value() == f"// 🎮\n{FIXED}"
 
 
-def test_a_message_of_an_earlier_text_cannot_be_clicked(page: Page) -> None:
+def test_messages_of_an_earlier_text_cannot_be_clicked(page: Page) -> None:
     write(page, BROKEN)
     summary(page, "^1 error")
     line = page.locator("#messages li button").first
@@ -155,7 +157,7 @@ def test_a_message_of_an_earlier_text_cannot_be_clicked(page: Page) -> None:
     expect(page.locator("#messages")).not_to_have_attribute("inert", "")
 
 
-def test_names_and_words_are_no_markup(page: Page) -> None:
+def test_names_and_comments_are_not_interpreted_as_markup(page: Page) -> None:
     write(
         page,
         'signal a: bool\n/// <img src=x onerror="alert(1)"> `<b>` </title>\nspec x { limit 9 steps  reach a }\n'
@@ -173,7 +175,7 @@ COVERED = """() => {
 }"""
 
 
-def test_nothing_is_covered_in_a_dense_picture(page: Page) -> None:
+def test_nothing_overlaps_in_a_dense_picture(page: Page) -> None:
     write(page, f"{SIGNALS}signal c: bool\nspec dense = G((a -> X b) | (c U broken)) & F(b & X c)\n")
     summary(page, "^It compiles")
     expect(page.locator("#english h2")).to_have_text("dense")
@@ -182,7 +184,7 @@ def test_nothing_is_covered_in_a_dense_picture(page: Page) -> None:
 
 
 def test_a_long_text_is_underlined_but_not_coloured(page: Page) -> None:
-    # At each keystroke all of it would be coloured anew.
+    # Otherwise the whole text would be coloured again at each keystroke.
     long = f"// {'x' * 50_000}\n{BROKEN}"
     page.get_by_label("Specification").evaluate(
         "(area, text) => { area.value = text; area.dispatchEvent(new Event('input')); }", long
@@ -195,7 +197,7 @@ def test_a_long_text_is_underlined_but_not_coloured(page: Page) -> None:
 
 
 def test_a_trace_is_clicked_through_to_acceptance(page: Page) -> None:
-    write(page, MENDED)
+    write(page, FIXED)
     summary(page, "^It compiles$")
     expect(page.locator("#english h2")).to_have_text("plan")
     for atom, verdict in (("a", "pending"), ("b", "holding")):
@@ -215,7 +217,7 @@ def test_a_trace_is_clicked_through_to_acceptance(page: Page) -> None:
     expect(page.locator("#steps .verdict")).to_have_text(["pending"])
 
 
-def test_ways_to_succeed_and_to_fail_are_shown(page: Page) -> None:
+def test_a_success_and_a_failure_are_shown(page: Page) -> None:
     for name, verdict in (("Show a success", "holding"), ("Show a failure", "violated")):
         page.get_by_role("button", name=name).click()
         expect(page.locator("#steps .verdict").last).to_have_text(verdict)
@@ -233,13 +235,13 @@ def test_signals_are_set_by_sliders_and_numbers(page: Page) -> None:
     health = page.get_by_label("health at step 1", exact=True)
     health.evaluate("bar => { bar.value = 0; bar.dispatchEvent(new Event('input', { bubbles: true })); }")
     expect(page.locator("#steps .verdict")).to_have_text("violated")
-    # The atoms are those of the signals.
+    # The atoms follow from the signals.
     page.get_by_role("radio", name="atoms").check()
     expect(page.get_by_label("near(button) at step 1")).to_be_checked()
     expect(page.get_by_label("alive at step 1")).not_to_be_checked()
 
 
-def test_a_state_says_what_remains_there_by_mouse_and_by_keyboard(page: Page) -> None:
+def test_a_state_shows_what_remains_by_mouse_and_by_keyboard(page: Page) -> None:
     page.locator("#picture .state").nth(1).click()
     expect(page.locator("#state h3")).to_have_text("State 1 pending 2 steps to the goal")
     expect(page.locator("#state")).to_contain_text("Reach near(lever), then near(exit)")
@@ -250,21 +252,21 @@ def test_a_state_says_what_remains_there_by_mouse_and_by_keyboard(page: Page) ->
     expect(page.locator("#state h3")).to_contain_text("State 0 ")
 
 
-def test_everything_that_one_can_act_on_has_a_name(page: Page) -> None:
+def test_every_control_has_an_accessible_name(page: Page) -> None:
     page.get_by_role("button", name="Show a success").click()
     expect(page.locator("#steps .verdict")).to_have_count(3)
     write(page, BROKEN)
     summary(page, "^1 error")
-    write(page, MENDED)
+    write(page, FIXED)
     summary(page, "^It compiles$")
     tree = page.locator("body").aria_snapshot()
     assert 'table "Steps of the trace"' in tree
     assert 'group "The automaton of plan"' in tree
-    # A role with neither a name nor content is one that nobody can know.
+    # A role with neither a name nor content cannot be identified by assistive technology.
     assert re.findall(r"- (?:button|textbox|checkbox|slider|img|combobox|radio|meter)\s*$", tree, re.MULTILINE) == []
 
 
-def test_the_table_is_walked_through_by_keyboard(page: Page) -> None:
+def test_the_table_can_be_used_by_keyboard(page: Page) -> None:
     page.get_by_role("button", name="Show a success").click()
     expect(page.locator("#steps .verdict")).to_have_count(3)
     page.locator("#steps .go").first.focus()
@@ -272,12 +274,12 @@ def test_the_table_is_walked_through_by_keyboard(page: Page) -> None:
     expect(page.locator("#steps tr.current .go")).to_have_text("2")
     page.keyboard.press("Tab")
     page.keyboard.press("Space")
-    # Two that are exclusive cannot hold at once.
+    # Two exclusive atoms cannot hold at the same step.
     expect(page.locator("#steps .refused")).to_have_count(1)
     expect(page.locator("#moment")).to_contain_text("against exclusive")
 
 
-def test_steps_are_walked_to_both_ends_by_keyboard(page: Page) -> None:
+def test_buttons_step_to_both_ends_by_keyboard(page: Page) -> None:
     page.get_by_role("button", name="Show a success").click()
     expect(page.locator("#steps .verdict")).to_have_count(3)
     back, forth = (page.get_by_role("button", name=name) for name in ("Step back", "Step on"))
@@ -292,7 +294,7 @@ def test_steps_are_walked_to_both_ends_by_keyboard(page: Page) -> None:
 
 
 def test_a_link_restores_everything(page: Page, browser: Browser, address: str) -> None:
-    write(page, MENDED + "spec other = F a & G !b // ≤ 🎮\n")
+    write(page, FIXED + "spec other = F a & G !b // ≤ 🎮\n")
     summary(page, "^It compiles")
     page.get_by_role("button", name="other").click()
     expect(page.locator("#english h2")).to_have_text("other")
@@ -302,10 +304,10 @@ def test_a_link_restores_everything(page: Page, browser: Browser, address: str) 
     summary(page, "text is in it")
     link = page.url.removeprefix(address.partition("#")[0])
     assert "token" not in link
-    for other in opened(browser, address, link=link):
-        expect(other.locator("#steps .verdict")).to_have_text(["violated"])
-        expect(other.locator("#english h2")).to_have_text("other")
-        expect(other.get_by_label("Specification")).to_have_value(MENDED + "spec other = F a & G !b // ≤ 🎮\n")
+    for other_page in opened(browser, address, link=link):
+        expect(other_page.locator("#steps .verdict")).to_have_text(["violated"])
+        expect(other_page.locator("#english h2")).to_have_text("other")
+        expect(other_page.get_by_label("Specification")).to_have_value(FIXED + "spec other = F a & G !b // ≤ 🎮\n")
 
 
 def test_a_broken_link_shows_an_example(browser: Browser, address: str) -> None:
@@ -316,33 +318,33 @@ def test_a_broken_link_shows_an_example(browser: Browser, address: str) -> None:
 PACKED = """async (value) => (await import("./share.js")).packed(value)"""
 
 
-def test_a_link_may_hold_anything(page: Page, browser: Browser, address: str) -> None:
+def test_a_link_with_invalid_values_is_opened(page: Page, browser: Browser, address: str) -> None:
     letters = [["a", 3, {"b": 1}], None, {"0": "a"}, "a", [["a"]], *([["b"]] * 1200)]
-    link = page.evaluate(PACKED, {"text": MENDED, "spec": {"x": 1}, "mode": [], "letters": letters, "current": -7.5})
-    for other in opened(browser, address, link=link):
-        expect(other.locator("#steps tbody tr")).to_have_count(1000)
-        expect(other.locator("#steps tr.current .verdict")).to_have_text("pending")
-        expect(other.get_by_role("button", name="Add step")).to_be_disabled()
+    link = page.evaluate(PACKED, {"text": FIXED, "spec": {"x": 1}, "mode": [], "letters": letters, "current": -7.5})
+    for other_page in opened(browser, address, link=link):
+        expect(other_page.locator("#steps tbody tr")).to_have_count(1000)
+        expect(other_page.locator("#steps tr.current .verdict")).to_have_text("pending")
+        expect(other_page.get_by_role("button", name="Add step")).to_be_disabled()
 
 
-def test_a_link_that_never_ends_is_none(page: Page, browser: Browser, address: str) -> None:
+def test_a_link_that_unpacks_to_too_much_is_ignored(page: Page, browser: Browser, address: str) -> None:
     link = page.evaluate(PACKED, {"text": " " * 20_000_000})
     assert len(link) < 50_000
-    for other in opened(browser, address, link=link):
-        expect(other.locator("#english h2")).to_have_text("escape")
+    for other_page in opened(browser, address, link=link):
+        expect(other_page.locator("#english h2")).to_have_text("escape")
 
 
-def test_a_long_link_is_said_to_be_one(page: Page) -> None:
+def test_a_long_link_has_a_warning(page: Page) -> None:
     words = random.Random(0)
-    write(page, f"{MENDED}// {' '.join(str(words.random()) for _ in range(500))}\n")
+    write(page, f"{FIXED}// {' '.join(str(words.random()) for _ in range(500))}\n")
     summary(page, "^It compiles$")
     page.get_by_role("button", name="Copy link").click()
     summary(page, r"It has \d{4,} characters, and some programs cut long links\.$")
 
 
-def test_a_text_that_no_link_can_hold(page: Page) -> None:
+def test_a_text_too_long_for_a_link_is_reported(page: Page) -> None:
     words = random.Random(0)
-    long = f"{MENDED}// {' '.join(str(words.random()) for _ in range(50_000))}\n"
+    long = f"{FIXED}// {' '.join(str(words.random()) for _ in range(50_000))}\n"
     page.get_by_label("Specification").evaluate(
         "(area, text) => { area.value = text; area.dispatchEvent(new Event('input')); }", long
     )
@@ -352,21 +354,21 @@ def test_a_text_that_no_link_can_hold(page: Page) -> None:
     assert "#" not in page.url
 
 
-def test_a_server_that_is_gone_is_said_to_be(browser: Browser) -> None:
+def test_a_stopped_server_is_reported(browser: Browser) -> None:
     with serving() as server:
-        made = browser.new_context()
-        made.set_default_timeout(chromium.HANG_MS)
-        page = made.new_page()
+        context = browser.new_context()
+        context.set_default_timeout(chromium.HANG_MS)
+        page = context.new_page()
         page.goto(server.address)
         summary(page, "^It compiles")
         server.shutdown()
         server.server_close()
         write(page, BROKEN)
         summary(page, "^No answer: the server is gone; start `tltlc serve` again$")
-        made.close()
+        context.close()
 
 
-def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_other_tabs(browser: Browser, address: str) -> None:
+def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_tabs(browser: Browser, address: str) -> None:
     for page in opened(browser, address):
         before = kept_address(page)
         write(page, BROKEN)
@@ -384,40 +386,40 @@ def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_other_tabs(bro
 
 def test_without_the_token_the_page_says_which_address_to_open(browser: Browser, address: str) -> None:
     base, _, token = address.partition("#")
-    made = browser.new_context()
-    page = made.new_page()
+    context = browser.new_context()
+    page = context.new_page()
     page.goto(base)
     summary(page, "^It could not begin: open the address that `tltlc serve` shows: the token in it is missing here")
-    # Only the fragment changes, so that the browser loads nothing anew by itself.
+    # Only the fragment changes, so the browser does not reload the page.
     page.goto(f"{base}#{token}")
     summary(page, "^It compiles")
-    made.close()
+    context.close()
 
 
 def test_the_file_that_serve_opens_leads_to_the_page(browser: Browser, address: str) -> None:
-    made = browser.new_context()
-    made.set_default_timeout(chromium.HANG_MS)
-    page = made.new_page()
+    context = browser.new_context()
+    context.set_default_timeout(chromium.HANG_MS)
+    page = context.new_page()
     with leading_to(address) as uri:
         page.goto(uri)
         summary(page, "^It compiles")
     assert "token" not in page.url
-    made.close()
+    context.close()
 
 
 STORED = "() => localStorage.getItem('token')"
 
 
-def test_a_link_with_a_wrong_token_takes_nothing_away(browser: Browser, address: str) -> None:
+def test_a_link_with_a_wrong_token_does_not_replace_the_right_one(browser: Browser, address: str) -> None:
     base, _, token = address.partition("#token=")
-    made = browser.new_context()
-    made.set_default_timeout(chromium.HANG_MS)
-    page = made.new_page()
+    context = browser.new_context()
+    context.set_default_timeout(chromium.HANG_MS)
+    page = context.new_page()
     page.goto(address)
     summary(page, "^It compiles")
     assert page.evaluate(STORED) == token
-    # In the same tab only the fragment changes; another tab begins with the link.
-    other = made.new_page()
+    # In the same tab only the fragment changes; another tab starts with the link.
+    other = context.new_page()
     for tab in (page, other):
         tab.goto(f"{base}#token=junk")
         tab.wait_for_function("() => !location.hash.includes('junk')")
@@ -425,20 +427,20 @@ def test_a_link_with_a_wrong_token_takes_nothing_away(browser: Browser, address:
         assert tab.evaluate(STORED) == token
         write(tab, BROKEN)
         summary(tab, "^1 error")
-    # Without a token that the server accepts, the wrong one is not kept either.
+    # A browser without a valid token does not store the wrong one either.
     stranger = browser.new_context().new_page()
     stranger.goto(f"{base}#token=junk")
     summary(stranger, "^It could not begin: open the address that `tltlc serve` shows")
     assert stranger.evaluate(STORED) is None
     stranger.context.close()
-    made.close()
+    context.close()
 
 
-def test_a_tab_uses_the_token_that_another_tab_was_given(browser: Browser) -> None:
+def test_a_tab_uses_the_token_given_to_another_tab(browser: Browser) -> None:
     with serving() as server:
-        made = browser.new_context()
-        made.set_default_timeout(chromium.HANG_MS)
-        page, other = made.new_page(), made.new_page()
+        context = browser.new_context()
+        context.set_default_timeout(chromium.HANG_MS)
+        page, other = context.new_page(), context.new_page()
         page.goto(server.address)
         summary(page, "^It compiles")
         server.page._token = b"new"
@@ -446,13 +448,13 @@ def test_a_tab_uses_the_token_that_another_tab_was_given(browser: Browser) -> No
         summary(other, "^It compiles")
         write(page, BROKEN)
         summary(page, "^1 error")
-        made.close()
+        context.close()
 
 
-def test_a_server_that_was_started_again_is_asked_with_its_new_token(browser: Browser) -> None:
+def test_a_restarted_server_is_used_with_its_new_token(browser: Browser) -> None:
     with serving() as server:
-        made = browser.new_context()
-        page = made.new_page()
+        context = browser.new_context()
+        page = context.new_page()
         page.goto(server.address)
         summary(page, "^It compiles")
         # A new server at the same port has another token.
@@ -462,7 +464,7 @@ def test_a_server_that_was_started_again_is_asked_with_its_new_token(browser: Br
         page.goto(f"{server.address.partition('#')[0]}#token=new")
         summary(page, "^1 error")
         expect(page.get_by_label("Specification")).to_have_value(BROKEN)
-        made.close()
+        context.close()
 
 
 ATTACK = """async (address) => {
@@ -482,21 +484,22 @@ ATTACK = """async (address) => {
 }"""
 
 
-def test_a_page_from_elsewhere_gets_nothing(browser: Browser) -> None:
-    """A page of another local server, which the browser takes for the same site."""
+def test_a_page_of_another_server_gets_no_answer(browser: Browser) -> None:
+    """The page belongs to another local server, which the browser treats as the same site."""
     with serving() as server, serving() as other:
-        made = browser.new_context(bypass_csp=True)
-        page = made.new_page()
+        context = browser.new_context(bypass_csp=True)
+        page = context.new_page()
         page.goto(other.address)
         summary(page, "^It compiles")
-        # The browser gives no answer to the page; that of `no-cors` is opaque, and is the server's refusal.
+        # The browser hides the answers from the page. The answer to `no-cors` is opaque, and is the server's
+        # rejection.
         outcomes = page.evaluate(ATTACK, server.address.partition("#")[0])
         assert outcomes == ["refused", "refused", "refused", "refused"]
-        made.close()
+        context.close()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_both_schemes_and_the_choice_between_them(browser: Browser, address: str, scheme: Any) -> None:
+def test_light_and_dark_schemes_can_be_switched(browser: Browser, address: str, scheme: Any) -> None:
     lightness = "() => getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)[0]"
     for page in opened(browser, address, color_scheme=scheme):
         assert (page.evaluate(lightness) > 128) == (scheme == "light")
@@ -526,7 +529,7 @@ def test_every_example_is_shown(page: Page) -> None:
         summary(page, "^It compiles")
 
 
-def test_the_menu_names_the_example_that_is_open(page: Page) -> None:
+def test_the_menu_names_the_open_example(page: Page) -> None:
     menu, area = page.get_by_label("Example"), page.get_by_label("Specification")
     expect(menu).to_have_value("0")
     menu.select_option("1")
@@ -535,14 +538,14 @@ def test_the_menu_names_the_example_that_is_open(page: Page) -> None:
     area.press("End")
     page.keyboard.type("!")
     expect(menu).to_have_value("")
-    # The same one again takes the edit back.
+    # Choosing the same example again discards the edit.
     menu.select_option("1")
     expect(area).to_have_value(examples()[1]["text"])
 
 
-def test_the_picture_is_in_words_or_in_symbols(page: Page) -> None:
+def test_the_picture_uses_words_or_symbols(page: Page) -> None:
     before = kept_address(page)
-    write(page, MENDED)
+    write(page, FIXED)
     summary(page, "^It compiles$")
     kept_address(page, before)
     trap = page.locator("#picture .state.violated .label")
@@ -558,19 +561,19 @@ def test_the_picture_is_in_words_or_in_symbols(page: Page) -> None:
 
 
 @pytest.mark.parametrize("mode", ["atoms", "signals"])
-def test_a_trace_of_an_earlier_text_is_said_to_be_one(page: Page, mode: str) -> None:
-    write(page, MENDED)
+def test_a_trace_of_an_earlier_text_has_a_warning(page: Page, mode: str) -> None:
+    write(page, FIXED)
     summary(page, "^It compiles$")
     page.get_by_role("button", name="Show a success").click()
     expect(page.locator("#steps .verdict")).to_have_count(2)
     page.get_by_role("radio", name=mode).check()
-    said = page.locator("#strange")
-    expect(said).to_be_hidden()
-    write(page, MENDED.replace("signal b: bool", "signal door: bool").replace("then b", "then door"))
-    expect(said).to_contain_text(f"what they say of b counts for nothing, since the spec has no such {mode}.")
+    warning = page.locator("#strange")
+    expect(warning).to_be_hidden()
+    write(page, FIXED.replace("signal b: bool", "signal door: bool").replace("then b", "then door"))
+    expect(warning).to_contain_text(f"what they say of b counts for nothing, since the spec has no such {mode}.")
     expect(page.locator("#steps .verdict")).to_have_text(["pending", "pending"])
     page.get_by_role("button", name="Clear").click()
-    expect(said).to_be_hidden()
+    expect(warning).to_be_hidden()
 
 
 @pytest.mark.skipif(not all((PYODIDE_FOLDER / name).is_file() for name in PYODIDE), reason="no npm package `pyodide`")
@@ -590,10 +593,10 @@ def test_the_site_compiles_in_the_browser(browser: Browser, tmp_path: Path) -> N
         for page in opened(browser, f"http://127.0.0.1:{server.server_address[1]}/", wrong):
             write(page, BROKEN)
             summary(page, "^1 error")
-            # A text that takes too long is given up for the next one.
+            # A compilation that takes too long is abandoned for the next text.
             write(page, SLOW)
             summary(page, "^Compiling…$")
-            write(page, MENDED)
+            write(page, FIXED)
             summary(page, "^It compiles$")
             page.get_by_role("button", name="Show a success").click()
             expect(page.locator("#steps .verdict")).to_have_text(["pending", "holding"])
@@ -601,7 +604,7 @@ def test_the_site_compiles_in_the_browser(browser: Browser, tmp_path: Path) -> N
             write(page, SLOW)
             summary(page, "^1 error; what is shown is of an earlier text$")
             expect(page.locator("#messages li")).to_contain_text("was given up")
-            write(page, MENDED)
+            write(page, FIXED)
             summary(page, "^It compiles$")
             assert wrong == []
         server.shutdown()

@@ -1,4 +1,4 @@
-"""The picture: everything is on it, and nothing covers anything else."""
+"""The picture of an automaton is complete, and nothing in it overlaps."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SPECS = (
     "a & !a",
 )
 DENSE = "G((a -> X b) | (c U !a)) & F(b & X c)"
-"""Of 10 states or so and many more edges."""
+"""A formula of about 10 states and many more edges."""
 ROOT = Path(__file__).parents[3]
 SHIPPED = sorted(
     path for folder in ("examples", "tltlc/interfaces/playground/examples") for path in (ROOT / folder).glob("*.tltl")
@@ -47,17 +47,17 @@ def automaton(formula: str, semantics: str = "finite") -> Fspa:
 
 
 def groups(svg: str, kind: str) -> list[ElementTree.Element]:
-    return [each for each in ElementTree.fromstring(svg).iter() if each.get("class", "").split(" ")[0] == kind]
+    return [element for element in ElementTree.fromstring(svg).iter() if element.get("class", "").split(" ")[0] == kind]
 
 
 @pytest.mark.parametrize("formula", SPECS)
-def test_every_state_and_edge_is_there_once(formula: str) -> None:
+def test_every_state_and_edge_is_drawn_once(formula: str) -> None:
     fspa = automaton(formula)
     svg, _ = picture(fspa)
     assert svg
     drawing = folded(fspa)
-    shown = [int(number) for group in groups(svg, "state") for number in group.get("data-states", "").split()]
-    assert sorted(shown) == [state.id for state in fspa.states]
+    drawn_states = [int(number) for group in groups(svg, "state") for number in group.get("data-states", "").split()]
+    assert sorted(drawn_states) == [state.id for state in fspa.states]
     edges = [(int(group.get("data-source", "")), int(group.get("data-target", ""))) for group in groups(svg, "edge")]
     assert sorted(edges) == sorted({(edge.source, edge.target) for edge in drawing.edges})
 
@@ -66,18 +66,18 @@ Area = tuple[float, float, float, float]
 
 
 def areas(svg: str) -> list[tuple[str, Area]]:
-    """What takes room in a picture, the states and the texts of edges: left, top, right and bottom."""
-    found = []
+    """Return the areas of the states and of the texts of edges: left, top, right and bottom."""
+    labelled_areas = []
     for frame in groups(svg, "frame"):
         x, y, width, height = (float(frame.get(name, "")) for name in ("x", "y", "width", "height"))
-        found.append(("state", (x, y, x + width, y + height)))
+        labelled_areas.append(("state", (x, y, x + width, y + height)))
     for text in groups(svg, "guard"):
         lines = [(float(line.get("x", "")), float(line.get("y", "")), line.text or "") for line in text]
-        # A little less than a line is high, and letters are wide.
+        # Estimates: the height is a little less than a line's, and the width is that of wide letters.
         half = max(columns(line) for _, _, line in lines) * 6.5 / 2
         x, top, bottom = lines[0][0], lines[0][1] - 9, lines[-1][1] + 3
-        found.append((" ".join(line for _, _, line in lines), (x - half, top, x + half, bottom)))
-    return found
+        labelled_areas.append((" ".join(line for _, _, line in lines), (x - half, top, x + half, bottom)))
+    return labelled_areas
 
 
 def overlap(one: Area, other: Area) -> bool:
@@ -88,22 +88,22 @@ def check_places(svg: str) -> None:
     root = ElementTree.fromstring(svg)
     width, height = float(root.get("width", "")), float(root.get("height", ""))
     placed = areas(svg)
-    for what, (left, top, right, bottom) in placed:
-        assert 0 <= left <= right <= width, what
-        assert 0 <= top < bottom <= height, what
+    for label, (left, top, right, bottom) in placed:
+        assert 0 <= left <= right <= width, label
+        assert 0 <= top < bottom <= height, label
     for (one, here), (other, there) in combinations(placed, 2):
         assert not overlap(here, there), (one, other)
 
 
 @pytest.mark.parametrize("formula", [*SPECS, DENSE])
-def test_states_and_texts_are_inside_and_apart(formula: str) -> None:
+def test_states_and_texts_are_inside_and_do_not_overlap(formula: str) -> None:
     svg, _ = picture(automaton(formula))
     assert svg
     check_places(svg)
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
-def test_the_pictures_of_shipped_specs(path: Path) -> None:
+def test_pictures_of_shipped_specs_do_not_overlap(path: Path) -> None:
     for fspa in tltlc.compile_file(path):
         svg, note = picture(fspa)
         assert svg, note
@@ -111,14 +111,14 @@ def test_the_pictures_of_shipped_specs(path: Path) -> None:
 
 
 @given(automata() | infinite_automata() | hostile_automata())
-def test_states_and_texts_of_every_automaton_are_inside_and_apart(fspa: Fspa) -> None:
+def test_states_and_texts_of_every_automaton_do_not_overlap(fspa: Fspa) -> None:
     svg, note = picture(fspa)
     assert svg or note
     if svg:
         check_places(svg)
 
 
-def test_a_long_text_is_cut_and_is_whole_and_in_words_as_the_title() -> None:
+def test_a_long_text_is_cut_and_complete_in_the_title() -> None:
     names = [f"the_player_has_been_seen_in_room_{number}" for number in range(12)]
     signals = " ".join(f"signal {name}: bool" for name in names)
     (fspa,) = tltlc.compile_text(f"{signals} spec x = F ({' & '.join(names)})")
@@ -132,20 +132,20 @@ def test_a_long_text_is_cut_and_is_whole_and_in_words_as_the_title() -> None:
     assert max(right for _, (_, _, right, _) in areas(svg)) < 1000
 
 
-def test_pairs_of_infinite_traces_stand_on_their_edges() -> None:
+def test_acceptance_pairs_are_shown_on_their_edges() -> None:
     svg, _ = picture(automaton("G F a & G F b", "infinite"))
     assert svg
     assert "[inf 0]" in svg
 
 
-def test_a_run_is_folded_and_said_to_be() -> None:
+def test_a_run_of_states_is_folded_with_a_note() -> None:
     svg, note = picture(automaton("G(a -> F[0,20] b)"))
     assert svg
     assert " folded" in svg
     assert note.startswith("Dashed: ")
 
 
-def test_runs_that_count_in_step_are_folded() -> None:
+def test_runs_that_count_together_are_folded() -> None:
     fspa = automaton("G !c & F[0,100] a & F[0,100] b")
     svg, note = picture(fspa)
     assert svg
@@ -157,7 +157,7 @@ def test_runs_that_count_in_step_are_folded() -> None:
     assert label == "98 more like these Avoid c throughout, reach a within 99…2 steps, and reach b within 99…2 steps."
 
 
-def test_a_count_down_to_one_step_is_one_range() -> None:
+def test_a_countdown_to_one_step_is_one_range() -> None:
     svg, _ = picture(automaton("F[0,9] a"))
     assert svg
     assert "Reach a within 8…1 steps." in svg
@@ -177,11 +177,11 @@ def test_a_count_down_to_one_step_is_one_range() -> None:
 def test_labels_and_guards_are_in_words_or_in_symbols(notation: Notation, labels: list[str], guards: list[str]) -> None:
     svg, _ = picture(automaton("F a & G b"), notation)
     assert svg
-    shown = {
+    texts = {
         kind: [" ".join(line.text or "" for line in text) for text in groups(svg, kind)] for kind in ("label", "guard")
     }
-    assert sorted(shown["label"]) == sorted(labels)
-    assert set(guards) <= set(shown["guard"])
+    assert sorted(texts["label"]) == sorted(labels)
+    assert set(guards) <= set(texts["guard"])
 
 
 @pytest.mark.parametrize("formula", SPECS)
@@ -193,16 +193,16 @@ def test_the_numbers_of_a_state_are_inside_its_frame_and_above_its_text(formula:
         frame, number, distance = parts.get("ring", parts["frame"]), parts["number"], parts["distance"]
         left, top = float(frame.get("x", "")), float(frame.get("y", ""))
         right = left + float(frame.get("width", ""))
-        # Digits are 8 high and 6.5 wide, and nothing hangs below them.
+        # Digits are 8 high and 6.5 wide, and have no descenders.
         assert float(number.get("y", "")) - 8 > top
         assert left < float(number.get("x", ""))
         assert float(distance.get("x", "")) < right
-        widths = [6.5 * columns(each.text or "") for each in (number, distance)]
+        widths = [6.5 * columns(text.text or "") for text in (number, distance)]
         assert float(number.get("x", "")) + widths[0] < float(distance.get("x", "")) - widths[1]
         assert float(number.get("y", "")) < min(float(line.get("y", "")) for line in parts["label"]) - 9
 
 
-def test_what_nobody_could_read_is_not_drawn() -> None:
+def test_a_picture_with_too_many_states_is_not_drawn() -> None:
     fspa = automaton("F(a & F[3,7] b) & F(b & F[2,6] c)")
     assert len(folded(fspa).states) > MOST_STATES
     assert picture(fspa) == (
@@ -211,7 +211,7 @@ def test_what_nobody_could_read_is_not_drawn() -> None:
     )
 
 
-def test_names_are_no_markup() -> None:
+def test_names_are_escaped() -> None:
     (fspa,) = tltlc.compile_text("/// <b>&\nspec x = F n > 1 & F n < 0.5  signal n in [0, 2]")
     svg, _ = picture(fspa)
     assert svg
@@ -228,10 +228,10 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Ends]]:
 
 
 @given(graphs(), st.lists(st.tuples(st.floats(1, 200), st.floats(1, 90)), min_size=20, max_size=20))
-def test_edges_run_through_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: list[Size]) -> None:
+def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: list[Size]) -> None:
     size, edges = graph
     traps = {state for state in range(1, size) if state % 4 == 3}
-    texts = {(a, b): each for (a, b), each in zip(edges, sizes, strict=False) if a not in traps or a == b}
+    texts = {(a, b): text_size for (a, b), text_size in zip(edges, sizes, strict=False) if a not in traps or a == b}
     boxes = {
         state: Box(60.0 + 10 * state, 40.0 + 5 * state, 9.0 * state, 8.0, 30.0 * state, below=state in traps)
         for state in range(size)
@@ -253,9 +253,9 @@ def test_edges_run_through_no_state_and_no_text(graph: tuple[int, list[Ends]], s
     assert set(placed.ways) == {(a, b) for a, b in texts if a != b}
     for ends, way in placed.ways.items():
         for x, y in points(way):
-            # It leaves and enters its own states.
-            for what, area in taken.items():
-                assert what in ends or not overlap((x, y, x, y), inner(area)), (ends, what)
+            # An edge overlaps its own two states.
+            for owner, area in taken.items():
+                assert owner in ends or not overlap((x, y, x, y), inner(area)), (ends, owner)
 
 
 def inner(area: Area) -> Area:
@@ -263,7 +263,7 @@ def inner(area: Area) -> Area:
 
 
 def points(way: Curve) -> Iterator[tuple[float, float]]:
-    """Points along a path of cubic pieces."""
+    """Yield points along a path of cubic Bézier curves."""
     for start in range(0, len(way) - 1, 3):
         a, b, c, d = way[start : start + 4]
         for number in range(21):

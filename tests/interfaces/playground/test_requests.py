@@ -1,4 +1,5 @@
-"""Requests that are wrong, byte by byte: each has its status, then the server hangs up, and lives on."""
+"""Malformed requests, byte by byte: each gets its status code, the connection is closed, and the
+server goes on."""
 
 from __future__ import annotations
 
@@ -76,8 +77,8 @@ LINES = [
 ]
 
 
-@pytest.mark.parametrize(("line", "status"), LINES, ids=lambda each: repr(each)[:40])
-def test_first_lines_that_are_wrong(server: Server, line: bytes, status: int) -> None:
+@pytest.mark.parametrize(("line", "status"), LINES, ids=lambda value: repr(value)[:40])
+def test_invalid_request_lines_are_rejected(server: Server, line: bytes, status: int) -> None:
     assert refused(server, line) == [status]
 
 
@@ -114,16 +115,16 @@ HEADERS = [
 ]
 
 
-@pytest.mark.parametrize(("header", "status"), HEADERS, ids=lambda each: repr(each)[:40])
-def test_headers_that_are_wrong(server: Server, header: bytes, status: int) -> None:
-    # What stands behind is not taken for a request.
+@pytest.mark.parametrize(("header", "status"), HEADERS, ids=lambda value: repr(value)[:40])
+def test_invalid_headers_are_rejected(server: Server, header: bytes, status: int) -> None:
+    # The bytes after the header are not read as a request.
     assert refused(server, GET + header + b"\r\n" + GET + b"\r\n") == [status]
 
 
-def test_blanks_around_the_value_of_a_header_do_not_count() -> None:
-    found = read_head(GET + b"A:\t b\t c: \xe9 \t\r\nB:\r\nC: \t\r\n\r\n")
-    assert found is not None
-    assert [found[0].headers[name] for name in "abc"] == ["b\t c: é", "", ""]
+def test_blanks_around_the_value_of_a_header_are_removed() -> None:
+    result = read_head(GET + b"A:\t b\t c: \xe9 \t\r\nB:\r\nC: \t\r\n\r\n")
+    assert result is not None
+    assert [result[0].headers[name] for name in "abc"] == ["b\t c: é", "", ""]
 
 
 LONG = {
@@ -136,7 +137,7 @@ LONG = {
 
 
 @pytest.mark.parametrize("header", LONG.values(), ids=LONG)
-def test_a_long_header_that_is_wrong_is_refused_in_linear_time(header: bytes) -> None:
+def test_a_long_invalid_header_is_rejected_in_linear_time(header: bytes) -> None:
     program = (
         "import sys; from tltlc.interfaces.playground.request_head import RefusedError, read_head\n"
         "try: read_head(sys.stdin.buffer.read())\n"
@@ -145,7 +146,7 @@ def test_a_long_header_that_is_wrong_is_refused_in_linear_time(header: bytes) ->
     assert printed(program, GET + header + b"\r\n\r\n").strip() == b"400"
 
 
-def test_heads_that_never_end(server: Server) -> None:
+def test_endless_heads_are_rejected(server: Server) -> None:
     assert refused(server, GET + b"A: " + b"b" * (REQUEST_HEAD.size + 2)) == [431]
     assert refused(server, GET + b"A:\n" * 200) == [431]
 
@@ -156,7 +157,7 @@ def test_paths_may_have_escapes_and_queries(server: Server, path: str) -> None:
 
 
 @pytest.mark.parametrize("path", ["//", "/./", "/../serve.py", "/%2e%2e/x", "/index.html/", "/api/", "/API", "/%2Fapi"])
-def test_other_paths_lead_nowhere(server: Server, path: str) -> None:
+def test_unknown_paths_are_not_found(server: Server, path: str) -> None:
     assert ask(server, "GET", path)[0] == 404
 
 
@@ -171,18 +172,18 @@ def test_other_paths_lead_nowhere(server: Server, path: str) -> None:
         ([b"Transfer-Encoding: chunked"], b"2\r\n{}\r\n0\r\n\r\n", 501),
     ],
 )
-def test_bodies_that_are_wrong(server: Server, headers: list[bytes], body: bytes, status: int) -> None:
+def test_invalid_bodies_are_rejected(server: Server, headers: list[bytes], body: bytes, status: int) -> None:
     assert refused(server, post(server, *headers, body=body)) == [status]
 
 
-def test_a_refusal_arrives_although_a_large_body_comes_behind_it(server: Server) -> None:
+def test_a_rejection_arrives_although_a_large_body_follows(server: Server) -> None:
     body = b"a" * (8 << 20)
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: %d" % len(body), body=body))
         assert statuses(read_to_end(connection)) == [413]
 
 
-def test_a_body_that_is_shorter_than_it_says(server: Server) -> None:
+def test_a_body_that_ends_early_is_rejected(server: Server) -> None:
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: 3"))
         connection.shutdown(socket.SHUT_WR)
@@ -190,16 +191,16 @@ def test_a_body_that_is_shorter_than_it_says(server: Server) -> None:
 
 
 @pytest.mark.parametrize("version", [b"1.1", b"1.0"])
-def test_a_client_that_sends_no_more_gets_its_answer(version: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_client_that_closes_its_sending_side_gets_its_answer(version: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     is_ended = Event()
     with serving() as server, connected(server) as connection:
         answer = server.children.answer
         ended = Connection.eof_received
 
         def see_end(connection: Connection) -> bool:
-            found = ended(connection)
+            result = ended(connection)
             is_ended.set()
-            return found
+            return result
 
         def answer_after_the_end(body: bytes, is_abandoned: Callable[[], bool]) -> str | None:
             assert is_ended.wait(HANG_S)
@@ -209,46 +210,46 @@ def test_a_client_that_sends_no_more_gets_its_answer(version: bytes, monkeypatch
         monkeypatch.setattr(server.children, "answer", answer_after_the_end)
         connection.sendall(request(server, "{}").replace(b"HTTP/1.1", b"HTTP/" + version))
         connection.shutdown(socket.SHUT_WR)
-        found = statuses(read_to_end(connection))
-        # Interim answers are not known to the older version.
-        assert found[-1] == 200
-        assert set(found[:-1]) == ({100} if version == b"1.1" else set())
+        codes = statuses(read_to_end(connection))
+        # HTTP/1.0 has no interim answers.
+        assert codes[-1] == 200
+        assert set(codes[:-1]) == ({100} if version == b"1.1" else set())
 
 
-def test_a_client_that_sends_no_more_gets_all_answers_in_order(server: Server) -> None:
-    several = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
-    for data, found in ((several * 2, [200] * 6), (several + b"GET /", [200, 200, 200, 400]), (b"", [])):
+def test_a_client_that_closes_its_sending_side_gets_all_answers_in_order(server: Server) -> None:
+    requests = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
+    for data, expected in ((requests * 2, [200] * 6), (requests + b"GET /", [200, 200, 200, 400]), (b"", [])):
         with connected(server) as connection:
             connection.sendall(data)
             connection.shutdown(socket.SHUT_WR)
-            assert [status for status in statuses(read_to_end(connection)) if status != 100] == found
+            assert [status for status in statuses(read_to_end(connection)) if status != 100] == expected
 
 
-def test_several_requests_at_once_are_answered_in_order(server: Server) -> None:
-    several = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
+def test_pipelined_requests_are_answered_in_order(server: Server) -> None:
+    requests = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
     last = GET + b"Connection: close\r\n\r\n"
-    assert refused(server, several + b"\r\n" + several + last) == [200] * 7
-    assert refused(server, several + b"nonsense\r\n\r\n" + several) == [200, 200, 200, 400]
+    assert refused(server, requests + b"\r\n" + requests + last) == [200] * 7
+    assert refused(server, requests + b"nonsense\r\n\r\n" + requests) == [200, 200, 200, 400]
 
 
-def test_requests_may_come_byte_by_byte(server: Server) -> None:
+def test_requests_may_arrive_byte_by_byte(server: Server) -> None:
     with connected(server) as connection:
         for byte in request(server, "{}") + GET.replace(b"\r\n", b"\n") + b"Connection: close\n\n":
             connection.sendall(bytes([byte]))
         assert statuses(read_to_end(connection)) == [200, 200]
 
 
-def test_a_body_is_sent_once_the_server_agrees(server: Server) -> None:
+def test_a_body_is_sent_after_100_continue(server: Server) -> None:
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: 2", b"Expect: 100-continue", b"Connection: close", body=b""))
         assert connection.recv(1000) == b"HTTP/1.1 100 Continue\r\n\r\n"
         connection.sendall(b"{}")
         assert statuses(read_to_end(connection)) == [200]
-    # A request that is refused asks for no body.
+    # A request that is rejected gets no `100 Continue`.
     assert refused(server, post(server, b"Content-Length: 99999999", b"Expect: 100-continue", body=b"")) == [413]
 
 
-def test_an_older_client_is_answered_once(server: Server) -> None:
+def test_a_client_of_http_1_0_is_answered_once(server: Server) -> None:
     assert refused(server, b"GET / HTTP/1.0\r\n" + HOST + b"\r\n") == [200]
     assert refused(server, b"GET / HTTP/1.0\r\n\r\n") == [403]
     assert refused(server, b"HEAD /none HTTP/1.0\r\n" + HOST + b"\r\n")[:1] == [404]

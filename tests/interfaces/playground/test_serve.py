@@ -30,7 +30,7 @@ needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a sign
 def served(
     *options: str, program: tuple[str, ...] = ("-m", "tltlc"), folder: Path | None = None, **environment: str
 ) -> Iterator[tuple[subprocess.Popen[str], int]]:
-    """A running ``tltlc serve``, and its port."""
+    """Start ``tltlc serve``, and yield the process and its port."""
     running = subprocess.Popen(
         [sys.executable, *program, "serve", "--port", "0", *options],
         cwd=folder,
@@ -41,23 +41,24 @@ def served(
     )
     try:
         assert running.stderr is not None
-        said = running.stderr.readline()
-        found = re.fullmatch(r"the playground is at http://127\.0\.0\.1:(\d+)/#token=[\w-]{32} until Ctrl-C\n", said)
-        assert found, said
-        yield running, int(found[1])
+        line = running.stderr.readline()
+        match = re.fullmatch(r"the playground is at http://127\.0\.0\.1:(\d+)/#token=[\w-]{32} until Ctrl-C\n", line)
+        assert match, line
+        yield running, int(match[1])
     finally:
         running.kill()
         running.communicate()
 
 
 def rest_of_errors(running: subprocess.Popen[str]) -> str:
-    """Standard error up to the end of the process, with what is in the buffer, which `communicate` leaves out."""
+    """Read standard error to the end of the process, including buffered text, which `communicate`
+    omits."""
     assert running.stderr is not None
     return running.stderr.read()
 
 
 @needs_signals
-def test_it_serves_until_it_is_interrupted() -> None:
+def test_the_command_serves_until_it_is_interrupted() -> None:
     with served() as (running, port):
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
@@ -68,8 +69,8 @@ def test_it_serves_until_it_is_interrupted() -> None:
         assert running.wait(HANG_S) == 130
 
 
-def said_behind_the_address(*options: str, folder: Path) -> str:
-    """What `tltlc serve` says on standard error until it answers, less its first line."""
+def messages_after_the_address(*options: str, folder: Path) -> str:
+    """Return what `tltlc serve` writes to standard error until it answers, without the first line."""
     with served(*options, folder=folder) as (running, port):
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
@@ -80,18 +81,18 @@ def said_behind_the_address(*options: str, folder: Path) -> str:
 
 
 @needs_signals
-def test_a_project_file_that_is_ignored_is_named(tmp_path: Path) -> None:
+def test_an_ignored_project_file_is_named(tmp_path: Path) -> None:
     below = tmp_path / "levels" / "first"
     below.mkdir(parents=True)
     (tmp_path / "tltl.toml").write_text("")
-    assert said_behind_the_address(folder=below) == (
+    assert messages_after_the_address(folder=below) == (
         f"{tmp_path / 'tltl.toml'} is ignored, because it is above this folder; "
         f"to use it, start `tltlc serve` in {tmp_path}\n"
     )
-    # The nearest one counts here, so that nothing is to be said.
+    # The nearest project file applies here, so there is no message.
     (below / "tltl.toml").write_text("")
     for folder in (below, tmp_path):
-        assert said_behind_the_address(folder=folder) == ""
+        assert messages_after_the_address(folder=folder) == ""
 
 
 ELSEWHERE = """
@@ -110,12 +111,12 @@ Thread(target=send, daemon=True).start()
 from tltlc.cli.main import main
 main()
 """
-"""The process gets a signal in another thread once the main thread waits for requests."""
+"""A program that sends a signal from another thread while the main thread waits for requests."""
 
 
 @needs_signals
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_that_another_thread_gets_ends_the_wait_for_requests(number: signal.Signals) -> None:
+def test_a_signal_received_by_another_thread_ends_the_server(number: signal.Signals) -> None:
     with served(str(number.value), program=("-c", ELSEWHERE)) as (running, _):
         assert running.wait(HANG_S) == 128 + number
 
@@ -133,8 +134,9 @@ sys.stderr.write(json.dumps(seen) + "\\n")
 
 @needs_signals
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_browser_is_led_to_the_address_by_a_file_that_others_cannot_read(tmp_path: Path, number: int) -> None:
-    """The arguments of a process are seen by everybody. The browser stays in the foreground, and is answered."""
+def test_the_browser_gets_the_address_in_a_private_file(tmp_path: Path, number: int) -> None:
+    """Every user can see the arguments of a process. This browser runs in the foreground, and gets
+    an answer."""
     (tmp_path / "browser.py").write_text(BROWSER)
     with served("--open", BROWSER=f"{sys.executable} {tmp_path / 'browser.py'} %s") as (running, port):
         assert running.stderr is not None
@@ -149,7 +151,7 @@ def test_a_browser_is_led_to_the_address_by_a_file_that_others_cannot_read(tmp_p
         assert not Path(seen["path"]).parent.exists()
 
 
-def test_the_file_leads_to_the_address_as_it_is() -> None:
+def test_the_file_contains_the_exact_address() -> None:
     address = "http://127.0.0.1:1/#token=a&b"
     with leading_to(address) as uri:
         text = Path(url2pathname(uri.removeprefix("file:"))).read_text(encoding="utf-8")
@@ -157,7 +159,7 @@ def test_the_file_leads_to_the_address_as_it_is() -> None:
 
 
 @needs_signals
-def test_where_no_file_can_be_written_the_page_is_still_there(tmp_path: Path) -> None:
+def test_without_a_temporary_file_the_page_is_served(tmp_path: Path) -> None:
     code = "import tempfile; tempfile.tempdir = 'none/there'\nfrom tltlc.interfaces.cli.main import main; main()"
     with served("--open", program=("-c", code)) as (running, _):
         assert running.stderr is not None
@@ -165,24 +167,24 @@ def test_where_no_file_can_be_written_the_page_is_still_there(tmp_path: Path) ->
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system itself opens pages")
-def test_without_a_browser_the_page_is_still_there(tmp_path: Path) -> None:
+def test_without_a_browser_the_page_is_served(tmp_path: Path) -> None:
     with served("--open", BROWSER="", PATH=str(tmp_path), DISPLAY="") as (running, _):
         assert running.stderr is not None
         assert running.stderr.readline() == "no browser was found: open the address yourself\n"
 
 
 def pyodide(folder: Path) -> Path:
-    """A folder with files of the names that Pyodide's have."""
+    """Make a folder with the file names of Pyodide."""
     folder.mkdir()
     for name in PYODIDE:
         (folder / name).write_text(name)
     return folder
 
 
-def test_the_site_holds_all_that_the_page_needs(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
-    done = tltlc("serve", "--static", "site", "--pyodide", pyodide(inside / "given"))
-    assert (done.status, done.out) == (0, "")
-    assert re.fullmatch(r"wrote \d+ files, \d+ MB, into site; any web server can show them\n", done.err)
+def test_the_site_has_all_files_of_the_page(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
+    outcome = tltlc("serve", "--static", "site", "--pyodide", pyodide(inside / "given"))
+    assert (outcome.status, outcome.out) == (0, "")
+    assert re.fullmatch(r"wrote \d+ files, \d+ MB, into site; any web server can show them\n", outcome.err)
     site = inside / "site"
     page = (site / "index.html").read_text()
     assert 'data-compiler="browser"' in page
@@ -211,25 +213,25 @@ print(sys.modules["tltlc"].__file__, [said["code"] for said in found["diagnostic
 """
 
 
-def test_the_compiler_of_the_site_needs_nothing_but_python(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
+def test_the_compiler_of_the_site_needs_only_python(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
     tltlc("serve", "--static", "site", "--pyodide", pyodide(inside / "given"))
     with ZipFile("site/tltlc.zip") as archive:
         archive.extractall("unpacked")
-    # Without the packages that are installed, and without answers that are remembered.
-    done = subprocess.run(
+    # Run without installed packages and without the cache.
+    completed = subprocess.run(
         [sys.executable, "-I", "-S", "-c", PROGRAM],
         capture_output=True,
         text=True,
         check=False,
         env={**os.environ, "TLTLC_CACHE_DIR": ""},
     )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == f"{inside / 'unpacked' / 'tltlc' / '__init__.py'} ['TLT0401']\n"
+    assert (completed.returncode, completed.stderr) == (0, "")
+    assert completed.stdout == f"{inside / 'unpacked' / 'tltlc' / '__init__.py'} ['TLT0401']\n"
 
 
-def test_without_pyodide_there_is_no_site(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
-    done = tltlc("serve", "--static", "site")
-    assert (done.status, done.err) == (
+def test_without_pyodide_no_site_is_written(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
+    outcome = tltlc("serve", "--static", "site")
+    assert (outcome.status, outcome.err) == (
         4,
         "error[TLT0730]: the site needs Pyodide, and `node_modules/pyodide` has no `pyodide.mjs`\n"
         "  help: npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`\n",

@@ -1,4 +1,4 @@
-"""The server: what it answers, and what it refuses."""
+"""The server: the requests that it answers, and the requests that it rejects."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ SLOW = "".join(
         *(f"spec s{number} = {' and '.join(f'eventually {name}' for name in PLACES)}\n" for number in range(200)),
     ]
 )
-"""Two hundred specs of 512 states: each is within every budget, and all of them take minutes."""
+"""Two hundred specs of 512 states. Each is within every budget, but all of them take minutes."""
 
 
 PATIENT = replace(PLAYGROUND, idle_s=HANG_S, request_s=HANG_S, write_s=HANG_S, linger_s=HANG_S)
-"""Closes no connection because a machine is slow."""
+"""Limits that close no connection because a machine is slow."""
 
 
 @contextmanager
 def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iterator[Server]:
-    """A running server, which by default gives nothing up because a machine is slow."""
+    """A running server, which by default has no short time limits."""
     with Server(0, limit_s, connections) as server:
         thread = Thread(target=server.serve_forever)
         thread.start()
@@ -63,16 +63,17 @@ def server() -> Iterator[Server]:
 def ask(
     server: Server, method: str, path: str, body: str | bytes | None = None, headers: dict[str, str] | None = None
 ) -> tuple[int, dict[str, str], bytes]:
-    """An answer, with the token of the server unless the headers have another one."""
+    """Send a request with the server's token, unless the headers have another one; return status,
+    headers and body."""
     connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=HANG_S)
     connection.request(method, path, body, {"Tltlc-Token": server.token, **(headers or {})})
     answer = connection.getresponse()
-    found = answer.status, dict(answer.getheaders()), answer.read()
+    result = answer.status, dict(answer.getheaders()), answer.read()
     connection.close()
-    return found
+    return result
 
 
-def test_the_page_is_there_and_asks_nobody_else(server: Server) -> None:
+def test_the_page_is_served_and_refers_to_no_other_site(server: Server) -> None:
     status, headers, page = ask(server, "GET", "/")
     assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
     assert "default-src 'none'" in headers["Content-Security-Policy"]
@@ -84,10 +85,10 @@ def test_the_page_is_there_and_asks_nobody_else(server: Server) -> None:
     assert headers["X-Content-Type-Options"] == "nosniff"
 
 
-def test_it_answers_as_the_function_does(server: Server) -> None:
+def test_the_server_answers_like_the_function(server: Server) -> None:
     text = "signal a: bool\nspec x = F a"
-    asked = json.dumps({"text": text, "spec": "x", "letters": [["a"]]})
-    status, _, answer = ask(server, "POST", "/api", asked, JSON)
+    body = json.dumps({"text": text, "spec": "x", "letters": [["a"]]})
+    status, _, answer = ask(server, "POST", "/api", body, JSON)
     assert (status, json.loads(answer)) == (200, view(text, "x", [["a"]]))
     assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
@@ -120,7 +121,7 @@ def test_it_answers_as_the_function_does(server: Server) -> None:
         ("BREW", "/", None, {}, 501),
     ],
 )
-def test_what_it_refuses(
+def test_invalid_requests_are_rejected(
     server: Server, method: str, path: str, body: str | bytes | None, headers: dict[str, str], status: int
 ) -> None:
     assert ask(server, method, path, body, headers)[0] == status
@@ -142,57 +143,55 @@ ELSEWHERE = [
 
 
 @pytest.mark.parametrize("headers", ELSEWHERE, ids=str)
-def test_pages_from_elsewhere_and_those_without_the_token_are_not_answered(
-    server: Server, headers: dict[str, str]
-) -> None:
+def test_requests_from_other_pages_or_without_the_token_are_rejected(server: Server, headers: dict[str, str]) -> None:
     for method, body in (("POST", "{}"), ("GET", None), ("OPTIONS", None)):
-        status, told, answer = ask(server, method, "/api", body, {**JSON, **headers})
+        status, answer_headers, answer = ask(server, method, "/api", body, {**JSON, **headers})
         assert (status, answer) == (403, b"Forbidden\n")
-        # A browser gives an answer to a page from elsewhere only where a header allows it.
-        assert not any(name.lower().startswith("access-control") for name in told)
+        # A browser passes an answer to a page of another origin only if a header allows it.
+        assert not any(name.lower().startswith("access-control") for name in answer_headers)
 
 
-@pytest.mark.parametrize("headers", [each for each in ELSEWHERE if "Tltlc-Token" not in each][:-1], ids=str)
-def test_files_are_for_the_page_itself(server: Server, headers: dict[str, str]) -> None:
+@pytest.mark.parametrize("headers", [headers for headers in ELSEWHERE if "Tltlc-Token" not in headers][:-1], ids=str)
+def test_files_are_served_only_to_the_page_itself(server: Server, headers: dict[str, str]) -> None:
     assert ask(server, "GET", "/main.js", None, headers)[0] == 403
     assert ask(server, "GET", "/", None, headers)[0] == 403
 
 
-def test_a_link_from_elsewhere_leads_to_the_page(server: Server) -> None:
+def test_a_link_from_another_site_opens_the_page(server: Server) -> None:
     link = {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Tltlc-Token": ""}
     assert ask(server, "GET", "/", None, link)[0] == 200
     assert ask(server, "GET", "/main.js", None, link)[0] == 403
 
 
-def test_its_own_page_is_answered_under_each_of_its_names(server: Server) -> None:
+def test_the_page_is_answered_under_each_name_of_the_host(server: Server) -> None:
     for host in (f"127.0.0.1:{server.server_address[1]}", "localhost:9000"):
         own = {"Host": host, "Origin": f"http://{host}", "Sec-Fetch-Site": "same-origin"}
         assert ask(server, "POST", "/api", "{}", {**JSON, **own})[0] == 200
 
 
-def test_each_server_has_a_token_of_its_own(server: Server) -> None:
+def test_each_server_has_its_own_token(server: Server) -> None:
     with Server(0) as other:
         assert other.token != server.token
         assert len(other.token) >= 32
         assert other.address.endswith(f"/#token={other.token}")
 
 
-def test_a_page_without_a_body(server: Server) -> None:
+def test_a_head_request_has_no_body(server: Server) -> None:
     status, headers, body = ask(server, "HEAD", "/")
     assert (status, body, headers["Content-Length"]) == (200, b"", str(len(server.page.files["index.html"])))
 
 
-def test_who_does_not_wait_for_an_answer_is_no_problem(server: Server, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_client_that_disconnects_causes_no_error(server: Server, capfd: pytest.CaptureFixture[str]) -> None:
     for _ in range(3):
         with socket.create_connection(("127.0.0.1", server.server_address[1])) as gone:
-            # Nothing is left to be sent, and what comes is refused at once.
+            # The connection is reset: no data is left to send, and answers are refused immediately.
             gone.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
             gone.sendall(request(server, "{}"))
     assert ask(server, "POST", "/api", "{}", JSON)[0] == 200
     assert capfd.readouterr().err == ""
 
 
-def test_a_large_text_arrives_whole_at_a_child_that_is_slow_to_read(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_large_text_reaches_a_child_that_reads_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "_LOOK_S", 0.001)
     text = f"// {'far more than a pipe holds ' * 10_000}\nsignal a: bool\nspec x = F a"
     with serving() as server:
@@ -200,9 +199,9 @@ def test_a_large_text_arrives_whole_at_a_child_that_is_slow_to_read(monkeypatch:
     assert (status, json.loads(answer)["diagnostics"]) == (200, [])
 
 
-def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
+def test_the_text_of_a_client_that_disconnected_is_abandoned() -> None:
     with serving() as server:
-        # More than are answered at once: those that wait for their turn give it up as well.
+        # There are more requests than children at once, so the waiting ones must be abandoned too.
         waiting = [
             socket.create_connection(("127.0.0.1", server.server_address[1])) for _ in range(children.MOST_AT_ONCE + 2)
         ]
@@ -215,7 +214,7 @@ def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
         assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
 
-def test_what_is_at_work_ends_with_the_server() -> None:
+def test_running_children_end_with_the_server() -> None:
     with (
         serving() as server,
         socket.create_connection(("127.0.0.1", server.server_address[1])) as connection,
@@ -240,43 +239,43 @@ def request(server: Server, body: str) -> bytes:
 
 
 def eventually(happens: Callable[[], bool]) -> bool:
-    """Wait until something happens."""
+    """Wait until the condition is true."""
     return until(happens, "the server")
 
 
-def test_the_port_is_free_again_at_once() -> None:
+def test_the_port_can_be_reused_at_once() -> None:
     with serving() as server:
         port = server.server_address[1]
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
         connection.getresponse().read()
-        # The server hangs up first, which keeps the address for a while.
+        # The server closes the connection first, which keeps the address in use for a while.
     with Server(port) as again:
         assert again.server_address[1] == port
     connection.close()
 
 
-def test_a_text_as_large_as_a_file_may_be_is_a_request(server: Server) -> None:
-    asked = json.dumps({"text": '"\n' * (1 << 19)})
-    status, _, answer = ask(server, "POST", "/api", asked, JSON)
+def test_a_text_of_the_maximal_file_size_is_accepted(server: Server) -> None:
+    body = json.dumps({"text": '"\n' * (1 << 19)})
+    status, _, answer = ask(server, "POST", "/api", body, JSON)
     assert (status, len(json.loads(answer)["diagnostics"]) > 0) == (200, True)
 
 
-def test_localhost_is_a_name_for_it(server: Server) -> None:
+def test_localhost_is_accepted_as_host(server: Server) -> None:
     for name in ("localhost:1", "LocalHost", "127.0.0.1"):
         assert ask(server, "GET", "/", None, {"Host": name})[0] == 200
 
 
-def test_what_takes_too_long_is_ended_and_the_next_text_is_answered() -> None:
+def test_a_slow_compilation_is_abandoned_and_the_next_text_answered() -> None:
     with serving(limit_s=2.0) as server:
-        (said,) = json.loads(ask(server, "POST", "/api", json.dumps({"text": SLOW}), JSON)[2])["diagnostics"]
-        assert (said["code"], said["title"]) == ("TLT0775", "this takes longer than 2 s, and was given up")
+        (diagnostic,) = json.loads(ask(server, "POST", "/api", json.dumps({"text": SLOW}), JSON)[2])["diagnostics"]
+        assert (diagnostic["code"], diagnostic["title"]) == ("TLT0775", "this takes longer than 2 s, and was given up")
         server.children._limit_s = HANG_S
         assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
 
-def test_a_child_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    # The fixed text of a process that never answers stands in for a compilation that does not end.
+def test_a_child_that_hangs_is_killed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    # A process that never answers stands in for an endless compilation.
     def hanging() -> subprocess.Popen[bytes]:
         command = ["sh", "-c", f"echo $$ > {tmp_path}/pid; exec sleep 60"]
         return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
@@ -299,12 +298,12 @@ def test_a_child_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         os.kill(pid, 0)
 
 
-def test_a_port_that_is_taken(server: Server) -> None:
+def test_a_port_in_use_is_reported(server: Server) -> None:
     with pytest.raises(TltlError) as caught:
         Server(server.server_address[1])
-    (said,) = caught.value.diagnostics
-    assert (said.code, said.help) == ("TLT0776", "give another port, or 0 for any: `--port 0`")
-    assert said.title.startswith(f"cannot serve at 127.0.0.1:{server.server_address[1]}: ")
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.code, diagnostic.help) == ("TLT0776", "give another port, or 0 for any: `--port 0`")
+    assert diagnostic.title.startswith(f"cannot serve at 127.0.0.1:{server.server_address[1]}: ")
 
 
 def program(code: str) -> list[str]:
@@ -312,13 +311,13 @@ def program(code: str) -> list[str]:
 
 
 def replaced_by(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Children are processes that do something else."""
+    """Replace the program of the children."""
     pipe = subprocess.PIPE
     monkeypatch.setattr(children, "_started", lambda: subprocess.Popen(program(code), stdin=pipe, stdout=pipe))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system holds no process to its memory")
-def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_memory_of_a_child_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     limits = subprocess.run(
         program(
             "import resource; from tltlc.interfaces.playground.child import limit_resources; limit_resources()\n"
@@ -329,7 +328,7 @@ def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch)
         check=True,
     )
     memory, work = PLAYGROUND_CHILD.memory, PLAYGROUND_CHILD.work_s
-    assert limits.stdout.split() == [str(each) for each in (memory, memory, work, work)]
+    assert limits.stdout.split() == [str(limit) for limit in (memory, memory, work, work)]
     replaced_by(
         "from tltlc.interfaces.playground import child, protocol\n"
         "protocol.view = lambda *_: bytearray(child.PLAYGROUND_CHILD.memory)\n"
@@ -337,8 +336,11 @@ def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch)
         monkeypatch,
     )
     with serving() as server:
-        (said,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
-        assert (said["code"], said["title"]) == ("TLT0775", "this takes more memory than the playground has")
+        (diagnostic,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
+        assert (diagnostic["code"], diagnostic["title"]) == (
+            "TLT0775",
+            "this takes more memory than the playground has",
+        )
 
 
 ENDS = {
@@ -355,7 +357,7 @@ if os.name == "posix":
 
 
 @pytest.mark.parametrize(("code", "title"), ENDS.items(), ids=str)
-def test_a_child_that_fails_is_reported_as_what_it_is(code: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_failure_of_a_child_is_reported(code: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
     replaced_by(
         "from tltlc.interfaces.playground import child, protocol\n"
         f"def fail(_): {code}\nprotocol.answer = fail\nchild.main()",
@@ -367,12 +369,12 @@ def test_a_child_that_fails_is_reported_as_what_it_is(code: str, title: str, mon
     finally:
         answering.close()
     assert answered is not None
-    (said,) = json.loads(answered)["diagnostics"]
-    assert (said["code"], said["title"]) == ("TLT0775", title)
-    assert ("spec" in said["help"]) == ("memory" in title or "SIGKILL" in title)
+    (diagnostic,) = json.loads(answered)["diagnostics"]
+    assert (diagnostic["code"], diagnostic["title"]) == ("TLT0775", title)
+    assert ("spec" in diagnostic["help"]) == ("memory" in title or "SIGKILL" in title)
 
 
-def test_a_child_that_died_while_it_waited_is_replaced() -> None:
+def test_a_child_that_died_while_idle_is_replaced() -> None:
     with serving() as server:
         ready = server.children._ready
         assert ready is not None
@@ -381,7 +383,7 @@ def test_a_child_that_died_while_it_waited_is_replaced() -> None:
         assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
 
-def test_what_is_at_work_when_the_server_ends_is_abandoned() -> None:
+def test_pending_requests_are_abandoned_when_the_server_ends() -> None:
     answering = children.Children(HANG_S)
     outcomes: list[str] = []
 
@@ -400,14 +402,14 @@ def test_what_is_at_work_when_the_server_ends_is_abandoned() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="limits of this kind are those of POSIX")
-def test_a_lower_limit_that_is_there_already_stays() -> None:
+def test_an_existing_lower_limit_is_kept() -> None:
     code = (
         "import resource; from tltlc.interfaces.playground.child import limit_resources\n"
         "resource.setrlimit(resource.RLIMIT_CPU, (7, 7)); limit_resources()\n"
         "print(*resource.getrlimit(resource.RLIMIT_CPU))"
     )
-    done = subprocess.run(program(code), capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["7", "7"]
+    completed = subprocess.run(program(code), capture_output=True, text=True, check=True)
+    assert completed.stdout.split() == ["7", "7"]
 
 
 @pytest.mark.parametrize(
@@ -419,18 +421,21 @@ def test_a_lower_limit_that_is_there_already_stays() -> None:
     ],
     ids=["told", "without end"],
 )
-def test_an_answer_that_is_too_large_is_given_up(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_answer_that_is_too_large_is_rejected(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
     replaced_by(code, monkeypatch)
     with serving() as server:
-        (said,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
-        assert (said["code"], said["title"]) == ("TLT0775", "the answer is larger than 32 MiB, and was given up")
+        (diagnostic,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
+        assert (diagnostic["code"], diagnostic["title"]) == (
+            "TLT0775",
+            "the answer is larger than 32 MiB, and was given up",
+        )
 
 
-def test_where_no_process_can_be_started_the_next_request_tries_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_next_request_retries_after_a_failed_start(monkeypatch: pytest.MonkeyPatch) -> None:
     with serving() as server:
         with monkeypatch.context() as failing:
             failing.setattr(children, "_started", fails)
-            # One process is there already.
+            # One process is running already.
             assert [ask(server, "POST", "/api", "{}", JSON)[0] for _ in range(3)] == [200, 503, 503]
         assert ask(server, "POST", "/api", "{}", JSON)[0] == 200
 
