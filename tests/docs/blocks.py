@@ -14,7 +14,7 @@ _FILE = re.compile(r"// (\w+\.tltl)\n")
 
 
 class Block(NamedTuple):
-    """A block, the word behind its fence, and the line that it begins on."""
+    """A block: the word after its fence, its text, and the number of its first line."""
 
     kind: str
     text: str
@@ -22,11 +22,11 @@ class Block(NamedTuple):
 
     @property
     def file(self) -> str:
-        """The name of the file that the block is: its first line may say it."""
+        """The name of the block's file, which may be given in a comment on its first line."""
         named = _FILE.match(self.text)
         return named[1] if named else "example.tltl"
 
 
 def blocks(page: Path) -> list[Block]:
     text = page.read_text(encoding="utf-8")
-    return [Block(found[1], found[2], text.count("\n", 0, found.start()) + 1) for found in _FENCE.finditer(text)]
+    return [Block(fence[1], fence[2], text.count("\n", 0, fence.start()) + 1) for fence in _FENCE.finditer(text)]

@@ -1,4 +1,4 @@
-"""Pages that are run as their reader would: files are written, commands run, and what they print compared."""
+"""Run pages as a reader would: write their files, run their commands, and compare the output."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
 
 
 class Shell:
-    """A folder and a last status, and the commands of this checkout."""
+    """A shell in a folder, with the commands of this checkout; it keeps the last exit status."""
 
     def __init__(self, folder: Path) -> None:
         programs = folder / "bin"
@@ -40,13 +40,13 @@ class Shell:
         self._status = 0
 
     def run(self, command: str) -> str:
-        """Everything that the command prints, standard output first."""
+        """Run a command and return its output, standard output before standard error."""
         if command.startswith("cd "):
             self.folder /= command[3:]
             return ""
         if command == "echo $?":
             return f"{self._status}\n"
-        done = subprocess.run(
+        completed = subprocess.run(
             ["/bin/sh", "-c", command],
             cwd=self.folder,
             env=self._environment,
@@ -55,18 +55,20 @@ class Shell:
             timeout=HANG_S,
             check=False,
         )
-        self._status = done.returncode
-        return done.stdout + done.stderr
+        self._status = completed.returncode
+        return completed.stdout + completed.stderr
 
 
 def matches(printed: str, shown: str) -> bool:
-    """Whether the two are the same, where a line `…` stands for any number of lines."""
+    """Whether the printed text matches the shown text, in which a line `…` stands for any number of
+    lines."""
     parts = [re.escape(part) for part in re.split(rf"^ *{ANYTHING}\n", shown, flags=re.MULTILINE)]
     return re.fullmatch(r"(?:.*\n)*".join(parts), printed) is not None
 
 
 def run_page(text: str, shell: Shell) -> int:
-    """Write the files of a page and run its commands, which must print what it shows; how many these are."""
+    """Write the files of a page, run its commands and compare their output; return the number of
+    commands."""
     commands = 0
     for part in _PART.finditer(text):
         if part["new"]:

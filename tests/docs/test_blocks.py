@@ -1,4 +1,4 @@
-"""Every specification in the documentation compiles, or causes the very message that stands behind it."""
+"""Every specification in the documentation compiles, or causes exactly the message shown after it."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ PAGES = sorted(DOCS.rglob("*.md"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_specifications(page: Path, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    found = blocks(page)
-    for block, after in zip(found, [*found[1:], Block("", "", 0)], strict=False):
+def test_specifications_compile_or_cause_the_shown_message(page: Path, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    page_blocks = blocks(page)
+    for block, after in zip(page_blocks, [*page_blocks[1:], Block("", "", 0)], strict=False):
         if block.kind != "tltl":
             continue
-        where = f"{page.name}:{block.line}"
+        place = f"{page.name}:{block.line}"
         Path(block.file).write_text(block.text, encoding="utf-8")
         checked = tltlc("check", block.file)
         if after.text.startswith(("error[", "warning[")):
-            assert checked.err.startswith(after.text), where
-            assert checked.status == after.text.startswith("error["), where
+            assert checked.err.startswith(after.text), place
+            assert checked.status == after.text.startswith("error["), place
             continue
-        assert (checked.status, "nothing to report" in checked.err) == (0, True), f"{where}: {checked.err}"
+        assert (checked.status, "nothing to report" in checked.err) == (0, True), f"{place}: {checked.err}"
         if '\ntest "' in block.text:
-            assert tltlc("test", block.file).status == 0, where
+            assert tltlc("test", block.file).status == 0, place
 
 
-def test_the_reference_has_plenty_of_them() -> None:
+def test_the_language_reference_has_many_examples() -> None:
     assert sum(block.kind == "tltl" for block in blocks(DOCS / "language.md")) >= 14

@@ -1,4 +1,4 @@
-"""The guide to builds: its script ends where something is wrong, and its other commands are ones that there are."""
+"""The guide to builds: its script fails if something is wrong, and its other commands exist."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ pytestmark = [
 
 @pytest.fixture
 def project(tmp_path: Path) -> Shell:
-    """A repository with a spec that is right, on its branch `main`."""
+    """A git repository with a valid spec on the branch `main`."""
     shell = Shell(tmp_path)
     (tmp_path / "specs").mkdir()
     (tmp_path / "specs" / "heist.tltl").write_text(SPEC)
@@ -67,14 +67,14 @@ def status(shell: Shell, command: str) -> tuple[int, str]:
         ("400 steps", "300 steps", "error[TLT0758]"),
     ],
 )
-def test_the_script_ends_where_something_is_wrong(project: Shell, before: str, after: str, said: str) -> None:
+def test_the_script_fails_if_something_is_wrong(project: Shell, before: str, after: str, said: str) -> None:
     path = project.folder / "specs" / "heist.tltl"
     path.write_text(SPEC.replace(before, after, 1))
-    found, printed = status(project, "sh check_specs.sh")
-    assert (found, said in printed) == (int(bool(before)), True), printed
+    exit_status, printed = status(project, "sh check_specs.sh")
+    assert (exit_status, said in printed) == (int(bool(before)), True), printed
 
 
-def test_the_workflow_runs(project: Shell) -> None:
+def test_the_commands_of_the_workflow_run(project: Shell) -> None:
     workflow = next(block.text for block in BLOCKS if block.text.startswith("# .github"))
     commands = re.findall(r"- run: (tltlc .*)", workflow)
     assert len(commands) == 5
@@ -84,7 +84,7 @@ def test_the_workflow_runs(project: Shell) -> None:
     assert "Reach near(vault), then near(exit)" in (project.folder / "summary.md").read_text()
 
 
-def test_the_hooks_run(project: Shell) -> None:
+def test_the_commands_of_the_hooks_run(project: Shell) -> None:
     hooks = next(block.text for block in BLOCKS if block.text.startswith("repos:"))
     entries = re.findall(r"entry: ([^,]+),", hooks)
     assert len(entries) == 2
@@ -92,7 +92,7 @@ def test_the_hooks_run(project: Shell) -> None:
         assert status(project, f"{entry} specs/heist.tltl")[0] == 0
 
 
-def test_recorded_play_and_generated_files(project: Shell) -> None:
+def test_recorded_play_and_generated_files_are_checked(project: Shell) -> None:
     record, generate = [block.text for block in BLOCKS if block.kind == "sh"][1:]
     folder = project.folder
     (folder / "specs" / "first_level.tltl").write_text(SPEC)
@@ -101,7 +101,7 @@ def test_recorded_play_and_generated_files(project: Shell) -> None:
     assert status(project, record)[0] == 0
     (folder / "traces" / "none.csv").write_text("distance(vault),distance(exit),health\n9,0,1\n")
     assert status(project, record)[0] == 1
-    made = generate.replace(",svg", "")
-    assert status(project, f"set -e\n{made.splitlines()[0]}\ngit add generated\n{made}")[0] == 0
+    commands = generate.replace(",svg", "")
+    assert status(project, f"set -e\n{commands.splitlines()[0]}\ngit add generated\n{commands}")[0] == 0
     (folder / "specs" / "first_level.tltl").write_text(SPEC.replace("400", "500"))
-    assert status(project, f"set -e\n{made}")[0] == 1
+    assert status(project, f"set -e\n{commands}")[0] == 1

@@ -1,4 +1,5 @@
-"""The example on the page of a code causes that code, or is in order where something else than a source causes it."""
+"""The example on the page of a code causes this code, or no error if the code's cause is not in a
+source."""
 
 from __future__ import annotations
 
@@ -17,30 +18,30 @@ from tltlc.tools.lint.rules import rules
 
 FOLDER = Path(codes.__file__).parent / "pages"
 ABBREVIATED = {"TLT0012", "TLT0103", "TLT0317"}
-"""What causes these is too long for a page; the examples hint at it."""
+"""The causes of these codes are too long for a page; the examples are abbreviated."""
 AT_RUN_TIME = {"TLT0613": "TLT0306", "TLT0616": "TLT0306"}
-"""A source that would cause these is answered before it runs, as their pages say."""
+"""The compiler rejects a source that would cause these at run time; their pages say so."""
 
 FROM_A_SOURCE_TOO = {"TLT0501", "TLT0503", *AT_RUN_TIME}
 
 
 OF_RULES = {*(rule.code for rule in rules()), ALLOWED_IN_VAIN}
-"""What a file causes that compiles; tests/tools/lint/test_pages.py runs the examples."""
+"""Codes of the linter's rules; tests/tools/lint/test_pages.py runs their examples."""
 
 
 @pytest.mark.parametrize("code", sorted(set(codes.codes()) - ABBREVIATED - OF_RULES))
-def test_the_example(code: str, inside: Path) -> None:
+def test_the_example_causes_its_code(code: str, inside: Path) -> None:
     examples = [block for block in blocks(FOLDER / f"{code}.md") if block.kind == "tltl"]
     for block in examples:
         Path(block.file).write_text(block.text, encoding="utf-8")
-    # Where there are several, the last one uses the others.
+    # If there are several blocks, the last one uses the others.
     for block in examples[-1:]:
         try:
-            found = compile_source(SourceFile(block.file, block.text)).diagnostics
+            diagnostics = compile_source(SourceFile(block.file, block.text)).diagnostics
         except tltlc.TltlError as error:
-            found = error.diagnostics
+            diagnostics = error.diagnostics
         caused = AT_RUN_TIME.get(code, code)
         from_a_source = ("TLT0010" <= code < "TLT0500" and code != "TLT0308") or code in FROM_A_SOURCE_TOO
-        assert {diagnostic.code for diagnostic in found} <= {caused}
-        assert bool(found) == from_a_source
+        assert {diagnostic.code for diagnostic in diagnostics} <= {caused}
+        assert bool(diagnostics) == from_a_source
         assert caused == code or re.search(rf"\({caused}\)", codes.page(code))

@@ -1,4 +1,4 @@
-"""The list of guides: all of them are in it, and each line leads to one."""
+"""The index of guides lists all guides, and each row has a link."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ PAGE = DOCS / "guides" / "index.md"
 ROW = re.compile(r"^\| (?!to…|in…|---)([^|]+) \| ([^|]+) \|$", re.MULTILINE)
 
 
-def test_every_guide_is_in_it() -> None:
+def test_every_guide_is_listed() -> None:
     text = PAGE.read_text(encoding="utf-8")
     guides = {path.name for path in PAGE.parent.glob("*.md")} - {PAGE.name}
     assert guides <= {link.partition("#")[0] for link in re.findall(r"\]\(([^)]+)\)", text)}
 
 
-def test_every_line_leads_somewhere() -> None:
+def test_every_row_has_a_link() -> None:
     rows = ROW.findall(PAGE.read_text(encoding="utf-8"))
     assert len(rows) >= 20
     for task, pages in rows:

@@ -1,4 +1,4 @@
-"""What the page on semantics says of examples over infinite traces."""
+"""The examples over infinite traces on the page on semantics."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def test_every_state_but_traps_is_a_goal(formula: str) -> None:
     assert (fspa.spec_size, fspa.judge) == (0, "limit")
 
 
-def test_over_finite_traces_what_recurs_is_what_holds_at_the_last_sample() -> None:
+def test_over_finite_traces_recurrence_depends_on_the_last_sample() -> None:
     assert [after(compiled("G F a", ""), *trace).accepting for trace in ((A, NONE), (NONE, A))] == [False, True]
     assert [after(compiled("F G a", ""), *trace).accepting for trace in ((A, NONE), (NONE, A))] == [False, True]
 
 
-def test_what_is_owed_is_in_the_label_and_a_bound_can_be_broken() -> None:
+def test_obligations_are_in_the_label_and_bounds_can_be_broken() -> None:
     step = after(compiled("G(a -> F b)"), A, *[NONE] * 20)
     assert (step.verdict, step.accepting, step.label) == ("holding", True, "G(a -> F b) & F b")
     bounded = compiled("G(a -> F[0,9] b)")
@@ -66,7 +66,7 @@ def test_progress_is_the_share_of_the_limit_that_was_survived() -> None:
 
 
 def test_automata_are_compared(capsys: pytest.CaptureFixture[str]) -> None:
-    found = pairwise(blocks(DOCS / "semantics.md"))
-    ((program, printed),) = ((block, after) for block, after in found if block.kind == "python")
+    block_pairs = pairwise(blocks(DOCS / "semantics.md"))
+    ((program, printed),) = ((block, after) for block, after in block_pairs if block.kind == "python")
     exec(program.text, {})
     assert capsys.readouterr().out == printed.text

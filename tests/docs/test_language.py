@@ -1,4 +1,4 @@
-"""The language reference names everything that the language has, and what its tables say is so."""
+"""The language reference is complete, and its tables are correct."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from tltlc.resolve import context, scope, units
 from tltlc.resolve.range_proof import cases, check
 
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")
-IN_CODE = {found.replace(r"\|", "|") for found in re.findall(r"`([^`\n]+)`", PAGE)}
+IN_CODE = {inline_code.replace(r"\|", "|") for inline_code in re.findall(r"`([^`\n]+)`", PAGE)}
 SIGNALS = "signal a: bool signal b: bool signal c: bool signal p: bool "
 
 
 def rows(heading: str) -> list[list[str]]:
-    """The cells of the first table behind a heading, without the one that names the columns."""
+    """Return the rows of the first table after a heading, as cells, without the head."""
     table = re.search(rf"^#+ {heading}\n.*?((?:^\|[^\n]*\|\n)+)", PAGE, re.MULTILINE | re.DOTALL)
     assert table
     lines = [re.split(r"(?<!\\)\|", line.strip("|")) for line in table[1].splitlines()]
@@ -47,35 +47,35 @@ def formula(text: str) -> str:
     return fspa.formula.ascii
 
 
-def test_every_word_and_sign_is_there() -> None:
+def test_every_word_and_sign_is_documented() -> None:
     tables = load()
     brackets = set("()[]{}:,=")
     assert set(tables.words) | set(tables.soft) - {"x"} <= IN_CODE
-    alone = {sign for name in IN_CODE for sign in [*name.split(), *re.split(r"[\w\s(),…]+", name)]}
-    assert set(tables.signs) - brackets <= alone
+    separate_signs = {sign for name in IN_CODE for sign in [*name.split(), *re.split(r"[\w\s(),…]+", name)]}
+    assert set(tables.signs) - brackets <= separate_signs
 
 
 def test_the_reserved_words_are_those_of_the_grammar() -> None:
-    found = re.search(r"- \*\*Reserved\*\*(.*?)The small words(.*?) are free", PAGE, re.DOTALL)
-    assert found
+    match = re.search(r"- \*\*Reserved\*\*(.*?)The small words(.*?) are free", PAGE, re.DOTALL)
+    assert match
     tables = load()
     capitals = set("FGXNUWRM")
-    assert set(code(found[1])) == set(tables.words) - set(tables.soft) - capitals | {"F G X N U W R M"}
-    assert set(code(found[2])) == set(tables.soft) | {"step 3x"}
+    assert set(code(match[1])) == set(tables.words) - set(tables.soft) - capitals | {"F G X N U W R M"}
+    assert set(code(match[2])) == set(tables.soft) | {"step 3x"}
 
 
-def test_every_form_of_the_grammar_is_there() -> None:
-    """Each reduction of the grammar is taken in an example of the page, or in what it says in code."""
+def test_every_production_of_the_grammar_is_documented() -> None:
+    """Each reduction of the grammar is used in an example or in inline code of the page."""
     taken: set[int] = set()
 
-    class Noting(dict[str, int]):
+    class Recording(dict[str, int]):
         def get(self, key: str, default: int | None = None) -> int | None:  # type: ignore[override]
             action = super().get(key, default)
             seen.add(action)
             return action
 
     tables = load()
-    noting = replace(tables, actions=tuple(map(Noting, tables.actions)))
+    recording_tables = replace(tables, actions=tuple(map(Recording, tables.actions)))
     examples = [block.text for block in blocks(DOCS / "language.md") if block.kind == "tltl"]
     for text, starts in [*((text, ("module",)) for text in examples), *((text, STARTS) for text in sorted(IN_CODE))]:
         source = SourceFile("example.tltl", text)
@@ -83,21 +83,21 @@ def test_every_form_of_the_grammar_is_there() -> None:
         for start in starts:
             seen: set[int | None] = set()
             try:
-                lalr.run(noting, start, lexed.tokens, Builder(source, lexed.docs))
+                lalr.run(recording_tables, start, lexed.tokens, Builder(source, lexed.docs))
             except lalr.UnexpectedTokenError:
                 continue
             taken |= {~action for action in seen if action is not None and action < 0}
             break
 
     def form(number: int) -> tuple[str, str]:
-        # What reaches as far to the right as it can has rules of its own.
+        # Open and closed variants of a rule count as the same form.
         rule = tables.rules[number]
         return re.sub("_(open|closed)$", "", rule.origin), rule.action
 
     assert {form(number) for number in range(len(tables.rules))} == {form(number) for number in taken}
 
 
-def test_every_type_unit_and_function_is_there() -> None:
+def test_every_type_unit_and_function_is_documented() -> None:
     assert [code(row[0]) for row in rows("Declarations")[:1]] == [["import stealth"]]
     assert set(units.TYPES) <= IN_CODE
     assert set(load().units) <= IN_CODE
@@ -105,7 +105,7 @@ def test_every_type_unit_and_function_is_there() -> None:
         assert any(text.startswith(f"{name}(") for text in IN_CODE), name
 
 
-def test_every_declaration_clause_and_expectation_is_there() -> None:
+def test_every_declaration_clause_and_expectation_is_documented() -> None:
     for name in (*words.DECLARATIONS, *words.CLAUSES, *words.TEST_ITEMS):
         assert any(text.split()[0] == name for text in IN_CODE), name
     assert set(words.VERDICTS) <= IN_CODE
@@ -115,7 +115,7 @@ def test_every_declaration_clause_and_expectation_is_there() -> None:
 
 
 @pytest.mark.parametrize("row", rows("Formulas"), ids=lambda row: row[0])
-def test_spellings(row: list[str]) -> None:
+def test_all_spellings_of_an_operator_mean_the_same(row: list[str]) -> None:
     spellings = [spelling for cell in row[1:] for spelling in code(cell)]
     assert spellings
     if row[0] == "true, false":
@@ -148,45 +148,45 @@ def test_order_of_operators(short: str, long: str) -> None:
 
 
 @pytest.mark.parametrize("clause, meaning", rows("Specifications"), ids=lambda text: text)
-def test_clauses(clause: str, meaning: str) -> None:
+def test_clauses_have_the_documented_meaning(clause: str, meaning: str) -> None:
     (fspa,) = tltlc.compile_text(f"{SIGNALS} spec s {{ {clause.strip('`')} }}")
     assert fspa.formula.ascii == formula(meaning.strip("`"))
 
 
 @pytest.mark.parametrize("row", rows("Bounds"), ids=lambda row: "".join(row[:2]))
-def test_bounds(row: list[str]) -> None:
-    written = [text for cell in row for text in code(cell)]
-    same = {formula(text) for text in written}
+def test_bounds_have_the_documented_meaning(row: list[str]) -> None:
+    spellings = [text for cell in row for text in code(cell)]
+    same = {formula(text) for text in spellings}
     expanded = {
         "F[2,3] p": "X X(p | X p)",
         "G[1,2] p": "N(p & N p)",
         "F[0,3] p": "p | X(p | X(p | X p))",
         "G[0,2] p": "p & N(p & N p)",
     }
-    same |= {formula(expanded[text]) for text in written if text in expanded}
+    same |= {formula(expanded[text]) for text in spellings if text in expanded}
     assert len(same) == 1
-    assert len(written) + sum(text in expanded for text in written) >= 2
+    assert len(spellings) + sum(text in expanded for text in spellings) >= 2
 
 
-def test_units() -> None:
+def test_units_have_the_documented_values() -> None:
     text = PAGE[PAGE.index("| unit | is | unit | is |") :].split("\n\n")[0]
     cells = [cell.strip() for line in text.splitlines()[2:] for cell in line.strip("|").split("|")]
-    said = {unit: cell for names, cell in zip(cells[::2], cells[1::2], strict=True) for unit in code(names)}
-    assert set(said) == set(load().units)
+    documented = {unit: cell for names, cell in zip(cells[::2], cells[1::2], strict=True) for unit in code(names)}
+    assert set(documented) == set(load().units)
     values = {"metre": 1, "second": 1, "radian": 1, "1 per second": 1, "π/180 rad": pi / 180}
-    for unit, meaning in said.items():
-        found = units.in_si(1.0, unit)
-        if found is None:
+    for unit, meaning in documented.items():
+        value_in_si = units.in_si(1.0, unit)
+        if value_in_si is None:
             assert unit in ("step", "steps")
         else:
-            assert isclose(found[0], values.get(meaning) or float(meaning.split()[0])), unit
+            assert isclose(value_in_si[0], values.get(meaning) or float(meaning.split()[0])), unit
 
 
-def test_limits() -> None:
-    said = {
+def test_limits_have_the_documented_values() -> None:
+    documented = {
         row[0]: [float(number.replace(",", "")) for number in re.findall(r"[\d,]*\d", row[1])] for row in rows("Limits")
     }
-    assert list(said.values()) == [
+    assert list(documented.values()) == [
         [files.MAX_SOURCE_BYTES / 2**20, lexer.MAX_TOKENS],
         [IMPORTED.values, IMPORTED.size],
         [nesting.MAX_BRACKETS],
@@ -209,7 +209,7 @@ def test_limits() -> None:
     assert {row[2] for row in rows("Limits")} <= set(codes())
 
 
-def test_names_of_atoms() -> None:
+def test_names_of_atoms_are_as_documented() -> None:
     text = """import stealth  entity s1  signal coins in [0, 50]
     spec s = F near(s1) & F near(s1, 1 m) & F near(s1, close = 100 cm) & F near(s1, close = 3 m)
              & F coins >= 30 & F 10 < coins"""
@@ -219,7 +219,7 @@ def test_names_of_atoms() -> None:
     assert set(names) <= IN_CODE
 
 
-def test_what_is_said_of_exclusive() -> None:
+def test_exclusive_works_as_documented() -> None:
     text = next(block for block in re.findall(r"```tltl\n(.*?)```", PAGE, re.DOTALL) if "two_levers" in block)
     two, one = tltlc.compile_text(text)
     assert (len(two.states), len(two.atoms), two.exclusive, two.spec_size) == (4, 3, ((0, 1, 2),), 2)
@@ -228,7 +228,7 @@ def test_what_is_said_of_exclusive() -> None:
     assert without.spec_size == 1
 
 
-def test_the_sign_of_a_power() -> None:
+def test_a_minus_applies_to_the_whole_power() -> None:
     bare, _ = parse_formula(SourceFile("t", "-x^2 > 0"))
     assert bare is not None
     (fspa,) = tltlc.compile_text("signal x in [0, 3] spec s = F -x^2 < -1")

@@ -1,4 +1,5 @@
-"""The phrase book: each clause is read back as it says, needs no remark, and means what stands beside it."""
+"""The phrase book: each clause is explained as shown, has no finding of the linter, and has the
+shown meaning."""
 
 from __future__ import annotations
 
@@ -45,19 +46,19 @@ def test_all_rows_are_found() -> None:
 
 
 @pytest.mark.parametrize(("write", "read"), PHRASES)
-def test_it_is_read_back(write: str, read: str) -> None:
+def test_a_phrase_is_explained_as_shown(write: str, read: str) -> None:
     assert compiled(write).formula.english == read
 
 
 @pytest.mark.parametrize("write", [write for write, _ in PHRASES])
-def test_it_needs_no_remark(write: str) -> None:
-    """But that rules alone are judged at the limit, and what the page declares for other phrases."""
-    found = {each.diagnostic.code for each in run.lint(SourceFile("phrase.tltl", text_of(write)))}
-    assert found <= {"TLT0420", "TLT0421"}
+def test_a_phrase_has_no_finding(write: str) -> None:
+    """Except that a spec of rules has no goal, and that declarations for other phrases are unused."""
+    reported = {finding.diagnostic.code for finding in run.lint(SourceFile("phrase.tltl", text_of(write)))}
+    assert reported <= {"TLT0420", "TLT0421"}
 
 
 @pytest.mark.parametrize(("declare", "ask"), MEASURES)
-def test_what_is_measured_can_be_asked_for(declare: str, ask: str) -> None:
+def test_a_measured_signal_can_be_used_in_a_goal(declare: str, ask: str) -> None:
     entity = "entity gate\n" if "gate" in ask else ""
     text = f"{entity}{declare.strip('`')}\nspec asked {{ limit 9 steps  reach {ask.strip('`')} }}\n"
     (fspa,) = tltlc.compile_text(text)
@@ -66,7 +67,7 @@ def test_what_is_measured_can_be_asked_for(declare: str, ask: str) -> None:
 
 
 @pytest.mark.parametrize(("wrong", "right"), SLIPS)
-def test_what_does_not_say_it_says_something_else(wrong: str, right: str) -> None:
+def test_a_wrong_phrase_differs_from_the_right_one(wrong: str, right: str) -> None:
     assert not are_equivalent(compiled(wrong), compiled(right))
 
 
@@ -83,11 +84,12 @@ ACCEPTED = {
     "`require (eventually alarm) implies eventually near(exit)`": (["near(exit)", "alarm"], ["alarm", ""]),
     "`require eventually within 5 s near(exit)`": ([*[""] * 50, "near(exit)"], [*[""] * 51, "near(exit)"]),
 }
-"""A trace that a phrase accepts, and one that it does not: the atom of each step."""
+"""For each phrase, a trace that it accepts and one that it rejects, given as the atom of each step.
+"""
 
 
 @pytest.mark.parametrize("write", ACCEPTED)
-def test_it_means_what_it_says(write: str) -> None:
+def test_a_phrase_accepts_and_rejects_the_listed_traces(write: str) -> None:
     assert write in dict(PHRASES)
     fspa = compiled(write)
     for trace, expected in zip(ACCEPTED[write], (True, False), strict=True):
@@ -97,12 +99,12 @@ def test_it_means_what_it_says(write: str) -> None:
         assert step.accepting == expected, trace
 
 
-def test_staying_is_met_at_once_where_it_is_said_by_always() -> None:
+def test_staying_by_always_is_met_in_one_step() -> None:
     step = Monitor(compiled("`reach (always for 3 s near(vault))`")).step_atoms([1.0])
     assert step.accepting and step.done
 
 
-def test_the_sequence_is_met_in_its_order_alone() -> None:
+def test_a_sequence_is_met_only_in_its_order() -> None:
     fspa = compiled("`reach near(key) then near(chest) then near(exit)`")
     for order in product(range(3), repeat=3):
         monitor = Monitor(fspa)

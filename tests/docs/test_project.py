@@ -1,4 +1,4 @@
-"""The page on projects has the keys that `tltl.toml` can have, and its example is read as it says."""
+"""The page on projects lists the keys of `tltl.toml`, and its example is read correctly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROWS = [
 ]
 
 
-def test_the_example_is_read_as_it_says(tmp_path: Path) -> None:
+def test_the_example_is_read_as_documented(tmp_path: Path) -> None:
     (text,) = (block.text for block in blocks(PAGE) if block.kind == "toml")
     (tmp_path / "predicates").mkdir()
     (tmp_path / "tltl.toml").write_text(text)
@@ -30,20 +30,20 @@ def test_the_example_is_read_as_it_says(tmp_path: Path) -> None:
     )
 
 
-def test_every_key_is_there_with_its_values() -> None:
-    said = {key for row in ROWS for key in row[0]}
+def test_every_key_is_documented_with_its_values() -> None:
+    documented = {key for row in ROWS for key in row[0]}
     tables = {
         "style": project._STYLE_KEYS,
         "lint": project.LINT_LEVELS,
     }
     keys = [f"{key}.{inner}" for key in project._KEYS for inner in tables.get(key, ())]
-    assert said == {*keys, *(key for key in project._KEYS if key not in tables)}
+    assert documented == {*keys, *(key for key in project._KEYS if key not in tables)}
     values = {row[0][0]: tuple(row[1]) for row in ROWS}
     assert values["style.notation"] == project.NOTATIONS
     assert values["style.formatting"] == project.FORMATTINGS
 
 
-def test_what_counts_without_it(tmp_path: Path) -> None:
+def test_the_documented_defaults_apply(tmp_path: Path) -> None:
     (tmp_path / "tltl.toml").write_text("")
     empty = project.read_project(tmp_path / "tltl.toml")
     without = {row[0][0]: row[2] for row in ROWS}

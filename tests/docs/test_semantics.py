@@ -1,4 +1,5 @@
-"""Every claim of the page on semantics has tests behind it: the tables quote the text, and leave no paragraph out."""
+"""Every claim on the page on semantics has tests: the tables quote the text and cover every
+paragraph."""
 
 from __future__ import annotations
 
@@ -21,18 +22,19 @@ PARTS = dict(re.findall(r"^## ([^\n]*)\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | 
 
 
 def plain(text: str) -> str:
-    """The words, whatever they are printed in."""
+    """The text without markup, with single spaces."""
     return " ".join(re.sub(r"[`*▲]", "", text).split())
 
 
 def claims(part: str) -> list[list[str]]:
-    """The quotation of each claim, and what holds it."""
+    """Return each claim's quotation, and the tests that check it."""
     table = PARTS[part].partition(HEAD)[2].partition("\n</details>")[0]
     return [[cell.strip() for cell in row.strip("|").split("|")] for row in table.splitlines()]
 
 
 def statements(part: str) -> Iterator[str]:
-    """What stands above the table: its paragraphs, and the rows of its tables; programs and headings are none."""
+    """Yield the statements above the table: paragraphs and rows of tables, but neither programs nor
+    headings."""
     text = re.sub(r"^```.*?^```$", "", PARTS[part].partition(HEAD)[0], flags=re.MULTILINE | re.DOTALL)
     for paragraph in re.split(r"\n\s*\n", text.strip()):
         rows = paragraph.splitlines()
@@ -43,7 +45,7 @@ def statements(part: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("part", PARTS)
-def test_claims_are_quoted_as_they_stand(part: str) -> None:
+def test_claims_are_quoted_exactly(part: str) -> None:
     text = plain(PARTS[part].partition(HEAD)[0])
     assert claims(part)
     for quoted, _ in claims(part):
@@ -51,19 +53,19 @@ def test_claims_are_quoted_as_they_stand(part: str) -> None:
 
 
 @pytest.mark.parametrize("part", PARTS)
-def test_no_statement_is_without_a_claim(part: str) -> None:
+def test_every_statement_has_a_claim(part: str) -> None:
     quoted = [plain(claim) for claim, _ in claims(part)]
     for statement in statements(part):
         assert any(claim in plain(statement) for claim in quoted), statement
 
 
 @pytest.mark.parametrize("part", PARTS)
-def test_what_holds_a_claim_is_there(part: str) -> None:
+def test_the_tests_of_a_claim_exist(part: str) -> None:
     for quoted, held in claims(part):
-        found = TESTS.findall(held)
-        assert found, quoted
+        test_references = TESTS.findall(held)
+        assert test_references, quoted
         assert plain(TESTS.sub("", held)).strip("; ") == "", held
-        for file, names in found:
+        for file, names in test_references:
             source = (ROOT / file).read_text(encoding="utf-8")
             for name in re.findall(r"\w+", names):
                 assert f"\ndef {name}(" in source, f"{file}: {name}"

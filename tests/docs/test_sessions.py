@@ -1,4 +1,4 @@
-"""Pages are run from their first line to their last: what they print is what the tool prints."""
+"""Pages are run from the first to the last line: the shown output is the tool's output."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.interfaces.cli.test_readme import said
 
 PAGE = DOCS / "tutorial.md"
 LEVEL = "## Played in a level\n"
-"""The heading of the section that needs the game's physics."""
+"""The heading of the section that needs the physics of the game."""
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the pages speak to a POSIX shell")
 
@@ -29,12 +29,12 @@ def test_the_tutorial_runs(tmp_path: Path) -> None:
         text = text[:start] + text[text.index("\n## ", start) :]
     assert run_page(text, shell) >= 12
 
-    found = blocks(PAGE)
-    spec = next(block.text for block in found if block.kind == "tltl")
+    page_blocks = blocks(PAGE)
+    spec = next(block.text for block in page_blocks if block.kind == "tltl")
     assert (shell.folder / "first_level.tltl").read_text(encoding="utf-8") == spec
     pictures = shell.folder / "first_level.svg", DOCS / "images" / "leave_with_key.svg"
     assert len({tuple(said(picture.read_text(encoding="utf-8"))) for picture in pictures}) == 1
-    program, printed = next((block, after) for block, after in pairwise(found) if block.kind == "python")
+    program, printed = next((block, after) for block, after in pairwise(page_blocks) if block.kind == "python")
     (shell.folder / "build" / "game.py").write_text(program.text)
     assert shell.run("python build/game.py") == printed.text
 

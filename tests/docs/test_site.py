@@ -1,4 +1,4 @@
-"""The documentation as a site: whole, its links right, and shown without asking for anything from elsewhere."""
+"""The documentation site: complete, with valid links, and without requests to other hosts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LOADING = {("script", "src"), ("link", "href"), ("img", "src"), ("iframe", "src"
 
 
 class Read(HTMLParser):
-    """What a page loads, where its links lead, what can be linked to in it, and its text."""
+    """A parsed page: the URLs that it loads, its links, its anchors and its text."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -58,7 +58,7 @@ class Read(HTMLParser):
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site, built with warnings as errors."""
     folder = tmp_path_factory.mktemp("site")
-    done = subprocess.run(
+    completed = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", folder],
         cwd=ROOT,
         env={
@@ -71,7 +71,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         timeout=HANG_S,
         check=False,
     )
-    assert done.returncode == 0, done.stderr
+    assert completed.returncode == 0, completed.stderr
     return folder
 
 
@@ -80,14 +80,14 @@ def pages(site: Path) -> dict[Path, Read]:
     return {path: Read(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
 
 
-def test_every_code_has_its_page(site: Path, pages: dict[Path, Read]) -> None:
+def test_every_code_has_a_page(site: Path, pages: dict[Path, Read]) -> None:
     for code in codes():
-        shown = pages[site / "diagnostics" / f"{code}.html"].text
-        assert f"{code}: {title(code)}".replace("`", "") in shown
+        text = pages[site / "diagnostics" / f"{code}.html"].text
+        assert f"{code}: {title(code)}".replace("`", "") in text
         assert code in pages[site / "diagnostics" / "index.html"].text
 
 
-def test_every_command_has_its_page(site: Path, pages: dict[Path, Read]) -> None:
+def test_every_command_has_a_page(site: Path, pages: dict[Path, Read]) -> None:
     assert set(BUILT_IN) <= set(commands.names())
     for name in commands.names():
         assert f"tltlc {name}" in pages[site / "commands" / f"{name}.html"].text
@@ -97,14 +97,14 @@ def test_every_command_has_its_page(site: Path, pages: dict[Path, Read]) -> None
     )
 
 
-def test_nothing_is_loaded_from_elsewhere(site: Path, pages: dict[Path, Read]) -> None:
+def test_no_page_loads_from_another_host(site: Path, pages: dict[Path, Read]) -> None:
     for path, page in pages.items():
         assert [url for url in page.loads if re.match(r"(\w+:)?//", url)] == [], path
     for path in site.rglob("*.css"):
         assert not re.search(r"url\([\"']?(https?:)?//|@import", path.read_text(encoding="utf-8")), path
 
 
-def test_every_link_leads_somewhere(site: Path, pages: dict[Path, Read]) -> None:
+def test_every_link_has_a_target(site: Path, pages: dict[Path, Read]) -> None:
     for path, page in pages.items():
         if path.name == "404.html":
             continue
@@ -119,7 +119,7 @@ def test_every_link_leads_somewhere(site: Path, pages: dict[Path, Read]) -> None
                 assert unquote(anchor) in pages[target].anchors, f"{path}: {url}"
 
 
-def test_specifications_have_colours(site: Path) -> None:
+def test_specifications_are_coloured(site: Path) -> None:
     text = (site / "language.html").read_text(encoding="utf-8")
     blocks = re.findall(r'<div class="language-tltl highlight">(.*?)</div>', text, re.DOTALL)
     assert len(blocks) >= 14
@@ -127,19 +127,19 @@ def test_specifications_have_colours(site: Path) -> None:
     assert not any('class="err"' in block for block in blocks)
 
 
-def test_commands_of_the_tests_are_not_shown(site: Path) -> None:
+def test_hidden_commands_of_the_tests_are_not_shown(site: Path) -> None:
     assert "<!-- in first_level.tltl" not in (site / "tutorial.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("page", SOURCES, ids=lambda page: page.name)
 def test_lists_have_an_empty_line_before_them(page: Path) -> None:
-    """Python-Markdown takes them for a part of the paragraph otherwise."""
+    """Otherwise Python-Markdown treats a list as a part of the paragraph."""
     text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
     assert re.findall(r"^(?![-*] |\d+\. |\s).+\n(?:[-*]|\d+\.) .*$", text, re.MULTILINE) == []
 
 
 @pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
-def test_a_search_without_a_server(site: Path) -> None:
+def test_the_search_works_without_a_server(site: Path) -> None:
     wrong: list[str] = []
     with chromium.browser() as browser:
         page = browser.new_page()
@@ -151,7 +151,7 @@ def test_a_search_without_a_server(site: Path) -> None:
         page.click("[data-md-component=search-query]")
         page.keyboard.type("units do not fit")
         page.wait_for_selector(".md-search-result__item a[href*=TLT0305]", timeout=chromium.HANG_MS)
-        # A letter stands for all words that begin with it: the index fails for some if words are split badly.
+        # A letter stands for all words that start with it. The index fails for some letters if it splits words badly.
         for text in (*ascii_lowercase, "dt", "13", "<>", "near(s1)", "F[0,3] a & G b", "Büchi", "*", ":", "tlt0412"):
             page.fill("[data-md-component=search-query]", text)
             page.keyboard.press("Shift")
@@ -175,5 +175,5 @@ def test_a_search_without_a_server(site: Path) -> None:
         ("[a](../../nowhere.md)", "[a](../../nowhere.md)"),
     ],
 )
-def test_links_of_files_become_links_of_pages(text: str, expected: str) -> None:
+def test_links_to_files_become_links_to_pages(text: str, expected: str) -> None:
     assert links.to_pages(text, "docs/adr/here.md", "adr/here.md", hooks.homes()) == expected

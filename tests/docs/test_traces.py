@@ -1,4 +1,4 @@
-"""The page on traces says what the readers do."""
+"""The page on traces describes what the readers do."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TEXT = (DOCS / "traces.md").read_text(encoding="utf-8")
 
 
 def cells(outcome: str) -> list[str]:
-    """The values in the table that have this outcome."""
+    """Return the values listed for this outcome in the table."""
     rows = [row.split("|") for row in TEXT.splitlines() if row.startswith("| `")]
     row = next(row for row in rows if re.match(rf"{re.escape(outcome)}(?![.\d])", row[2].strip()))
     return re.findall(r"`([^`]+)`", row[1])
@@ -27,14 +27,14 @@ def cells(outcome: str) -> list[str]:
 def number(cell: str) -> float | None:
     trace = read_rows(Lines(io.BytesIO(f"x\n{cell}\n".encode()), "trace"))
     assert isinstance(trace, Table)
-    ((found,),) = trace.rows
-    return cell_number(found)
+    ((cell_text,),) = trace.rows
+    return cell_number(cell_text)
 
 
-def test_the_values_are_read_as_it_says() -> None:
+def test_the_values_are_read_as_documented() -> None:
     for outcome, value in (("5", 5.0), ("0.5", 0.5), ("1", 1.0), ("0", 0.0)):
-        shown = cells(outcome)
-        assert [number(cell) for cell in shown] == [value] * len(shown), outcome
+        values = cells(outcome)
+        assert [number(cell) for cell in values] == [value] * len(values), outcome
     assert all(str(number(cell)) in ("inf", "-inf", "nan") for cell in cells("not finite"))
     assert all(number(cell) is None for cell in cells("an error"))
 
@@ -48,7 +48,7 @@ def test_the_examples_are_the_same_trace() -> None:
     assert first == second
 
 
-def test_the_limits_are_those_of_the_table() -> None:
+def test_the_limits_are_those_of_the_readers() -> None:
     assert f"at most {TRACE_LINE.size:,} bytes" in TEXT
     assert f"nest at most {TRACE_LINE.depth} deep" in TEXT
     assert f"fewer than {TRACE_LINE.values:,} commas" in TEXT
@@ -66,7 +66,7 @@ def test_the_limits_are_those_of_the_table() -> None:
         assert re.search(rf"(?i)row_?bytes_?(: \w+)? = {TRACE_LINE.size}\b", text), name
 
 
-def test_it_names_the_languages_and_the_cases() -> None:
+def test_the_languages_and_the_cases_are_named() -> None:
     monitors = {"c", "csharp", "gdscript", "gdscript3", "javascript", "lua", "rust", "python"}
     assert monitors <= set(targets())
     assert all(f"`{name}`" in TEXT for name in (*monitors, *odd_traces.CASES))
