@@ -1,4 +1,4 @@
-"""Random edits: what they are, what is true of them, and what is told of the verdicts on them."""
+"""Random edits of levels: their kinds, their ground truth, and the report of the verdicts on them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def made() -> tuple[Edit, ...]:
 
 
 def all_edits(seed: int) -> tuple[Edit, ...]:
-    return random_edits(seed, edits._assets({each.asset for each in WANTED}), edits._loads)
+    return random_edits(seed, edits._assets({wanted_edit.asset for wanted_edit in WANTED}), edits._loads)
 
 
 def loaded(edit: Edit, tmp_path: Path) -> Any:
@@ -30,7 +30,7 @@ def loaded(edit: Edit, tmp_path: Path) -> Any:
     return load_level(edit.level, f"v0+{path}")
 
 
-def test_there_are_thirty_of_all_levels_and_many_are_harmless(made: tuple[Edit, ...]) -> None:
+def test_thirty_edits_cover_all_levels_and_many_are_harmless(made: tuple[Edit, ...]) -> None:
     assert [edit.number for edit in made] == list(range(1, 31))
     assert {edit.level for edit in made} == {"branching", "cover_and_hide", "navigation"}
     assert len([edit for edit in made if edit.kind in HARMLESS]) >= 10
@@ -39,7 +39,7 @@ def test_there_are_thirty_of_all_levels_and_many_are_harmless(made: tuple[Edit, 
 
 
 @pytest.mark.parametrize("number", range(1, 31))
-def test_each_loads_and_changes_what_its_kind_says(made: tuple[Edit, ...], number: int, tmp_path: Path) -> None:
+def test_each_edit_loads_and_changes_what_its_kind_says(made: tuple[Edit, ...], number: int, tmp_path: Path) -> None:
     from tltl_runtime.stealth.levels.file import load_level
 
     edit = made[number - 1]
@@ -62,23 +62,23 @@ def test_each_loads_and_changes_what_its_kind_says(made: tuple[Edit, ...], numbe
         assert new.box.high[2] - new.box.low[2] >= 1.8
 
 
-def test_what_does_not_load_is_made_again() -> None:
+def test_an_edit_that_does_not_load_is_drawn_again() -> None:
     pytest.importorskip("pybullet")
-    refused: list[str] = []
+    tried: list[str] = []
 
     def loads(level: str, overlay: str) -> bool:
-        refused.append(overlay)
-        return len(refused) > 2
+        tried.append(overlay)
+        return len(tried) > 2
 
     wanted = (Wanted("navigation", "corridor", "hair"),)
     assets = edits._assets({"corridor"})
     (edit,) = random_edits(1, assets, loads, wanted)
-    assert edit.overlay == refused[2] not in refused[:2]
+    assert edit.overlay == tried[2] not in tried[:2]
     with pytest.raises(ValueError, match="no edit of the kind hair of corridor loads in navigation"):
         random_edits(1, assets, lambda *_: False, wanted)
 
 
-def told(truth: str, verdict: str, **others: object) -> Record:
+def verdict_record(truth: str, verdict: str, **others: object) -> Record:
     rates = {"pass_rate": 0.96, "progress": 0.98, "reward": 0.7}
     return {
         "doc": "A block moves.",
@@ -94,19 +94,19 @@ def told(truth: str, verdict: str, **others: object) -> Record:
     }
 
 
-def test_the_goals_are_of_what_cannot_be_done_and_of_what_changes_nothing() -> None:
+def test_the_goals_count_missed_infeasible_edits_and_false_alarms() -> None:
     records = {
         "expert navigation": {"ways": ["a"] * 25, "successes": 25},
-        "01 a": told("infeasible", "fail"),
-        "02 b": told("in part", "review", certain=False),
-        "03 c": told("changed", "fail"),
-        "04 d": told("unchanged", "pass"),
+        "01 a": verdict_record("infeasible", "fail"),
+        "02 b": verdict_record("in part", "review", certain=False),
+        "03 c": verdict_record("changed", "fail"),
+        "04 d": verdict_record("unchanged", "pass"),
     }
     assert [row[1:] for row in edits_report.goals(records)] == [("0 of 2", "met"), ("0 of 1", "met")]
-    bad = {**records, "05 e": told("in part", "pass"), "06 f": told("unchanged", "review")}
+    bad = {**records, "05 e": verdict_record("in part", "pass"), "06 f": verdict_record("unchanged", "review")}
     missed = [("1 of 3: 05 e", "**missed**"), ("1 of 2: 06 f", "**missed**")]
     assert [row[1:] for row in edits_report.goals(bad)] == missed
-    many = {f"{number} g": told("unchanged", "pass" if number else "fail") for number in range(20)}
+    many = {f"{number} g": verdict_record("unchanged", "pass" if number else "fail") for number in range(20)}
     assert [row[1:] for row in edits_report.goals(many)] == [("1 of 20: 0 g", "met")]
     text = edits_report.section({**records, "07 h": {"failed": "it cannot be played"}})
     assert "for 25 of 25 in navigation before" in " ".join(text.split())
@@ -120,14 +120,14 @@ def test_the_goals_are_of_what_cannot_be_done_and_of_what_changes_nothing() -> N
 
 
 @pytest.mark.slow
-def test_a_quick_run_knows_what_is_true_and_is_resumed(tmp_path: Path) -> None:
+def test_a_quick_run_has_the_ground_truth_and_is_resumed(tmp_path: Path) -> None:
     for package in edits.NEEDED:
         pytest.importorskip(package)
-    store, said = Store(tmp_path / "results.json"), list[str]()
+    store, messages = Store(tmp_path / "results.json"), list[str]()
     for _ in range(2):
-        edits.measure(store, 0.0, said.append, edits.QUICK, tmp_path / "edits")
+        edits.measure(store, 0.0, messages.append, edits.QUICK, tmp_path / "edits")
     words, shut = "01 navigation corridor words", "02 navigation corridor shut"
-    assert [line.partition(":")[0] for line in said] == ["expert navigation", words, shut]
+    assert [line.partition(":")[0] for line in messages] == ["expert navigation", words, shut]
     assert [path.name for path in (tmp_path / "edits").iterdir()] == [source_digest(*edits.SOURCES)]
     records = store.section(edits.SECTION)
     assert records[words]["truth"] == "unchanged"
@@ -136,5 +136,5 @@ def test_a_quick_run_knows_what_is_true_and_is_resumed(tmp_path: Path) -> None:
     assert records[shut]["truth"] == "infeasible"
     assert records[shut]["expert"] == {"episodes": 1, "successes": 0, "same": 0}
     assert records[shut]["verdict"] == "fail"
-    # With so few episodes a suite is never certain that a policy passes.
+    # A suite is never certain that a policy passes after so few episodes.
     assert (records[words]["verdict"], records[words]["certain"]) == ("review", False)

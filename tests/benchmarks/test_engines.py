@@ -1,4 +1,5 @@
-"""Monitors written by hand in the languages of engines compute what the generated ones do, and the reference."""
+"""Handwritten monitors in the languages of game engines compute the same as the generated ones and
+the reference."""
 
 from __future__ import annotations
 
@@ -19,13 +20,13 @@ from tltlc.monitor import Monitor
 ENGINES = {engine.name: engine for engine in engines()}
 
 
-def test_a_language_is_found_by_its_module() -> None:
+def test_each_language_has_a_module() -> None:
     assert set(ENGINES) == {"c", "c++", "csharp", "gdscript3", "javascript", "lua5.4", "luajit", "rust"}
 
 
 @pytest.mark.parametrize("spec", PAPER_SPECS)
 @pytest.mark.parametrize("engine", ENGINES.values(), ids=ENGINES)
-def test_both_equal_the_reference(engine: Engine, spec: str, tmp_path: Path) -> None:
+def test_both_monitors_equal_the_reference(engine: Engine, spec: str, tmp_path: Path) -> None:
     if reason := engine.missing():
         pytest.skip(reason)
     task = generate(engine, spec, tmp_path)
@@ -36,12 +37,12 @@ def test_both_equal_the_reference(engine: Engine, spec: str, tmp_path: Path) -> 
     rows = stepped(task, engine.build(task), traces)
     expected, reached = _expected(spec, walks)
     assert reached >= {"pending", "satisfied"} or reached == {"pending", "holding", "violated"}
-    for who, found in rows.items():
-        assert disagreement(found, expected) is None, who
+    for author, author_rows in rows.items():
+        assert disagreement(author_rows, expected) is None, author
 
 
 def _expected(spec: str, walks: list[list[dict[str, float]]]) -> tuple[list[tuple[str, ...]], set[str]]:
-    """The rows of the reference monitor, and the verdicts among them."""
+    """Return the rows of the reference monitor, and the verdicts that occur in them."""
     monitor = Monitor(next(fspa for fspa in compile_file(source(spec)) if fspa.name == spec))
     rows: list[tuple[str, ...]] = []
     for walk in walks:
@@ -56,7 +57,7 @@ def _cell(value: object) -> str:
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
 
 
-def test_a_difference_is_told() -> None:
+def test_a_difference_is_reported() -> None:
     row = ("0", "F a", "pending", "false", "false", "0.5", "0.25", "1", "a")
     assert disagreement([row], [(*row[:5], "0.5000000000000001", *row[6:])]) is None
     assert disagreement([row], [(*row[:8], "b")]) == "step 1: limiting is 'a', not 'b'"
@@ -64,7 +65,7 @@ def test_a_difference_is_told() -> None:
     assert disagreement([row], []) == "1 steps, not 0"
 
 
-def test_the_goal_is_of_each_language_on_each_spec(tmp_path: Path) -> None:
+def test_the_goal_covers_each_language_on_each_spec(tmp_path: Path) -> None:
     store = Store(tmp_path / "results.json")
     assert list(engine_report.goals(store)) == []
     assert engine_report.section(store) == ""

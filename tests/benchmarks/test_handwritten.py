@@ -1,4 +1,5 @@
-"""The hand-written monitors compute what the reference monitor computes, or the comparison would be void."""
+"""The handwritten monitors compute the same as the reference monitor; otherwise comparing their
+speed is meaningless."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from tltlc.monitor import Monitor
 
 
 @pytest.mark.parametrize("name", PAPER_SPECS)
-def test_equals_the_monitor_of_the_package(name: str) -> None:
+def test_a_handwritten_monitor_equals_the_reference(name: str) -> None:
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     reference, by_hand = Monitor(fspa), hand_written(name)
     generator = random.Random(name)
@@ -23,16 +24,17 @@ def test_equals_the_monitor_of_the_package(name: str) -> None:
         reference.reset()
         by_hand.reset()
         for sample in walk:
-            expected, found = reference.step(sample), by_hand.step(sample)
-            assert found[:5] == expected[:5]
-            assert found[5:8] == pytest.approx(expected[5:8], abs=1e-12)
-            assert found[8] == expected[8]
-            reached.add(found.state)
+            expected, actual = reference.step(sample), by_hand.step(sample)
+            assert actual[:5] == expected[:5]
+            assert actual[5:8] == pytest.approx(expected[5:8], abs=1e-12)
+            assert actual[8] == expected[8]
+            reached.add(actual.state)
     assert reached == {state.id for state in fspa.states}
 
 
 def _shuffled(recorded: list[dict[str, float]], generator: random.Random) -> list[dict[str, float]]:
-    """A walk that jumps among the recorded samples, sometimes at a place, and dies near its end."""
+    """Return a random sequence of the recorded samples, sometimes moved to a place, in which health
+    is 0 near the end."""
     walk = []
     for step in range(60):
         sample = dict(generator.choice(recorded))

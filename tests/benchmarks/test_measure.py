@@ -31,25 +31,27 @@ def test_quartiles_are_in_order_around_the_median(values: list[float]) -> None:
     assert median(values) == statistics.median(values)
 
 
-def test_the_median_of_nothing_is_no_number() -> None:
+def test_the_median_of_nothing_is_nan() -> None:
     assert math.isnan(median([]))
 
 
-def test_a_child_is_fed_and_read() -> None:
-    made = run([sys.executable, "-c", "print(input()[::-1]); raise SystemExit(3)"], 30, "abc\n")
-    assert (made.output, made.status, made.timed_out) == ("cba\n", 3, False)
-    assert made.cpu_ms > 0
+def test_a_child_gets_input_and_its_output_is_read() -> None:
+    result = run([sys.executable, "-c", "print(input()[::-1]); raise SystemExit(3)"], 30, "abc\n")
+    assert (result.output, result.status, result.timed_out) == ("cba\n", 3, False)
+    assert result.cpu_ms > 0
 
 
-def test_the_time_of_a_grandchild_counts() -> None:
+def test_the_cpu_time_of_a_grandchild_counts() -> None:
     burn = "import time\nwhile time.process_time() < 0.3: pass"
-    made = run([sys.executable, "-c", f"import subprocess, sys; subprocess.run([sys.executable, '-c', {burn!r}])"], 30)
-    assert made.cpu_ms >= 300
+    result = run(
+        [sys.executable, "-c", f"import subprocess, sys; subprocess.run([sys.executable, '-c', {burn!r}])"], 30
+    )
+    assert result.cpu_ms >= 300
 
 
 def test_a_child_that_hangs_is_killed_and_its_output_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Timer(threading.Thread):
-        """Its time is over once the child has said something."""
+        """A timer that expires as soon as the child has written its file."""
 
         def __init__(self, seconds: float, function: Callable[[], None]) -> None:
             super().__init__()
@@ -65,8 +67,8 @@ def test_a_child_that_hangs_is_killed_and_its_output_kept(tmp_path: Path, monkey
 
     monkeypatch.setattr("benchmarks.measure.threading", SimpleNamespace(Timer=Timer, Event=threading.Event))
     hangs = "import time; print('so far', flush=True); open('told', 'w').close()\nwhile True: time.sleep(60)"
-    made = run([sys.executable, "-c", hangs], 0.7, cwd=tmp_path)
-    assert made.timed_out and made.output == "so far\n" and made.status != 0
+    result = run([sys.executable, "-c", hangs], 0.7, cwd=tmp_path)
+    assert result.timed_out and result.output == "so far\n" and result.status != 0
 
 
 def test_repetition_stops_when_enough_time_is_spent(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,7 +82,7 @@ def test_repetition_stops_when_enough_time_is_spent(monkeypatch: pytest.MonkeyPa
     assert len(cpu_times_ms(lambda: None, runs=4, enough_s=10)) == 4
 
 
-def test_a_fork_leaves_no_trace() -> None:
+def test_a_fork_does_not_change_the_parent() -> None:
     assert (
         alone(
             """
@@ -97,21 +99,22 @@ def test_a_fork_leaves_no_trace() -> None:
     )
 
 
-def test_a_fork_that_fails_gives_nothing() -> None:
+def test_a_fork_that_fails_returns_none() -> None:
     assert alone("print(forked(lambda: {'answer': 1 // 0}))") == "None\n"
 
 
-def test_no_thread_is_left_for_a_fork_to_lose() -> None:
-    """From Python 3.12 on a fork beside threads warns, and here warnings are errors."""
+def test_no_thread_is_left_before_a_fork() -> None:
+    """From Python 3.12 on, forking beside other threads warns, and here warnings are errors."""
     assert alone("run([sys.executable, '-c', ''], 30); print(forked(lambda: {})['cpu_ms'] >= 0)") == "True\n"
 
 
 def alone(program: str) -> str:
-    """What a program prints in a process of its own, as the benchmarks fork: those that run tests have threads."""
+    """Return the output of a program in a new process: the process of the tests has threads, so it
+    should not fork."""
     text = "import sys\nfrom benchmarks.measure import forked, run\n" + textwrap.dedent(program)
     command = [sys.executable, "-W", "error", "-c", text]
     return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, timeout=HANG_S).stdout
 
 
-def test_peak_memory_is_that_of_this_process() -> None:
+def test_peak_memory_is_in_a_plausible_range() -> None:
     assert 5 < peak_memory_mb() < 100_000

@@ -1,4 +1,4 @@
-"""Formulas as MONA programs, and MONA's automata counted as ours."""
+"""Formulas as MONA programs, and the sizes of MONA's automata, counted as ours."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ State 3: 1 -> state 3
 """
 
 
-def test_a_program() -> None:
+def test_a_formula_becomes_a_program() -> None:
     text = mona.program(read_formula("a & (b U X a)"))
     assert text == (
         "m2l-str;\nvar2 A0, A1;\n"
@@ -38,7 +38,7 @@ def test_a_program_without_atoms_declares_none() -> None:
     assert mona.program(read_formula("X true")).startswith("m2l-str;\nex1 o")
 
 
-def test_the_state_before_the_first_sample_is_shared_where_it_can_be() -> None:
+def test_the_initial_state_is_merged_if_possible() -> None:
     assert mona.size(ALWAYS) == 2  # G a
     unlike = ALWAYS.replace("State 1: 1 -> state 3", "State 1: 1 -> state 2")
     reached_again = ALWAYS.replace("State 2: X -> state 2", "State 2: X -> state 1")
@@ -52,18 +52,18 @@ def test_sizes_of_special_outputs() -> None:
 
 @pytest.mark.skipif(not mona.available(), reason="MONA is not installed")
 @pytest.mark.parametrize("family", ["seq_noX", "declare", "edge", "branch", "until_right"])
-def test_sizes_are_those_of_the_corpus(family: str) -> None:
+def test_sizes_match_the_corpus(family: str) -> None:
     small = [entry for entry in corpus() if entry.family == family and (entry.states or 99) < 12]
     assert small
     for entry in small:
-        made, states = mona.solve(entry.formula, timeout_s=HANG_S)
+        result, states = mona.solve(entry.formula, timeout_s=HANG_S)
         assert (entry.name, states) == (entry.name, entry.states)
-        assert made.cpu_ms > 0
+        assert result.cpu_ms > 0
 
 
 @pytest.mark.skipif(not mona.available(), reason="MONA is not installed")
 def test_a_run_that_is_stopped_has_no_size() -> None:
-    many = " & ".join(f"(F a{number} | G b{number})" for number in range(9))
-    made, states = mona.solve(read_formula(many), timeout_s=0.3)
-    assert made.timed_out
+    formula = " & ".join(f"(F a{number} | G b{number})" for number in range(9))
+    result, states = mona.solve(read_formula(formula), timeout_s=0.3)
+    assert result.timed_out
     assert states is None

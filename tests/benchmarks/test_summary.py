@@ -1,4 +1,4 @@
-"""From records to the figures of the report."""
+"""The figures of the report, computed from records."""
 
 from __future__ import annotations
 
@@ -55,30 +55,31 @@ RECORDS: dict[str, Record] = {
 }
 
 
-def test_spot_is_estimated_by_mona_s_factor_or_the_usual_one() -> None:
+def test_the_time_of_spot_is_estimated_by_the_factor_of_mona() -> None:
     estimates = summary.spot_estimates(RECORDS, REFERENCES)
-    # The factors are 3/9 and 1/5, their median 4/15.
+    # The factors are 3/9 and 1/5; their median is 4/15.
     assert estimates == pytest.approx({"one": 0.1, "two": 0.6 * 4 / 15})
 
 
-def test_a_family() -> None:
+def test_a_family_is_summarized() -> None:
     row, other = summary.families(RECORDS, REFERENCES, timeout_s=20)
     assert (row.name, row.formulas, row.ltlf2dfa_solved, row.ltlf2dfa_tried) == ("f", 2, 1, 2)
     assert row.minimal_ms == pytest.approx(0.25)
     assert row.to_spot == pytest.approx(0.25 / 0.13)
-    # LTLf2DFA: 500 times slower on one, at least 50,000 times on the other; built, 50 and at least 2.2 times.
+    # Compared with `minimal`, LTLf2DFA takes 500 times as long on one formula, and at least 50,000 times on
+    # the other. Compared with `build`, it takes 50 times as long, and at least 2.2 times.
     assert str(row.ltlf2dfa_over_minimal) == "500"
     assert str(row.ltlf2dfa_over_build) == "≥ 2"
     assert other.ltlf2dfa_over_minimal is None and other.ltlf2dfa_tried == 0
     assert math.isnan(other.to_spot)
 
 
-def test_what_missed_its_goal() -> None:
+def test_formulas_that_missed_a_goal_are_listed() -> None:
     assert summary.unsolved(RECORDS) == ["two"]
     assert summary.wrong_sizes(RECORDS) == ["two"]
 
 
-def test_a_report_of_part_of_the_results_renders(tmp_path: Path) -> None:
+def test_a_report_of_partial_results_renders(tmp_path: Path) -> None:
     store = Store(tmp_path / "results.json")
     store.put("machine", "facts", {"processor": "abacus"})
     store.put("machine", "options", {"peer_timeout_s": 20.0})
@@ -106,7 +107,7 @@ def test_the_batched_monitor_has_its_goals_and_table(tmp_path: Path) -> None:
     assert "| 1.25 ms on cover_and_hide | **missed** |" in render(store)
 
 
-def test_a_store_forgets_one_section_or_all(tmp_path: Path) -> None:
+def test_a_store_discards_one_section_or_all(tmp_path: Path) -> None:
     store = Store(tmp_path / "results.json")
     for section in ("compile", "game"):
         store.put(section, "one", {"x": 1})
@@ -117,7 +118,7 @@ def test_a_store_forgets_one_section_or_all(tmp_path: Path) -> None:
     assert store.section("compile") == {}
 
 
-def test_the_reference_table_reads() -> None:
+def test_the_reference_table_is_readable() -> None:
     rows = {row.name: row for row in references()}
     assert rows["seq1"].states == 3 and rows["seq1"].mona_ms == 8.8
     assert rows["branch5"].states is None and rows["branch5"].mona_ms is None

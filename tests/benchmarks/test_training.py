@@ -1,4 +1,4 @@
-"""Trainings as they are measured: what is done stays done, and what was stopped goes on."""
+"""Measured trainings: finished work is kept, and interrupted work is resumed."""
 
 from __future__ import annotations
 
@@ -31,38 +31,36 @@ def trained(pass_rate: float, minutes: float, end: str = "met") -> Record:
     }
 
 
-def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_quick_run_is_resumed_and_skips_finished_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for package in training.NEEDED:
         pytest.importorskip(package)
     store, folder, picture = Store(tmp_path / "results.json"), tmp_path / "cells", tmp_path / "curves.png"
     ran: list[str] = []
     run, failing = training._tltlc, iter([2])
 
-    def counted(*arguments: object) -> int:
-        """The first training ends when nobody waits for it any more, and the first evaluation fails."""
-        paths = [each for each in arguments if isinstance(each, Path)]
-        (of,) = (path.name for path in paths if path.parent == folder and not path.suffix)
-        ran.append(f"{arguments[0]} {of}")
+    def recorded_run(*arguments: object) -> int:
+        """Run the command, but interrupt after the first training and let the first evaluation fail."""
+        paths = [argument for argument in arguments if isinstance(argument, Path)]
+        (cell_name,) = (path.name for path in paths if path.parent == folder and not path.suffix)
+        ran.append(f"{arguments[0]} {cell_name}")
         status = next(failing, None) if arguments[0] == "evaluate" else None
         status = run(*arguments) if status is None else status
         if len(ran) == 1:
             raise KeyboardInterrupt
         return status
 
-    monkeypatch.setattr(training, "_tltlc", counted)
-    said: list[str] = []
+    monkeypatch.setattr(training, "_tltlc", recorded_run)
+    messages: list[str] = []
     with pytest.raises(KeyboardInterrupt):
-        training.measure(store, 0.0, said.append, training.QUICK, folder, picture)
+        training.measure(store, 0.0, messages.append, training.QUICK, folder, picture)
     for _ in range(3):
-        training.measure(store, 0.0, said.append, training.QUICK, folder, picture)
+        training.measure(store, 0.0, messages.append, training.QUICK, folder, picture)
     cell, ablation = "cover_and_hide 1", "ablation: no semantic map"
-    # The runs after the first go on with the evaluation, without training anew, and the last has all.
-    judged, ablated = "cover_and_hide-1", "no-semantic-map"
-    expected = [f"train {judged}", f"evaluate {judged}", f"train {ablated}", f"evaluate {judged}"]
-    assert [each for each in ran if each != "train cuda"] == expected
-    assert said[0] == f'{cell}: {{"failed": "tltlc evaluate"}}'
+    # Later runs continue with the evaluation instead of training again; after the last run, everything is finished.
+    first_cell, second_cell = "cover_and_hide-1", "no-semantic-map"
+    expected = [f"train {first_cell}", f"evaluate {first_cell}", f"train {second_cell}", f"evaluate {first_cell}"]
+    assert [command for command in ran if command != "train cuda"] == expected
+    assert messages[0] == f'{cell}: {{"failed": "tltlc evaluate"}}'
     records = store.section(training.SECTION)
     assert records[cell]["end"] == records[ablation]["end"] == records["ablation: as it is"]["end"] == "minutes"
     assert records["ablation: as it is"]["curve"][-1][0] == records[cell]["steps"]
@@ -79,7 +77,7 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
 
 @pytest.mark.parametrize("status", [1, 2])
 @pytest.mark.parametrize("left, how", [("checkpoint.pt", "--resume"), ("run.json", "--level")])
-def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
+def test_a_training_resumes_from_its_checkpoint_or_starts_again(
     left: str, how: str, status: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ran: list[object] = []
@@ -95,7 +93,7 @@ def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
     assert cell.folder.exists() == (how == "--resume")
 
 
-def test_a_training_of_an_unknown_source_begins_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_training_of_an_unknown_source_starts_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran: list[object] = []
     monkeypatch.setattr(training, "_tltlc", lambda *arguments: ran.append(arguments[1]) or 1)
     cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
@@ -105,14 +103,14 @@ def test_a_training_of_an_unknown_source_begins_anew(tmp_path: Path, monkeypatch
     assert ran == ["--level"]
 
 
-def test_settings_of_the_plan_and_of_an_ablation_come_together() -> None:
+def test_settings_of_the_plan_and_of_an_ablation_are_merged() -> None:
     exploration = {"exploration": {"ways": 0}}
     text = training.settings_text(training.QUICK.settings, exploration, {"reward": {"mode": "edge"}})
     assert text == ('[rollout]\nenvs = 4\nsteps = 32\n[exploration]\nsteps = 64\nways = 0\n[reward]\nmode = "edge"\n')
 
 
 @pytest.mark.parametrize("name", training.ABLATIONS)
-def test_the_settings_of_an_ablation_are_ones_that_a_training_takes(name: str, tmp_path: Path) -> None:
+def test_the_settings_of_an_ablation_are_valid(name: str, tmp_path: Path) -> None:
     for package in training.NEEDED:
         pytest.importorskip(package)
     from tltl_runtime.training.run.settings import read_settings
@@ -125,7 +123,7 @@ def test_the_settings_of_an_ablation_are_ones_that_a_training_takes(name: str, t
     assert (changed == read_settings(tmp_path / "settings.toml")) == (not ablation.settings)
 
 
-def test_the_picture_has_a_curve_of_each_ablation() -> None:
+def test_the_picture_has_a_curve_for_each_ablation() -> None:
     pytest.importorskip("matplotlib")
     curve = {"curve": [[64, 0.0, 0.1], [128, 0.5, 0.6]]}
     records = {f"{training_report.ABLATION}{name}": {**trained(0.5, 10.0), **curve} for name in training.ABLATIONS}
@@ -133,7 +131,7 @@ def test_the_picture_has_a_curve_of_each_ablation() -> None:
     assert training_report.picture(records) != training_report.picture(one_less)
 
 
-def test_what_is_missed_is_named() -> None:
+def test_missed_goals_name_their_trainings() -> None:
     records = {"navigation 1": trained(1.0, 12.0), "branching 2": trained(0.95, 30.1, "minutes")}
     first, speed, share = training_report.goals(records)
     assert first[1] == "1 of 9, longest 30 minutes; not: branching 2 0.95 after 30 minutes; 7 not measured"
@@ -141,18 +139,18 @@ def test_what_is_missed_is_named() -> None:
     assert share[1] == "most 0.40 of the 2 measured"
     assert {row[2] for row in (first, speed, share)} == {"**missed**"}
     cells = [f"{level} {seed}" for level in training.FULL.levels for seed in training.FULL.seeds]
-    told = [row[1:] for row in training_report.goals({name: trained(1.0, 12.0) for name in cells})]
-    assert told == [
+    figures = [row[1:] for row in training_report.goals({name: trained(1.0, 12.0) for name in cells})]
+    assert figures == [
         ("9 of 9, longest 12 minutes", "met"),
         ("slowest 1,600; the same steps over all of the time, searches included, 1,250", "met"),
         ("most 0.40", "met"),
     ]
-    (none,) = training_report.goals({"navigation 1": {"failed": "tltlc train"}})
-    assert none[1:] == ("0 of 9; 9 not measured", "**missed**")
+    (only_goal,) = training_report.goals({"navigation 1": {"failed": "tltlc train"}})
+    assert only_goal[1:] == ("0 of 9; 9 not measured", "**missed**")
     assert list(training_report.goals({"cuda": {"left_out": "no GPU is at hand"}})) == []
 
 
-def test_failures_and_a_gpu_are_told() -> None:
+def test_failures_and_the_gpu_are_reported() -> None:
     records = {"navigation 1": {"failed": "tltlc train"}, "cuda": {**trained(1.0, 3.0), "gpu": "a GPU"}}
     del records["cuda"]["sampled"]
     text = training_report.section(records)
