@@ -108,7 +108,7 @@ def send():
             return
         sleep(0.001)
 Thread(target=send, daemon=True).start()
-from tltlc.cli.main import main
+from tltlc.interfaces.cli.main import main
 main()
 """
 """A program that sends a signal from another thread while the main thread waits for requests."""
