@@ -59,10 +59,10 @@ def test_decisions_are_numbered_and_have_the_same_sections() -> None:
     "said, file, remark",
     [
         ("Truth decides", "reward.py", "by truth"),
-        ("The paper evaluates the formula as it is written", "guards.py", "as it is written"),
+        ("The paper evaluates the formula as it is written", "guards.py", "the guard as written"),
         ("r is capped at 0", "reward.py", "capped at 0"),
         ("Where S is 0", "tables.py", "the paper divides"),
-        ("A trap has none", "reward.py", "a trap has no progress"),
+        ("A trap has none", "reward.py", "A trap has no progress"),
         ("Judging at the limit", "reward.py", "judged at its limit"),
         ("notices the end one step later", "reward.py", "not one step later"),
         ("It is the signed distance", "reward_modes/sparse.py", "robustness of the formula"),
