@@ -47,12 +47,25 @@ def test_the_named_tests_exist(page: Path) -> None:
             assert f"\ndef {name}(" in source, f"{file}: {name}"
 
 
-def test_decisions_are_numbered_and_have_the_same_sections() -> None:
-    pages = sorted((DOCS / "adr").glob("*.md"))
+def test_decisions_are_numbered_and_have_the_same_headings() -> None:
+    pages = sorted((DOCS / "adr").glob("[0-9]*.md"))
     assert [int(page.name[:4]) for page in pages] == list(range(1, len(pages) + 1))
-    for page in pages:
-        heads = re.findall(r"^## (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
-        assert heads == ["Context", "Decision", "Consequences"], page.name
+    required = ["Status", "Context", "Decision", "Consequences"]
+    for number, page in enumerate(pages, 1):
+        text = page.read_text(encoding="utf-8")
+        assert text.startswith(f"# {number}. "), page.name
+        heads = re.findall(r"^## (.*)$", text, re.MULTILINE)
+        assert heads in (required, [*required, "Alternatives considered"]), page.name
+
+
+def test_the_index_lists_every_decision() -> None:
+    index = (DOCS / "adr" / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d+) \| \[(.*)\]\((.*)\) \| \w.*\. \|$", index, re.MULTILINE)
+    pages = sorted((DOCS / "adr").glob("[0-9]*.md"))
+    titles = [page.read_text(encoding="utf-8").splitlines()[0] for page in pages]
+    assert [(f"# {number}. {title}", name) for number, title, name in rows] == [
+        (title, page.name) for title, page in zip(titles, pages, strict=True)
+    ]
 
 
 @pytest.mark.parametrize(
@@ -141,3 +154,25 @@ def test_excerpts_for_contributors_are_in_the_sources() -> None:
     assert len(excerpts) >= 3
     for excerpt in excerpts:
         assert any(excerpt.text in text for text in texts), f"line {excerpt.line} of CONTRIBUTING.md is out of date"
+
+
+def test_the_places_that_contributors_are_sent_to_are_there() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = text[text.index("## Where is … made?") : text.index("## Adding things")]
+    places = re.findall(r"`((?:tltlc|tltl_runtime)/[\w/]+\.py)`: `(\w+)`", table)
+    assert len(places) >= 30
+    for file, name in places:
+        path = (ROOT if file.startswith("tltlc/") else ROOT / "runtime") / file
+        source = path.read_text(encoding="utf-8")
+        assert re.search(rf"^(?:def {name}|class {name}|{name})\b", source, re.MULTILINE), f"{file}: {name}"
+
+
+def test_the_folders_of_the_code_that_contributors_read_of_are_all_of_them() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    for folder in ("tltlc", "runtime/tltl_runtime", "runtime/tltl_runtime/stealth"):
+        head = f"| in `{folder.removeprefix('runtime/')}/` | contains |"
+        table = text[text.index(head) :].split("\n\n")[0]
+        named = {name for row in table.splitlines()[2:] for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+        there = {path.name for path in (ROOT / folder).iterdir() if path.is_dir() and any(path.glob("*.*"))}
+        modules = {path.stem for path in (ROOT / folder).glob("*.py")}
+        assert there - {"__pycache__", "stdlib"} <= named <= there | modules, folder
