@@ -35,12 +35,12 @@ def cover_and_hide() -> Fspa:
         tags=("paper",),
         clock_s=0.05,
         signals=(
-            *(spec.Signal(f"distance({entity})", "length", 0.0, None) for entity in ("s1", "s2", "exit")),
+            *(spec.Signal("distance", "length", 0.0, None, "", (entity,)) for entity in ("s1", "s2", "exit")),
             spec.Signal("health", "ratio", 0.0, 1.0),
         ),
         params=(spec.Param("level_size", "length", 20.0, 2.0, 10_000.0),),
         atoms=(
-            *(spec.Atom(f"near({entity})", near(f"distance({entity})")) for entity in ("s1", "s2", "exit")),
+            *(spec.Atom("near", near(f"distance({entity})"), "", (entity,)) for entity in ("s1", "s2", "exit")),
             spec.Atom(p, Signal("health"), "The character has health left."),
         ),
         exclusive=((0, 1, 2),),

@@ -201,6 +201,8 @@ def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
 
 def test_operators_inside_names_of_atoms_are_kept() -> None:
     fspa = cover_and_hide()
-    atoms = tuple(replace(a, name=n) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True))
+    atoms = tuple(
+        replace(a, base=n, arguments=()) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True)
+    )
     guards = Guards(replace(fspa, atoms=atoms), "unicode")
     assert guards.text("!x! & (a & b | !true_love) -> true") == "¬x! ∧ (a & b ∨ ¬true_love) ⇒ ⊤"

@@ -65,14 +65,14 @@ def test_invisible_characters_are_escaped() -> None:
 @given(expressions())
 def test_expressions_are_read_back_unchanged(expression: Expression) -> None:
     fspa = cover_and_hide()
-    fspa = replace(fspa, atoms=(Atom("near(s1)", expression), *fspa.atoms[1:]))
+    fspa = replace(fspa, atoms=(Atom("near", expression, "", ("s1",)), *fspa.atoms[1:]))
     assert read(emitted(fspa), "x.fspa.json") == fspa
 
 
 @given(finite())
 def test_numbers_keep_every_digit(number: float) -> None:
     fspa = cover_and_hide()
-    fspa = replace(fspa, atoms=(Atom("near(s1)", Const(number)), *fspa.atoms[1:]))
+    fspa = replace(fspa, atoms=(Atom("near", Const(number), "", ("s1",)), *fspa.atoms[1:]))
     (atom, *_) = read(emitted(fspa), "x.fspa.json").atoms
     assert isinstance(atom.expression, Const)
     assert repr(atom.expression.value) == repr(number)

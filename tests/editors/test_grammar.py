@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.golden.cases import sources
 from tltlc.core.source import SourceFile
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, VERDICTS
 from tltlc.grammar.lexer import tokenize
@@ -121,8 +122,9 @@ def test_all_contextual_keywords_are_tested() -> None:
 def test_real_files_are_split_like_the_compiler_splits_them() -> None:
     folders = ("examples", "stdlib_predicates", "tltlc", "runtime", "tests", "editors")
     count = 0
-    for path in (path for folder in folders for path in (ROOT / folder).rglob("*.tltl")):
-        source = SourceFile(path.name, path.read_bytes().decode("utf-8", "replace"))
+    files = {str(path): path.read_bytes() for folder in folders for path in (ROOT / folder).rglob("*.tltl")}
+    for path, data in {**files, **sources()}.items():
+        source = SourceFile(path, data.decode("utf-8", "replace"))
         _, syntax_errors = parse(source)
         if not syntax_errors:
             count += 1

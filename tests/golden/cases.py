@@ -69,3 +69,14 @@ def read(path: Path) -> Case:
     command, *arguments = shlex.split(text[: headers[0].start()])
     assert command == "tltlc"
     return Case(path, tuple(arguments), files, expected)
+
+
+def sources() -> dict[str, bytes]:
+    """Return the source files of all cases, by the name of the case and their own."""
+    return {
+        f"{kind}/{case.name}/{name}": data
+        for kind in ("error", "level", "suite")
+        for case in cases(kind)
+        for name, data in case.files.items()
+        if name.endswith(".tltl")
+    }

@@ -132,7 +132,7 @@ def test_suites(seed: int, folder: Path) -> None:
 @times(100)
 def test_settings(seed: int, folder: Path) -> None:
     path = folder / "settings.toml"
-    text = (FOLDER / "training" / "settings.toml").read_text(encoding="utf-8")
+    text = (FOLDER / "training" / "run" / "settings.toml").read_text(encoding="utf-8")
     path.write_text(mutated_text(Random(seed), text), encoding="utf-8", errors="replace")
     check(lambda: read_settings(path))
 
@@ -407,7 +407,7 @@ def test_values_in_checkpoints(seed: int, training: Path, content: tuple[bytes, 
 def _baseline() -> dict[str, Any]:
     """The shipped baseline, reduced to two references with two accounts each."""
     baseline: dict[str, Any] = json.loads(
-        (FOLDER / "regression" / "shipped" / "suite.baseline.json").read_text("utf-8")
+        (FOLDER / "regression" / "suite" / "shipped" / "suite.baseline.json").read_text("utf-8")
     )
     baseline["references"] = [
         {**reference, "accounts": reference["accounts"][:2]} for reference in baseline["references"][:2]

@@ -96,6 +96,9 @@ def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
         "tltlc.interfaces.cli.plugins",
     }
     shared = {
+        "tltlc.interfaces",
+        "tltlc.core",
+        "tltlc.io",
         "tltlc.io.limits",
         "tltlc.io.resources",
         "tltlc.diagnostics",

@@ -85,4 +85,10 @@ def test_an_interrupt_at_the_start_shows_no_traceback_of_tltlc(how: tuple[str, s
     assert {(status, bool(output)) for status, output in rest} == {(130, False), (130, True), (0, True)}
     # Before that, only the modules of the entry point are loaded.
     before = [what for _, event, what, _ in ends[:first] if event == "import" and what.startswith("tltlc")]
-    assert set(before) <= {"tltlc", "tltlc.interfaces.cli", "tltlc.interfaces.cli.main", "tltlc.__main__"}
+    assert set(before) <= {
+        "tltlc",
+        "tltlc.interfaces",
+        "tltlc.interfaces.cli",
+        "tltlc.interfaces.cli.main",
+        "tltlc.__main__",
+    }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.golden.cases import sources
 from tests.tools.fmt import random_texts
 from tests.tools.fmt.laws import check
 from tltlc.core.source import SourceFile
@@ -22,17 +24,18 @@ EVERYTHING = (ROOT / "tests" / "grammar" / "everything.tltl").read_text(encoding
 
 def _texts() -> dict[str, str]:
     """The ``.tltl`` files of the repository that have no syntax errors."""
-    texts: dict[str, str] = {}
+    files = sources()
     for path in sorted(ROOT.rglob("*.tltl")):
         inside = path.relative_to(ROOT)
-        if any(part.startswith(".") for part in inside.parts):
-            continue
-        try:
-            text = path.read_bytes().decode("utf-8-sig")
-        except (UnicodeDecodeError, OSError):
-            continue
-        if not parse(SourceFile("a", text))[1]:
-            texts[str(inside)] = text
+        if not any(part.startswith(".") for part in inside.parts):
+            with suppress(OSError):
+                files[str(inside)] = path.read_bytes()
+    texts: dict[str, str] = {}
+    for name, data in files.items():
+        with suppress(UnicodeDecodeError):
+            text = data.decode("utf-8-sig")
+            if not parse(SourceFile("a", text))[1]:
+                texts[name] = text
     return texts
 
 

@@ -174,7 +174,7 @@ def test_names_are_escaped() -> None:
         case.fspa,
         formula=replace(case.fspa.formula, english=EVIL),
         states=(replace(state, label=label), *case.fspa.states[1:]),
-        atoms=tuple(replace(atom, name=EVIL) for atom in case.fspa.atoms),
+        atoms=tuple(replace(atom, base=EVIL, arguments=()) for atom in case.fspa.atoms),
     )
     accounts = tuple(replace(account, by=(EVIL,)) for account in case.report.accounts)
     report = replace(case.report, name=EVIL, level=EVIL, causes=(EVIL,), explanation=(), accounts=accounts)
