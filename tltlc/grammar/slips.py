@@ -19,7 +19,7 @@ _MOST_COMPARED: Final = 2_000
 _PARTS: Final = re.compile(r"[0-9]+|[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[^\W\d_]+")
 """The parts of a name: numbers, words in camel case, capitals, and letters of other alphabets."""
 _NEGATING: Final = ("no", "nt")
-"""Endings that negate a word and are no longer than two slips."""
+"""Endings that negate a word and are at most two letters long."""
 
 
 def meant(name: str, known: Iterable[str]) -> str | None:
@@ -100,7 +100,7 @@ def _is_doubled(word: str, known: str) -> bool:
 
 
 def _is_negated(word: str, known: str) -> bool:
-    """Whether one word is the other with a negating prefix or suffix."""
+    """Whether one word is the other with a negating ending; a word with another beginning is no typo anyway."""
     longer, shorter = (word, known) if len(word) > len(known) else (known, word)
     return longer.startswith(shorter) and longer[len(shorter) :] in _NEGATING
 
