@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, get_args
+from typing import Final, Literal, get_args
 
+from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.tables import Tables
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
+MODES: Final[tuple[Mode, ...]] = get_args(Mode)
+"""All reward modes: ``progress`` is Algorithm 1, each other one a module of :mod:`tltlc.monitor.reward_modes`."""
 Termination = Literal["entry", "paper"]
 TerminalPenalty = Literal["undiscounted", "discounted"]
 
@@ -18,7 +21,7 @@ TerminalPenalty = Literal["undiscounted", "discounted"]
 class RewardOptions:
     """How steps are rewarded and when episodes end (semantics, section 4).
 
-    - ``mode`` names the reward; modes other than ``progress`` are in
+    - ``mode`` names the reward, one of :data:`MODES`; modes other than ``progress`` are in
       :mod:`tltlc.monitor.reward_modes`.
     - ``termination``: ``entry`` ends an episode on entry into an accepting or trap state. ``paper``
       ends it one step later, as the listing does, and judges every spec at the goal.
@@ -134,19 +137,25 @@ def _share_survived(tables: Tables, target: int, step: int) -> float:
     return min(step, limit) / limit
 
 
-def _end(tables: Tables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
-    """Return whether the episode ends, and whether it ends in success."""
-    fspa, reached = tables.fspa, tables.fspa.states[target]
-    settled = reached.verdict in ("satisfied", "violated")
+def ends_episode(tables: Tables, state: int, target: int, options: RewardOptions) -> bool:
+    """Whether the step from ``state`` to ``target`` ends an episode, apart from the limit."""
     if options.termination == "paper":
         # Lines 12 to 21: the episode ends if the state did not change and no edge improves.
-        ends = state == target and not tables.improving[target]
-    elif fspa.judge == "goal":
-        ends = reached.accepting or settled
-    else:
-        ends = settled
-    done = ends or (fspa.limit_steps is not None and step >= fspa.limit_steps)
-    return done, done and reached.accepting
+        return state == target and not tables.improving[target]
+    return ends_on_entry(tables.fspa, target)
+
+
+def ends_on_entry(fspa: Fspa, state: int) -> bool:
+    """Whether entering a state ends an episode, with ``termination="entry"``."""
+    entered = fspa.states[state]
+    return entered.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and entered.accepting)
+
+
+def _end(tables: Tables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
+    """Return whether the episode ends, and whether it ends in success."""
+    limit = tables.fspa.limit_steps
+    done = ends_episode(tables, state, target, options) or (limit is not None and step >= limit)
+    return done, done and tables.fspa.states[target].accepting
 
 
 def _succeeds_early(tables: Tables, target: int, options: RewardOptions) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
+from tltlc.monitor.reward import ends_on_entry
 from tltlc.monitor.tables import tables
 from tltlc.program import judge, states
 from tltlc.program.arithmetic import Arithmetic
@@ -131,10 +132,7 @@ def _program(fspa: Fspa, names: Names) -> Program:
         exclusive=exclusive,
         states=moves,
         judged=judge.judged(fspa),
-        ends=tuple(
-            state.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and state.accepting)
-            for state in fspa.states
-        ),
+        ends=tuple(ends_on_entry(fspa, state.id) for state in fspa.states),
     )
 
 

@@ -23,13 +23,14 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor, MonitorError, RewardOptions, Step
+from tltlc.monitor.reward import MODES
 from tltlc.resolve import spec
 
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
 
 options = st.builds(
     RewardOptions,
-    mode=st.sampled_from(["progress", "sparse", "edge", "potential"]),
+    mode=st.sampled_from(MODES),
     termination=st.sampled_from(["entry", "paper"]),
     terminal_penalty=st.sampled_from(["undiscounted", "discounted"]),
     gamma=st.sampled_from([1.0, 0.9]),
@@ -276,7 +277,6 @@ def test_arguments_of_the_wrong_type_are_rejected() -> None:
 
 # --- unchecked ------------------------------------------------------------------------------------
 
-MODES = ("progress", "sparse", "edge", "potential")
 FIELDS = ("state", "done", "success", "truncated", "progress", "reward", "verdict", "robustness", "limiting", "values")
 
 

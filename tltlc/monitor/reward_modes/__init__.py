@@ -2,8 +2,10 @@
 
 A module defines ``reward(tables, transition, options, memory) -> (reward, memory)``, a pure
 function. ``memory`` is the mode's state from step to step, None at the start of an episode. None of
-these modes has step or terminal penalties. To add a mode, add its file and its name to
-:data:`tltlc.monitor.reward.Mode`.
+these modes has step or terminal penalties. To add a mode, add its name to
+:data:`tltlc.monitor.reward.Mode`, a module of that name here, and one in
+``tltl_runtime.spec.batch.reward_modes`` for many environments. Options, settings files and tests
+read the names from there.
 """
 
 from __future__ import annotations

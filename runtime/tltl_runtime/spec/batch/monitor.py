@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.spec.batch.guards import PrimeSets, Transitions
-from tltl_runtime.spec.batch.rewards import VERDICTS, EdgeMode, Outcomes, PotentialMode, SparseMode
+from tltl_runtime.spec.batch.reward_modes import BatchTransition, reward_mode
+from tltl_runtime.spec.batch.rewards import VERDICTS, Outcomes
 from tltl_runtime.spec.batch.samples import BatchSamples
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
@@ -129,9 +130,8 @@ class BatchMonitor:
         self.state_verdicts = torch.tensor(
             [VERDICTS.index(state.verdict) for state in fspa.states], dtype=torch.int64, device=self.device
         )
-        self._edge_mode = EdgeMode(fspa, self.device) if options.mode == "edge" else None
-        self._potential = PotentialMode(fspa, options, self.device, dtype) if options.mode == "potential" else None
-        self._sparse = SparseMode(fspa, self.device, dtype) if options.mode == "sparse" else None
+        # The reward of mode "progress" is that of Algorithm 1, which runs in every mode.
+        self._mode = None if options.mode == "progress" else reward_mode(fspa, options, self.device, dtype)
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
@@ -184,14 +184,10 @@ class BatchMonitor:
         ends = self.outcomes.done(edge, steps)
         succeeds = ends & self.outcomes.accepting(edge)
         memory = self._memory
-        if self._edge_mode is not None:
-            reward = self._edge_mode.reward(source, values)
-        elif self._potential is not None:
-            reward, memory = self._potential.reward(memory, state, values, ends, succeeds)
-        elif self._sparse is not None:
-            reward, memory = self._sparse.reward(memory, state, values, ends)
-        else:
+        if self._mode is None:
             reward = self.outcomes.reward(edge, progress - self.progress, steps)
+        else:
+            reward, memory = self._mode.reward(BatchTransition(source, state, values, ends, succeeds), memory)
         reward = reward.masked_fill_(self._done, 0.0)
 
         success = self._success | (succeeds & ~self._done)
@@ -208,8 +204,5 @@ class BatchMonitor:
         """Return state, steps, progress, done, success and the mode's memory before the first sample."""
         numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
         flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)
-        if self._potential is not None:
-            memory = self._potential.start(self.count)
-        else:
-            memory = self._sparse.start(self.count) if self._sparse is not None else numbers
+        memory = numbers if self._mode is None else self._mode.start(self.count)
         return (numbers.to(torch.int64), numbers, numbers, flags, flags, memory)

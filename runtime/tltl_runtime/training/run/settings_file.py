@@ -14,7 +14,7 @@ from tltl_runtime.training.run.choices import EntropySchedule, Method, PenaltySc
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor.reward import Mode, TerminalPenalty, Termination
+from tltlc.monitor.reward import MODES, TerminalPenalty, Termination
 
 
 @record
@@ -150,7 +150,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "terminal": Number(0.0, 1_000.0),
     },
     "reward": {
-        "mode": OneOf(get_args(Mode)),
+        "mode": OneOf(MODES),
         "termination": OneOf(get_args(Termination)),
         "terminal_penalty": OneOf(get_args(TerminalPenalty)),
         "penalty_schedule": OneOf(get_args(PenaltySchedule)),

@@ -1,0 +1,51 @@
+"""Alternative rewards for N environments: one module per mode, loaded on first use.
+
+A module has the name of its mode, as its scalar counterpart in :mod:`tltlc.monitor.reward_modes`
+has, and defines a class ``Reward`` that is a :class:`RewardMode`. Both give equal rewards.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import NamedTuple, Protocol
+
+import torch
+from torch import Tensor
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor.reward import RewardOptions
+
+
+class BatchTransition(NamedTuple):
+    """One step of N automata.
+
+    - ``source`` and ``target``: the states before and after it, int64 [N].
+    - ``values``: the values of the atoms, [atoms, N], in [-1, 1].
+    - ``done`` and ``success``: whether the episode ends with it, and in success, bool [N].
+    """
+
+    source: Tensor
+    target: Tensor
+    values: Tensor
+    done: Tensor
+    success: Tensor
+
+
+class RewardMode(Protocol):
+    """A reward of N environments. Its memory is a tensor whose last dimension has size N."""
+
+    def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None: ...
+
+    def start(self, count: int) -> Tensor:
+        """Return the memory of ``count`` environments before the first sample."""
+        ...
+
+    def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the reward, shape [N], which the caller may modify, and the memory after the step."""
+        ...
+
+
+def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> RewardMode:
+    """Return the mode that the options name; ``progress`` has none, since its reward is Algorithm 1."""
+    mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").Reward(fspa, options, device, dtype)
+    return mode

@@ -1,0 +1,31 @@
+"""Reward the robustness of leaving the state, at every step; see :mod:`tltlc.monitor.reward_modes.edge`."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from tltl_runtime.spec.batch.guards import PrimeSets
+from tltl_runtime.spec.batch.reward_modes import BatchTransition
+from tltlc.automaton.fspa import Fspa, Implicant
+from tltlc.monitor.reward import RewardOptions
+
+
+class Reward:
+    """The robustness of leaving the state, except into a trap; 0 if no edge leaves it."""
+
+    def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
+        self._device, self._dtype = device, dtype
+        leaving: list[list[Implicant]] = [[] for _ in fspa.states]
+        for edge in fspa.edges:
+            if edge.target != edge.source and fspa.states[edge.target].distance is not None:
+                leaving[edge.source] += edge.guard.primes
+        self._leaving = PrimeSets([tuple(primes) for primes in leaving], len(fspa.atoms), device, 0.0)
+
+    def start(self, count: int) -> Tensor:
+        """Return zeros: this mode remembers nothing."""
+        return torch.zeros(count, dtype=self._dtype, device=self._device)
+
+    def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the reward, in [-1, 1], and the same memory."""
+        return self._leaving.of(step.source, step.values) + 0.0, memory

@@ -1,0 +1,36 @@
+"""Reward success, shaped with progress as the potential; see :mod:`tltlc.monitor.reward_modes.potential`."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from tltl_runtime.spec.batch.guards import PrimeSets
+from tltl_runtime.spec.batch.reward_modes import BatchTransition
+from tltl_runtime.spec.batch.rewards import approach
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.tables import tables
+
+
+class Reward:
+    """Success, shaped with progress as the potential. The memory is the potential before the step, [N]."""
+
+    def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
+        scalar = tables(fspa)
+        primes = [tuple(prime for edge in improving for prime in edge.guard.primes) for improving in scalar.improving]
+        self._improving = PrimeSets(primes, len(fspa.atoms), device, -1.0)
+        self._base = torch.tensor(scalar.base_progress, dtype=dtype, device=device)
+        self._size = torch.tensor([float(fspa.spec_size or 1)], dtype=dtype, device=device)
+        self._gamma = options.gamma
+
+    def start(self, count: int) -> Tensor:
+        """Return the potential before the first sample."""
+        return self._base[:1].repeat(count)
+
+    def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the reward and the potential after the step."""
+        nearest = self._improving.of(step.target, step.values)
+        potential = self._base.index_select(0, step.target) + approach(nearest, self._size)
+        after = potential.masked_fill_(step.done, 0.0)
+        return (step.success + self._gamma * after).sub_(memory), after
