@@ -1,5 +1,7 @@
 """A stand-alone monitor in Python: one file, standard library only, one function per state.
 
+It is printed from the program of :mod:`tltlc.program`.
+
 It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward.
 """
 
@@ -7,29 +9,42 @@ from __future__ import annotations
 
 import builtins
 import keyword
-import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import inf
+from typing import ClassVar, Final
 
+from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.code.states import INDENT, StateWriter
-from tltlc.expression.python import Writer
-from tltlc.program.names import Names, call, comment, in_docstring, literal, number
+from tltlc.program import judge, states
+from tltlc.program.arithmetic import defined
+from tltlc.program.build import program
+from tltlc.program.names import call, in_docstring, literal, number
+from tltlc.program.printer import Printer
+from tltlc.program.shallow import shallow
+from tltlc.program.template import filled
+from tltlc.program.tree import FAILING, Assign, Binary, Call, Comment, Declare, Expression, If, Int, Statement, Type
+from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
 
-# Names of the step function's own variables, and names that it reads from the module.
-_RESERVED = (
+_RESERVED: Final = (
     *keyword.kwlist,
     *dir(builtins),
-    *("self", "signals", "state", "steps", "best", "done", "label", "verdict", "accepting", "ends", "progress"),
-    *("reward", "robustness", "limiting", "nearest", "other", "failing", "error", "values", "main"),
-    *("inf", "isfinite", "pow", "sqrt", "exp", "tanh", "csv", "json", "os", "sys", "chain"),
-    *("Step", "Monitor", "MonitorError", "Callable", "Iterator", "Mapping", "NamedTuple"),
+    *("self", "signals", "label", "verdict", "accepting", "failing", "error", "values", "main"),
+    *("inf", "isfinite", "pow", "sqrt", "exp", "tanh", "json", "os", "re", "sys"),
+    *("Step", "Monitor", "MonitorError", "BinaryIO", "Callable", "Iterator", "Mapping", "NamedTuple"),
 )
+"""Names of the step function's own variables, and names that it reads from the module."""
+
+_FUNCTIONS: Final[dict[str, str]] = {"power": "pow", "sqrt": "sqrt", "exp": "exp", "tanh": "tanh"}
+"""Functions of a program that the module ``math`` has, with their names there."""
+
+_NO_LIMITING: Final = Assign(states.LIMITING, Int(-1))
+
+INDENT: Final = Printer.INDENT
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -38,25 +53,99 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {name: _Source(fspa, name).text()}
 
 
+class _Python(Printer):
+    """Prints Python; atoms are limiting by their names."""
+
+    COMMENT: ClassVar[str] = "#"
+    TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
+    WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "True", "false": "False"}
+    END: ClassVar[str] = ""
+
+    def __init__(self, atoms: Sequence[str]) -> None:
+        self._atoms = atoms
+
+    def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
+        """Return the lines of statements; a variable without a value needs no declaration."""
+        needed = (one for one in statements if not (isinstance(one, Declare) and one.value is None))
+        return super().lines(needed, depth)
+
+    def declaration(self, statement: Declare) -> str:
+        """Return the first assignment to a variable."""
+        assert statement.value is not None, "variables without a value are left out"
+        return f"{statement.name} = {self.text(statement.value)}"
+
+    def name(self, name: str) -> str:
+        """Return the name of a variable; an int also counts as a real number."""
+        return judge.STEPS if name == judge.STEPS_REAL else name
+
+    def assignment(self, statement: Assign) -> str:
+        """Return an assignment; the limiting atom is a name or None."""
+        return f"{statement.name} = {self.result(statement)}"
+
+    def result(self, statement: Assign) -> str:
+        """Return the value that a statement assigns."""
+        match statement:
+            case Assign(states.LIMITING, Int(index)):
+                return literal(self._atoms[index]) if index >= 0 else "None"
+        return self.text(statement.value)
+
+    def head(self, test: str, *, first: bool) -> str:
+        """Return the first line of a case."""
+        return f"if {test}:" if first else f"elif {test}:"
+
+    def otherwise(self) -> str:
+        """Return the line that begins the ``else``."""
+        return "else:"
+
+    def closing(self) -> list[str]:
+        """Return no lines: indentation ends a branch."""
+        return []
+
+    def _written(self, node: Expression) -> tuple[str, int]:
+        """Return the text of an expression and its binding strength.
+
+        A call of ``min`` or ``max`` takes as many arguments as there are: one call is faster than
+        several, and the first of equal arguments counts either way.
+        """
+        match node:
+            case Call("min" | "max" as function):
+                return super()._written(Call(function, tuple(_arguments(node))))
+            case Call("divide", (left, right)):
+                return super()._written(Binary("/", left, right))
+        return super()._written(node)
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """Return a call of a function of Python."""
+        return super().call("pow" if function == "power" else function, arguments)
+
+
+def _arguments(node: Call) -> list[Expression]:
+    """Return the arguments of ``f(f(a, b), c)`` as ``a, b, c``."""
+    first, second = node.args
+    before = _arguments(first) if isinstance(first, Call) and first.function == node.function else [first]
+    return [*before, second]
+
+
 class _Source:
-    """The source of one monitor: the names of its variables, and the pieces that fill the template."""
+    """The source of one monitor: the pieces that fill the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        names = Names(_RESERVED)
-        self._signals = {signal.name: names.give(signal.name) for signal in fspa.signals}
-        self._params = {param.name: names.give(param.name, "param") for param in fspa.params}
-        self._atoms = [names.give(atom.name, "atom") for atom in fspa.atoms]
-        self._at_goal = fspa.judge == "goal"
-        self._expressions = Writer(self._signals, self._params, "_", typed=True)
-        self._states = StateWriter(fspa, self._atoms, self._at_goal)
+        self._program = program(fspa, _RESERVED)
+        self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
+        progress = [states.PROGRESS] if fspa.judge == "goal" else []
+        self._results = (states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING)
+        # An atom that no state needs has no value.
+        needed = zip(self._program.atoms, self._program.only_in, strict=True)
+        self._computed = [name for name, only in needed if only != -1]
+        self._printer = _Python([atom.name for atom in fspa.atoms])
 
     def text(self) -> str:
         """Return the whole file."""
-        fspa = self._fspa
-        step = "\n".join(f"{INDENT * 2}{line}" if line else "" for line in self._step())
-        functions = [*self._expressions.parts, *(self._states.function(state.id) for state in fspa.states)]
-        body = "\n\n\n".join(functions)
+        fspa, at_goal = self._fspa, self._fspa.judge == "goal"
+        with recursion_room():
+            step = _Python.block(self._step(), depth=2)
+            body = "\n\n\n".join(self._function(state.id) for state in fspa.states)
         pieces = {
             "title": in_docstring(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
             "about": in_docstring("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula.ascii}")))),
@@ -71,21 +160,48 @@ class _Source:
             ),
             "atoms": _tuple([literal(atom.name) for atom in fspa.atoms]),
             "exclusive": _tuple([_inline([str(atom) for atom in group]) for group in fspa.exclusive]),
-            "returns": ", the progress of the step" if self._at_goal else "",
+            "returns": ", the progress of the step" if at_goal else "",
             "states": f"\n\n{body}\n",
-            "result": self._states.result,
+            "result": self._result,
             "transitions": _tuple([f"_from_{state.id}" for state in fspa.states]),
             "table": _tuple([self._state(state.id) for state in fspa.states]),
         }
-        used = [name for name in ("exp", "pow", "sqrt", "tanh") if re.search(rf"\b{name}\(", step + body)]
+        used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
         used += ["inf"] if any(re.search(r"\binf\b", pieces[name]) for name in ("step", "signals", "params")) else []
         pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
-        return re.sub(r"@@(\w+)@@", lambda match: pieces[match[1]], _template())
+        return filled("monitor.py.txt", pieces)
 
     def _state(self, state: int) -> str:
-        fspa_state = self._fspa.states[state]
-        ends = fspa_state.verdict in ("satisfied", "violated") or (self._at_goal and fspa_state.accepting)
+        fspa_state, ends = self._fspa.states[state], self._program.ends[state]
         return f"({literal(fspa_state.label.ascii)}, {literal(fspa_state.verdict)}, {fspa_state.accepting}, {ends})"
+
+    @property
+    def _result(self) -> str:
+        """The return type of the functions of the states."""
+        return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
+
+    def _function(self, state: int) -> str:
+        """Return the function of a state."""
+        lines = call(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
+        lines += self._printer.lines([Comment(self._fspa.states[state].label.ascii)], depth=1)
+        body = shallow(self._program.states[state], self._names)
+        match body:
+            case (If(cases, otherwise),):
+                # Returns instead of `elif`: a chain of these would nest as deep as a state has edges.
+                for test, taken in cases:
+                    lines.append(f"{INDENT}{self._printer.head(self._printer.text(test), first=True)}")
+                    lines += self._taken(taken, depth=2)
+                body = otherwise
+        return "\n".join([*lines, *self._taken(body, depth=1)])
+
+    def _taken(self, body: Sequence[Statement], depth: int) -> list[str]:
+        """Return the lines that run when an edge is taken; what is assigned once is returned without a variable."""
+        once = {one.name: one for one in body if isinstance(one, Assign) and one.name in self._results}
+        if once.get(states.LIMITING, _NO_LIMITING) != _NO_LIMITING:
+            del once[states.LIMITING]
+        rest = [one for one in body if one not in once.values()]
+        results = [self._printer.result(once[name]) if name in once else name for name in self._results]
+        return [*self._printer.lines(rest, depth), f"{INDENT * depth}return {', '.join(results)}"]
 
     # --- the step function --------------------------------------------------------------------
 
@@ -94,13 +210,14 @@ class _Source:
 
     def _read(self) -> list[str]:
         """Return code that reads signals as floats in their ranges, and params, into variables."""
-        if not self._signals:
-            return [f"({', '.join(self._params.values())},) = self._params"] if self._params else []
+        params = f"({', '.join(self._program.params)},) = self._params"
+        if not self._program.signals:
+            return [params] if self._program.params else []
+        signals = [*zip(self._fspa.signals, self._program.signals, strict=True)]
         lines = ["try:"]
-        lines += [f"{INDENT}{variable} = signals[{literal(name)}]" for name, variable in self._signals.items()]
+        lines += [f"{INDENT}{variable} = signals[{literal(signal.name)}]" for signal, variable in signals]
         lines += ["except KeyError:", f"{INDENT}raise self._missing(signals) from None"]
-        for index, signal in enumerate(self._fspa.signals):
-            variable = self._signals[signal.name]
+        for index, (signal, variable) in enumerate(signals):
             checked = f"type({variable}) is not float or not {_within(signal, variable)}:"
             if signal.type == "bool":
                 lines += [f"if type({variable}) is bool:", f"{INDENT}{variable} = 1.0 if {variable} else 0.0"]
@@ -108,86 +225,62 @@ class _Source:
             else:
                 lines.append(f"if {checked}")
             lines.append(f"{INDENT}{variable} = self._number({index}, {variable})")
-        if self._params:
-            lines.append(f"({', '.join(self._params.values())},) = self._params")
-        return lines
+        return [*lines, params] if self._program.params else lines
 
     def _compute(self) -> list[str]:
-        """Return code for the atoms' values."""
-        if not self._atoms:
-            return []
-        lines = ["failing = 0", "try:"]
-        explained: set[str] = {""}
-        for index, (atom, variable) in enumerate(zip(self._fspa.atoms, self._atoms, strict=True)):
-            lines += [f"{INDENT}failing = {index}"] if index else []
-            remark = atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}"
-            explained.add(atom.doc)
-            lines += [f"{INDENT}{line}" for line in comment(remark)]
-            lines += self._expressions.assignment(variable, atom.expression, INDENT)
-        lines += [
-            "except (ZeroDivisionError, OverflowError, ValueError) as error:",
-            f"{INDENT}raise self._failed(failing, error) from None",
-        ]
-        for index, variable in enumerate(self._atoms):
-            lines += [
-                f"if not -1.0 <= {variable} <= 1.0:",
-                f"{INDENT}{variable} = self._in_range({index}, {variable})",
-            ]
+        """Return code for the atoms' values, in the order of the program's remarks."""
+        program_ = self._program
+        lines: list[str] = []
+        fails = False
+        readers = (None, *range(len(program_.states)))
+        for index in (atom for reader in readers for atom in program_.computed_in(reader)):
+            lines += self._printer.comment(program_.remarks[index])
+            if called(program_.values[index]) & FAILING:
+                lines.append(f"failing = {index}")
+                fails = True
+            lines += self._printer.lines(defined(program_.atoms[index], program_.values[index]))
+        if fails:
+            lines = ["failing = 0", "try:", *(f"{INDENT}{line}" for line in lines)]
+            lines.append("except (ZeroDivisionError, OverflowError, ValueError) as error:")
+            lines.append(f"{INDENT}raise self._failed(failing, error) from None")
+        for index, (name, sure) in enumerate(zip(program_.atoms, program_.sure, strict=True)):
+            if not sure:
+                lines.append(f"if not -1.0 <= {name} <= 1.0:")
+                lines.append(f"{INDENT}{name} = self._in_range({index}, {name})")
         return lines
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""
         lines: list[str] = []
-        for number_, group in enumerate(self._fspa.exclusive):
-            atoms = [self._atoms[atom] for atom in group]
-            if len(atoms) > 1:
-                lines += [
-                    f"if {_two_hold(atoms)}:",
-                    f"{INDENT}raise self._together({number_}, {_inline(atoms)})",
-                ]
+        for index, group in self._program.exclusive:
+            atoms = [self._program.atoms[atom] for atom in group]
+            lines += [f"if {_two_hold(atoms)}:", f"{INDENT}raise self._together({index}, {_inline(atoms)})"]
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition and the progress of this step alone."""
-        results = "state, robustness, progress, limiting" if self._at_goal else "state, robustness, limiting"
-        lines = [
-            *call(f"{results} = _TRANSITIONS[self.state]", self._atoms),
-            "label, verdict, accepting, ends = _STATES[state]",
-            "steps = self.steps + 1",
-        ]
-        if self._at_goal:
-            return lines
-        limit = self._fspa.limit_steps
-        survived = "0.0" if limit is None else f"min(steps, {limit}) / {limit}"
-        otherwise = f'0.0 if verdict == "violated" else {survived}' if limit is not None else survived
-        return [*lines, f'progress = 1.0 if verdict == "satisfied" else {otherwise}']
+        """Return code for the transition: the function of the state computes it."""
+        return call(f"{', '.join(self._results)} = _TRANSITIONS[self.state]", self._computed)
 
     def _judge(self) -> list[str]:
-        """Return code for reward, best progress and the end of the episode (Algorithm 1)."""
-        limit = self._fspa.limit_steps
-        penalties = [
-            f"{INDENT}reward -= 1 / {limit}",
-            f'{INDENT}if verdict == "violated":',
-            f"{INDENT * 2}reward -= ({limit} - steps) / {limit}",
-        ]
+        """Return code for reward, best progress and the end of the episode."""
+        used = read(self._program.judged)
+        definitions = {
+            judge.VIOLATED: 'verdict == "violated"',
+            judge.SATISFIED: 'verdict == "satisfied"',
+        }
         return [
-            "best = self.progress",
-            "reward = 0.0",
-            "if progress > best:",
-            f"{INDENT}reward = progress - best",
-            f"{INDENT}best = progress",
-            "done = self.done",
-            "if done:",
-            f"{INDENT}reward = 0.0",
-            "else:",
-            *(penalties if limit is not None else []),
-            f"{INDENT}done = ends" + (f" or steps >= {limit}" if limit is not None else ""),
-            "self.state = state",
-            "self.steps = steps",
-            "self.progress = best",
-            "self.done = done",
+            f"label, verdict, accepting, {judge.ENDS} = _STATES[{states.TARGET}]",
+            f"{judge.STEPS} = self.steps + 1",
+            *(f"{name} = {value}" for name, value in definitions.items() if name in used),
+            f"{judge.BEST} = self.progress",
+            f"{judge.DONE} = self.done",
+            *self._printer.lines(self._program.judged),
+            f"self.state = {states.TARGET}",
+            f"self.steps = {judge.STEPS}",
+            f"self.progress = {judge.BEST}",
+            f"self.done = {judge.DONE}",
             "# Adding 0 turns -0 into 0.",
-            "values = (state, label, verdict, accepting, done, best, reward, robustness + 0.0, limiting)",
+            "values = (target, label, verdict, accepting, done, best, reward, robustness + 0.0, limiting)",
             "return tuple.__new__(Step, values)",
         ]
 
@@ -236,9 +329,3 @@ def _tuple(items: Sequence[str]) -> str:
 
 def _dict(items: Sequence[str]) -> str:
     return "\n".join(["{", *(f"{INDENT}{item}," for item in items), "}"]) if items else "{}"
-
-
-def _template() -> str:
-    path = os.path.join(os.path.dirname(__file__), "templates", "monitor.py.txt")  # noqa: PTH118, PTH120 (as codes.py)
-    with open(path, encoding="utf-8") as file:  # noqa: PTH123
-        return file.read()

@@ -67,8 +67,8 @@ class Writer:
     variables are named ``PREFIXbase``, ``PREFIXbase2``, ….
     """
 
-    def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str, typed: bool = False) -> None:
-        self._signals, self._params, self._prefix, self._typed = signals, params, prefix, typed
+    def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
+        self._signals, self._params, self._prefix = signals, params, prefix
         self._count = self._powers = 0
         self.parts: list[str] = []
 
@@ -157,13 +157,10 @@ class Writer:
         """Return a call of a new function that computes the node."""
         name = f"{self._prefix}part{self._count}"
         self._count += 1
-        is_condition = isinstance(node, Condition)
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)
-        variables = [*self._signals.values(), *self._params.values()]
-        parameters = ", ".join(f"{variable}: float" if self._typed else variable for variable in variables)
-        result = f" -> {'bool' if is_condition else 'float'}" if self._typed else ""
-        self.parts.append(f"def {name}({parameters}){result}:\n{INDENT}return {body}")
-        return f"{name}({', '.join(variables)})"
+        part = f"{name}({', '.join([*self._signals.values(), *self._params.values()])})"
+        self.parts.append(f"def {part}:\n{INDENT}return {body}")
+        return part
 
 
 def _bracketed(text: str, binding: int, room: int) -> str:

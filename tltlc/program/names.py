@@ -39,11 +39,6 @@ def visible(text: str) -> str:
     )
 
 
-def comment(text: str) -> list[str]:
-    """Return the text as comment lines."""
-    return [f"# {line}" for line in wrap(visible(text), 100, break_long_words=False, break_on_hyphens=False)]
-
-
 def call(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
     """Return ``head(arguments)tail`` on one line, or on several if that is too long."""
     line = f"{head}({', '.join(arguments)}){tail}"
