@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Literal
 
 from tltl_runtime.evaluation.local import Process
-from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.player import Player, Plays, Recorded, Result, Setup, Task
 from tltl_runtime.evaluation.spread import Alone, spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
 from tltl_runtime.stealth.env import check_fit
@@ -37,7 +37,7 @@ def evaluate(
     workers: Pool = 1,
     sampled: bool = True,
     spec: str | Path | Fspa | None = None,
-) -> Iterator[Played]:
+) -> Iterator[EpisodeSummary]:
     """Play ``episodes`` episodes with a policy; yield the results in order, as soon as possible.
 
     ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another

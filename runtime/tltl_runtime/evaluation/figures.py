@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltl_runtime.evaluation.outcome import TimedOutcome
-from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
-from tltl_runtime.stealth.recordings.episode import End
+from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltlc.core.record import record
 
 
@@ -51,7 +50,7 @@ class Evaluation:
 
     figures: Figures
     ended: tuple[Ended, ...]
-    episodes: tuple[Played, ...]
+    episodes: tuple[EpisodeSummary, ...]
 
 
 def figures_of(episodes: Sequence[TimedOutcome]) -> Figures:
@@ -69,17 +68,17 @@ def figures_of(episodes: Sequence[TimedOutcome]) -> Figures:
     )
 
 
-def evaluation_of(episodes: Sequence[Played]) -> Evaluation:
+def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
     """Return the evaluation of episodes.  Raises ValueError if there are none."""
     return Evaluation(figures_of(episodes), _ended(episodes), tuple(episodes))
 
 
-def _ended(episodes: Sequence[Played]) -> tuple[Ended, ...]:
+def _ended(episodes: Sequence[EpisodeSummary]) -> tuple[Ended, ...]:
     """Group the failed episodes by state and end, the most frequent group first."""
     groups: dict[tuple[int, str, End], list[int]] = {}
     for episode in episodes:
         if not episode.success:
-            groups.setdefault((episode.unmet, episode.label, episode.end), []).append(episode.index)
+            groups.setdefault((episode.unmet, episode.label or "", episode.end), []).append(episode.index)
     ended = [
         Ended(state, label, end, len(indices), len(indices) / len(episodes), tuple(indices))
         for (state, label, end), indices in groups.items()

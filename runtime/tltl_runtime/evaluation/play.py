@@ -8,39 +8,14 @@ import gymnasium
 import numpy as np
 
 from tltl_runtime.policies.policy import NoNumbersError, Policy
-from tltl_runtime.stealth.recordings.episode import End
-from tltlc.core.record import record
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
 """The random streams of an episode: for the reset of the environment, and for sampled actions."""
 
 
-@record
-class Played:
-    """The result of episode ``index`` of an evaluation.
-
-    ``seed`` is the seed of the environment's reset.  ``progress`` is the best value, in [0, 1];
-    ``reward`` the sum over the ``steps``; ``seconds`` are game time.  ``state`` is the automaton
-    state at the end.  ``unmet`` is that state, or the state before a violation; ``label`` says in
-    English what remained to be done there.
-    """
-
-    index: int
-    seed: int
-    success: bool
-    verdict: str
-    end: End
-    progress: float
-    reward: float
-    steps: int
-    seconds: float
-    state: int
-    unmet: int
-    label: str
-
-
-def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> Played:
+def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> EpisodeSummary:
     """Play episode ``index`` of the evaluation with ``seed`` to its end.
 
     ``sampled`` says whether actions are sampled or the likeliest ones.
@@ -66,7 +41,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
         reward, steps, over = reward + float(step_reward), steps + 1, terminated or truncated
     violated = info["verdict"] == "violated"
     fspa = env.get_wrapper_attr("task").fspa
-    return Played(
+    return EpisodeSummary(
         index=index,
         seed=reset_seed,
         success=info["success"],

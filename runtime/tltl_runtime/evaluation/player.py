@@ -7,9 +7,10 @@ from typing import Any, Final, Literal, Protocol
 
 import gymnasium
 
-from tltl_runtime.evaluation.play import Played, play
+from tltl_runtime.evaluation.play import play
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import to_bytes
@@ -56,7 +57,7 @@ class Result:
     """A played episode, with its trajectory and the bytes of its recording if requested."""
 
     task: Task
-    played: Played
+    played: EpisodeSummary
     trajectory: Trajectory | None = None
     recording: bytes = b""
 

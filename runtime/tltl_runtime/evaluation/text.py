@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.figures import Ended, Evaluation, Figures
 from tltl_runtime.evaluation.statistics import Spread
-from tltl_runtime.stealth.recordings.episode import End
+from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.support.number_text import column, number, share
 
 _WIDTH: Final = 24

@@ -10,10 +10,11 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
+from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError

@@ -5,18 +5,19 @@ from __future__ import annotations
 import pytest
 
 from tltl_runtime.evaluation.figures import Ended, evaluation_of, figures_of
-from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.text import report_text
-from tltl_runtime.stealth.recordings.episode import End
+from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltlc.core.record import replace
 
-PASSED = Played(0, 7, True, "satisfied", "success", 1.0, 0.75, 100, 15.0, 4, 4, "Keep alive throughout.")
+PASSED = EpisodeSummary(0, 7, True, "success", 1.0, 0.75, 100, 4, "satisfied", 15.0, 4, "Keep alive throughout.")
 
 
-def failed(index: int, state: int, end: End, progress: float) -> Played:
+def failed(index: int, state: int, end: End, progress: float) -> EpisodeSummary:
     verdict = "violated" if end == "violation" else "pending"
     trap = 2 if end == "violation" else state
-    return Played(index, 7, False, verdict, end, progress, progress - 1.0, 40, 6.0, trap, state, f"Reach {state}.")
+    return EpisodeSummary(
+        index, 7, False, end, progress, progress - 1.0, 40, state, verdict, 6.0, trap, f"Reach {state}."
+    )
 
 
 EPISODES = [

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tests.runtime.evaluation.untrained import untrained
-from tltl_runtime.evaluation.play import Played, episode_seed, play
+from tltl_runtime.evaluation.play import episode_seed, play
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.env import make_env
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor import RewardOptions
@@ -58,7 +59,7 @@ def test_an_episode_that_runs_out_of_time(policy: Policy) -> None:
     assert result.reward == pytest.approx(result.progress - 1.0)
 
 
-def played(spec: str) -> Played:
+def played(spec: str) -> EpisodeSummary:
     policy = untrained(spec)
     env = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
     result = play(policy, env, 3, 0, sampled=True)

@@ -20,10 +20,11 @@ from tests.waiting import HANG_S, until
 from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, results_here, set_up
 from tltl_runtime.evaluation.local import Process
-from tltl_runtime.evaluation.play import Played, episode_seed
+from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError, spread
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import from_bytes
 from tltl_runtime.stealth.world.physics import WorldError
@@ -43,7 +44,7 @@ def policy() -> Policy:
 
 
 @pytest.fixture(scope="module")
-def expected(policy: Policy) -> list[Played]:
+def expected(policy: Policy) -> list[EpisodeSummary]:
     return list(evaluate(policy, episodes=EPISODES, seed=3))
 
 
@@ -70,16 +71,16 @@ def all_cores_are_free() -> None:
 
 
 @pytest.mark.parametrize("workers", POOLS)
-def test_every_pool_plays_the_same_episodes(policy: Policy, expected: list[Played], workers: Pool) -> None:
+def test_every_pool_plays_the_same_episodes(policy: Policy, expected: list[EpisodeSummary], workers: Pool) -> None:
     assert list(evaluate(policy, episodes=EPISODES, seed=3, workers=workers)) == expected
 
 
-def test_an_episode_does_not_depend_on_the_number_of_episodes(policy: Policy, expected: list[Played]) -> None:
+def test_an_episode_does_not_depend_on_the_number_of_episodes(policy: Policy, expected: list[EpisodeSummary]) -> None:
     single_results = results(set_up(policy, None, None, None, 3), [Task(7)])
     assert [result.played for result in single_results] == [expected[7]]
 
 
-def test_recordings_are_made_as_requested(policy: Policy, expected: list[Played]) -> None:
+def test_recordings_are_made_as_requested(policy: Policy, expected: list[EpisodeSummary]) -> None:
     tasks = [Task(0), Task(1)]
     for recorded, expect_recording in (("all", True), ("failures", True), ("none", False)):
         for result in results(set_up(policy, None, None, None, 3, recorded), tasks):  # type: ignore[arg-type]
@@ -229,7 +230,7 @@ def test_a_cluster_without_free_cores_is_reported_after_waiting(
 
 @needs_ray
 def test_a_core_that_becomes_free_is_used(
-    policy: Policy, busy: Any, expected: list[Played], monkeypatch: pytest.MonkeyPatch
+    policy: Policy, busy: Any, expected: list[EpisodeSummary], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import ray
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
-from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.player import CHOICES, Result, Setup
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.recording import writable_folder
@@ -33,6 +33,21 @@ _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
 _KEYS: Final = frozenset({"level", "variant", "level_hash", "spec", "policy", "versions"})
 """The keys that the reports of all versions contain."""
+_EPISODE_KEYS: Final = (
+    "index",
+    "seed",
+    "success",
+    "verdict",
+    "end",
+    "progress",
+    "reward",
+    "steps",
+    "seconds",
+    "state",
+    "unmet",
+    "label",
+)
+"""The keys of an episode in the JSON report, in order."""
 
 
 class EvaluationFiles:
@@ -63,7 +78,7 @@ class EvaluationFiles:
         self._command = command
         self._json = None if is_stdout(json_file) else json_file
         self._level = load_level(setup.level, setup.variant)
-        self._played: dict[bool, list[Played]] = {True: [], False: []}
+        self._played: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
         self._removed: tuple[str, ...] = ()
@@ -222,4 +237,13 @@ def _is_report(path: Path) -> bool:
 def _as_json(evaluation: Evaluation) -> dict[str, Any]:
     """The figures, how failed episodes ended, and the list of episodes; it replaces their number in the figures."""
     figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
-    return {**figures, "ended": to_json(evaluation.ended), "episodes": to_json(evaluation.episodes)}
+    return {
+        **figures,
+        "ended": to_json(evaluation.ended),
+        "episodes": [_episode_json(episode) for episode in evaluation.episodes],
+    }
+
+
+def _episode_json(episode: EpisodeSummary) -> dict[str, Any]:
+    """An episode in the JSON report."""
+    return {key: getattr(episode, key) for key in _EPISODE_KEYS}

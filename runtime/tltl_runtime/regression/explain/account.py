@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from tltl_runtime.evaluation.play import Played
 from tltl_runtime.regression.explain.path_points import Way, way_of
 from tltl_runtime.regression.explain.stages import target_of
+from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.recordings.cause import Kind, cause
-from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.core.record import record
 from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.tables import tables
@@ -52,7 +52,7 @@ class Account:
     """The account of episode ``index`` of a case.
 
     ``progress``, ``reward``, ``steps`` and ``unmet`` are as in
-    :class:`~tltl_runtime.evaluation.play.Played`.  ``arrivals`` start with the first sample.
+    :class:`~tltl_runtime.spec.episode_summary.EpisodeSummary`.  ``arrivals`` start with the first sample.
     ``cause``, ``by`` and ``place`` describe the end of the episode.  ``seen_by`` are the enemies that
     saw the player shortly before.  ``broke`` are the atoms that broke the spec; ``arrived`` says that
     without them a transition towards acceptance would have been possible.  ``way`` is the simplified
@@ -79,7 +79,7 @@ class Account:
     shut: tuple[str, ...] = ()
 
 
-def account(played: Played, episode: Episode) -> Account:
+def account(played: EpisodeSummary, episode: Episode) -> Account:
     """Return the account of an episode that was played and recorded."""
     ending = cause(episode)
     return Account(

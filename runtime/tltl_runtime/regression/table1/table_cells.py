@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
-from tltl_runtime.evaluation.play import Played, episode_seed
+from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import Result, Task
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.env import make_env, spec_of
@@ -110,7 +111,7 @@ class _ExpertPlayer:
         went, unmet = outcome(episode), info["unmet"]
         return Result(
             task,
-            Played(
+            EpisodeSummary(
                 index=task.index,
                 seed=seed,
                 success=went.success,

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import EMPTY, record
 from tltlc.monitor import RewardOptions
-
-End = Literal["success", "violation", "limit", "stopped"]
 
 
 @record

@@ -12,10 +12,11 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
-from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.numpy_archive import ArchiveError, read_array, read_members
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.load_errors import Refusals

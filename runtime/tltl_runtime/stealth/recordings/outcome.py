@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.spec.episode_summary import End
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.core.record import record
 
 

@@ -16,10 +16,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 from numpy.typing import NDArray
 
+from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.capabilities.reach import Reach
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.level import Box, Enemy, Level, Point
-from tltl_runtime.stealth.recordings.episode import End, Episode
+from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.summary import Notation
 from tltlc.automaton.fspa import Fspa
 

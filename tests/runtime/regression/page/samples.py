@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.evaluation.play import Played
 from tltl_runtime.regression.explain.account import Account, account
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
 from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recording import RecordEpisode
@@ -71,7 +71,7 @@ def account_of(index: int, episode: Episode) -> Account:
     """The account of an episode, as if a case had played it."""
     states = episode.states.tolist()
     unmet = states[-2] if episode.verdict == "violated" else states[-1]
-    played = Played(
+    played = EpisodeSummary(
         index=index,
         seed=episode.seed,
         success=episode.success,

@@ -1,0 +1,42 @@
+"""The summary of an episode, which training, evaluation and regression share."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tltlc.core.record import record
+
+End = Literal["success", "violation", "limit", "stopped"]
+"""How an episode ended.
+
+``limit``: the limit of the spec or of the environment came before the verdict was settled.
+``stopped``: the player left.
+"""
+
+
+@record
+class EpisodeSummary:
+    """How an episode went.
+
+    ``index`` numbers the episodes of an evaluation or a training, from 0.  ``seed`` is the seed of
+    the environment's reset, or None if the episode continued the environment's random stream.
+    ``progress`` is the best value, in [0, 1]; ``reward`` the sum over the ``steps``, with the default
+    reward options.  ``unmet`` is the automaton state at the end, or the state before a violation.
+
+    The other fields are None in training and in a summary that was read from a baseline: ``verdict``
+    is the verdict of the last step, ``seconds`` are game time, ``state`` is the automaton state at
+    the end, and ``label`` says in English what remained to be done in the state ``unmet``.
+    """
+
+    index: int
+    seed: int | None
+    success: bool
+    end: End
+    progress: float
+    reward: float
+    steps: int
+    unmet: int
+    verdict: str | None = None
+    seconds: float | None = None
+    state: int | None = None
+    label: str | None = None
