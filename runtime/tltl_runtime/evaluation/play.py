@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 
 from tltl_runtime.policies.policy import NoNumbersError, Policy
-from tltl_runtime.spec.episode_summary import EpisodeSummary
+from tltl_runtime.spec.episode_summary import EpisodeSummary, settled_end
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
@@ -39,14 +39,13 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
             raise TltlError([Diagnostic("TLT0854", f"{where}: {error}", help=help_)]) from None
         observation, step_reward, terminated, truncated, info = env.step(action)
         reward, steps, over = reward + float(step_reward), steps + 1, terminated or truncated
-    violated = info["verdict"] == "violated"
     fspa = env.get_wrapper_attr("task").fspa
     return EpisodeSummary(
         index=index,
         seed=reset_seed,
         success=info["success"],
         verdict=info["verdict"],
-        end="success" if info["success"] else "violation" if violated else "limit",
+        end=settled_end(info["success"], info["verdict"]),
         progress=info["progress"],
         reward=reward,
         steps=steps,

@@ -40,3 +40,20 @@ class EpisodeSummary:
     seconds: float | None = None
     state: int | None = None
     label: str | None = None
+
+
+def settled_end(success: bool, verdict: str) -> End:
+    """Return how an episode ended that was played to its end; ``verdict`` is that of the last step."""
+    if success:
+        return "success"
+    return "violation" if verdict == "violated" else "limit"
+
+
+def progress_return(success: bool, progress: float, steps: int, limit_steps: int | None) -> float:
+    """Return the sum of the rewards in mode ``progress`` with the undiscounted terminal penalty.
+
+    ``limit_steps`` is the spec's limit, or None.  See semantics, section 4.
+    """
+    if limit_steps is None:
+        return progress
+    return progress - (steps / limit_steps if success else 1.0)

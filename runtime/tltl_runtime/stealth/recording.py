@@ -10,7 +10,7 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
-from tltl_runtime.spec.episode_summary import End
+from tltl_runtime.spec.episode_summary import End, settled_end
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.level import Level
@@ -143,9 +143,7 @@ def _end(last: Step | None, success: bool) -> End:
     """Classify how an episode ended, from its last step."""
     if last is None or not last.done:
         return "stopped"
-    if success:
-        return "success"
-    return "violation" if last.verdict == "violated" else "limit"
+    return settled_end(success, last.verdict)
 
 
 def _game_env(env: gymnasium.Env[Any, Any]) -> GameEnv:

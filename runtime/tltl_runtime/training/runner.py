@@ -14,9 +14,10 @@ from rsl_rl.utils import check_nan
 from torch import Tensor, nn
 
 from tltl_runtime.policies.threads import threads
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.self_imitation import imitate
 from tltl_runtime.training.ppo.distributed import peers
-from tltl_runtime.training.ppo.environment import Finished, TrainingEnv
+from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
@@ -32,7 +33,7 @@ class Iteration:
 
     number: int
     steps: int
-    finished: tuple[Finished, ...]
+    finished: tuple[EpisodeSummary, ...]
     losses: dict[str, float]
     collect_s: float
     learn_s: float

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tltl_runtime.training.ppo.environment import Finished
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.run.report import Confirmation, Report, StopReason, Window
 from tltl_runtime.training.runner import Iteration
 
@@ -15,7 +15,7 @@ def a_report(
     count: int = 50,
     successes: int = 40,
     states: Mapping[int, float] | None = None,
-    finished: tuple[Finished, ...] = (),
+    finished: tuple[EpisodeSummary, ...] = (),
     stop: StopReason | None = None,
     confirmation: Confirmation | None = None,
     checkpointed: bool = False,
@@ -47,5 +47,7 @@ def a_report(
     )
 
 
-def an_episode(success: bool) -> Finished:
-    return Finished(success, 1.0 if success else 0.4, 100, 4 if success else 1, violated=not success)
+def an_episode(success: bool) -> EpisodeSummary:
+    if success:
+        return EpisodeSummary(0, None, True, "success", 1.0, 0.5, 100, 4)
+    return EpisodeSummary(0, None, False, "violation", 0.4, -0.6, 100, 1)

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 import torch
 
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.reset_distribution import Replayed, Start
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
 from tltl_runtime.training.exploration.search import Way
-from tltl_runtime.training.ppo.environment import Finished, TrainingEnv
+from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.vector import make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 
@@ -54,7 +55,7 @@ def _make() -> Iterator[Callable[[], TrainingEnv]]:
             info = {**TLTL_INFO, "cell": np.int64}
             played = make_vec("navigation", "v0", len(STARTS), 1, spec=SPEC, wrapper=Replayed, info=info)
             stack.callback(played.close)
-            return TrainingEnv(played, 0, restarts=Fixed(), dearer=lambda steps: 10.0 * steps)
+            return TrainingEnv(played, 0, restarts=Fixed(), dearer=lambda steps: 10.0 * steps, limit_steps=4)
 
         yield make
 
@@ -74,14 +75,15 @@ def test_truncated_episodes_are_time_outs_and_episodes_on_ways_are_not_counted(e
         if len(ends) == 2:
             # The truncated episode is followed at once by one with the same start.
             assert all(torch.equal(observation[key][5], first[key][5]) for key in env.shapes)
-    violated, met = Finished(False, 0.0, 1, 0, violated=True), Finished(True, 1.0, 1, 1, violated=False)
+    violated = EpisodeSummary(0, None, False, "violation", 0.0, -1.0, 1, 0)
+    met = EpisodeSummary(1, None, True, "success", 1.0, 0.75, 1, 1)
     assert ends == [
         # Violated or met episodes terminate: they have no value beyond their end.
         ([1, 2, 3, 4], [], (violated, met)),
         # Environment 5 reached the limit of its start, environment 6 the limit of the spec.
         ([5], [5], ()),
         ([6], [6], ()),
-        ([0, 3, 4, 5], [0, 3, 4, 5], (Finished(False, 0.0, 4, 0, violated=False),)),
+        ([0, 3, 4, 5], [0, 3, 4, 5], (EpisodeSummary(5, None, False, "limit", 0.0, -1.0, 4, 0),)),
     ]
 
 

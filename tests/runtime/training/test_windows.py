@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.training.ppo.environment import Finished
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.ppo.windows import Standstill, Windows
 from tltl_runtime.training.run.report import Window
 
-SUCCESS = Finished(True, 1.0, 40, 4, violated=False)
-FAILURE = Finished(False, 0.6, 25, 2, violated=True)
+SUCCESS = EpisodeSummary(0, None, True, "success", 1.0, 0.6, 40, 4)
+FAILURE = EpisodeSummary(1, None, False, "violation", 0.6, -0.4, 25, 2)
 
 
 def _windows(episodes: list[bool]) -> Windows:
@@ -45,7 +45,9 @@ def test_a_policy_is_scored_by_its_last_window(episodes: list[bool]) -> None:
 
 
 def test_rewards_use_the_undiscounted_penalty() -> None:
-    window = _windows([True, False]).window
+    windows = Windows(2, 3, 100)
+    windows.load(_windows([True, False]).state(), 0)
+    window = windows.window
     # 1 - 40/100, and 0.6 - 1.
     assert window.reward == pytest.approx((0.6 - 0.4) / 2)
     assert (window.count, window.successes, window.pass_rate) == (2, 1, 0.5)

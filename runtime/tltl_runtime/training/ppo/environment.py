@@ -13,28 +13,13 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
 from tltl_runtime.training.exploration.reset_distribution import Episodes
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
 from tltl_runtime.training.exploration.search import end_of
 from tltl_runtime.training.exploration.self_imitation import Lessons
 from tltl_runtime.training.imitation.imitation_data import Demonstrated
 from tltl_runtime.vector import WorkerVectorEnv
-from tltlc.core.record import record
-
-
-@record
-class Finished:
-    """An episode that ended in training.
-
-    ``progress`` is in [0, 1].  ``steps`` is the length.  ``state`` is the automaton state at the
-    end, or before the violation if it was ``violated``.
-    """
-
-    success: bool
-    progress: float
-    steps: int
-    state: int
-    violated: bool
 
 
 class TrainingEnv(VecEnv):
@@ -53,7 +38,8 @@ class TrainingEnv(VecEnv):
     ``replayed`` counts the decisions that led to the starts.  ``lessons`` are decisions for the
     runner to imitate, ``demonstrated`` are decisions for the algorithm to imitate.  ``dearer`` maps
     the length of a failed episode to the largest extra penalty.  ``severity``, the penalty weight
-    in [0, 1], initially 0, is the share of it that is subtracted from the reward.
+    in [0, 1], initially 0, is the share of it that is subtracted from the reward.  ``limit_steps`` is the
+    spec's limit, or None.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -68,6 +54,7 @@ class TrainingEnv(VecEnv):
         lessons: Lessons | None = None,
         demonstrated: Demonstrated | None = None,
         dearer: Callable[[int], float] | None = None,
+        limit_steps: int | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
@@ -92,7 +79,9 @@ class TrainingEnv(VecEnv):
         self._episodes = Episodes(env, restarts.draw) if restarts else None
         observation = self._episodes.observation if self._episodes else env.reset(seed=seed)[0]
         self._observation = self._tensors(observation)
-        self._finished: list[Finished] = []
+        self._finished: list[EpisodeSummary] = []
+        self._limit_steps = limit_steps
+        self._ended = 0
 
     def get_observations(self) -> TensorDict:
         """Return the current observations of all environments."""
@@ -108,7 +97,7 @@ class TrainingEnv(VecEnv):
         step = self._episodes.step if self._episodes else self.env.step
         observation, reward, terminated, truncated, infos = step(taken)
         over = terminated | truncated
-        ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
+        ended = self._summaries(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
         for row, episode in ended.items():
             successes[row] = episode.success
@@ -116,7 +105,7 @@ class TrainingEnv(VecEnv):
                 reward[row] -= self.severity * self._dearer(self._taken(row, episode))
         if self._episodes and self.restarts:
             ends = {row: end_of(infos["final_info"], row) for row, episode in ended.items() if episode.success}
-            states = {row: episode.state for row, episode in ended.items()}
+            states = {row: episode.unmet for row, episode in ended.items()}
             cut = _update_restarts(self.restarts, self._episodes, over, ends, states)
             ended = {row: episode for row, episode in ended.items() if self._episodes.starts[row].part is None}
             self._episodes.turn(over)
@@ -145,12 +134,18 @@ class TrainingEnv(VecEnv):
         self._episodes = Episodes(self.env, self.restarts.draw)
         self._observation = self._tensors(self._episodes.observation)
 
-    def finished(self) -> tuple[Finished, ...]:
+    def finished(self) -> tuple[EpisodeSummary, ...]:
         """Return the episodes that ended since the last call, in the order of their ends."""
         ended, self._finished = tuple(self._finished), []
         return ended
 
-    def _taken(self, row: int, episode: Finished) -> int:
+    def _summaries(self, infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, EpisodeSummary]:
+        """Return the summaries of the episodes that ended, by row."""
+        summaries = _summaries(infos, rows, self._ended, self._limit_steps)
+        self._ended += len(summaries)
+        return summaries
+
+    def _taken(self, row: int, episode: EpisodeSummary) -> int:
         """Return the steps of the episode that ended in this row, including replayed ones."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
@@ -177,16 +172,26 @@ def _update_restarts(
     return spent
 
 
-def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, Finished]:
-    """Return the episodes that ended, by row."""
-    episode = infos["episode"]
+def _summaries(
+    infos: Mapping[str, Any], rows: NDArray[np.int64], first_index: int, limit_steps: int | None
+) -> dict[int, EpisodeSummary]:
+    """Return the summaries of the episodes that ended, by row; their indices begin with ``first_index``."""
+    lengths = infos["episode"]["l"]
     return {
-        int(row): Finished(
-            success=bool(infos["success"][row]),
-            progress=float(infos["progress"][row]),
-            steps=int(episode["l"][row]),
-            state=int(infos["unmet"][row]),
-            violated=infos["verdict"][row] == "violated",
-        )
-        for row in rows
+        row: _summary(infos, row, index, int(lengths[row]), limit_steps)
+        for index, row in enumerate(rows.tolist(), start=first_index)
     }
+
+
+def _summary(infos: Mapping[str, Any], row: int, index: int, steps: int, limit_steps: int | None) -> EpisodeSummary:
+    success, progress = bool(infos["success"][row]), float(infos["progress"][row])
+    return EpisodeSummary(
+        index=index,
+        seed=None,
+        success=success,
+        end=settled_end(success, infos["verdict"][row]),
+        progress=progress,
+        reward=progress_return(success, progress, steps, limit_steps),
+        steps=steps,
+        unmet=int(infos["unmet"][row]),
+    )

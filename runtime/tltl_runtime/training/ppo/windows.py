@@ -6,7 +6,7 @@ from collections import Counter, deque
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from tltl_runtime.training.ppo.environment import Finished
+from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return
 from tltl_runtime.training.run.report import Window
 
 Score = tuple[float, float, float]
@@ -35,10 +35,10 @@ class Windows:
         self._episodes = episodes
         self._limit_steps = limit_steps
         self._count = windows * episodes
-        self._last: deque[Finished] = deque(maxlen=self._count)
+        self._last: deque[EpisodeSummary] = deque(maxlen=self._count)
         self.unbroken = 0
 
-    def add(self, finished: Iterable[Finished]) -> None:
+    def add(self, finished: Iterable[EpisodeSummary]) -> None:
         """Add episodes in the order of their ends."""
         for episode in finished:
             self._last.append(episode)
@@ -69,37 +69,43 @@ class Windows:
     def state(self) -> list[tuple[Any, ...]]:
         """Return the episodes as plain values, for :meth:`load`."""
         return [
-            (episode.success, episode.progress, episode.steps, episode.state, episode.violated)
+            (episode.success, episode.progress, episode.steps, episode.unmet, episode.end == "violation")
             for episode in self._last
         ]
 
     def load(self, state: Iterable[Sequence[Any]], unbroken: int) -> None:
         """Restore what :meth:`state` returned."""
-        self._last.extend(Finished(*fields) for fields in state)
+        self._last.extend(self._loaded(index, *fields) for index, fields in enumerate(state))
         self.unbroken = unbroken
 
-    def _window(self, episodes: tuple[Finished, ...]) -> Window:
+    def _window(self, episodes: tuple[EpisodeSummary, ...]) -> Window:
         count = len(episodes)
-        ends = Counter(episode.state for episode in episodes)
-        violated = Counter(episode.state for episode in episodes if episode.violated)
+        ends = Counter(episode.unmet for episode in episodes)
+        violated = Counter(episode.unmet for episode in episodes if episode.end == "violation")
         return Window(
             count=count,
             successes=sum(episode.success for episode in episodes),
             progress=sum(episode.progress for episode in episodes) / max(count, 1),
-            reward=sum(self._reward(episode) for episode in episodes) / max(count, 1),
+            reward=sum(episode.reward for episode in episodes) / max(count, 1),
             steps=sum(episode.steps for episode in episodes) / max(count, 1),
             states={state: ended / count for state, ended in sorted(ends.items())},
             violated={state: ended / count for state, ended in sorted(violated.items())},
         )
 
-    def _reward(self, episode: Finished) -> float:
-        """Compute the return in mode ``progress`` with the undiscounted terminal penalty.
-
-        See semantics, section 4.
-        """
-        if self._limit_steps is None:
-            return episode.progress
-        return episode.progress - (episode.steps / self._limit_steps if episode.success else 1.0)
+    def _loaded(
+        self, index: int, success: bool, progress: float, steps: int, unmet: int, violated: bool
+    ) -> EpisodeSummary:
+        """Return the episode at ``index`` of the plain values that :meth:`state` returns."""
+        return EpisodeSummary(
+            index=index,
+            seed=None,
+            success=success,
+            end="success" if success else "violation" if violated else "limit",
+            progress=progress,
+            reward=progress_return(success, progress, steps, self._limit_steps),
+            steps=steps,
+            unmet=unmet,
+        )
 
 
 class Standstill:

@@ -140,7 +140,9 @@ def prepared(
             lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
     reset_seeds = [int(seed) for seed in seeds]
-    return TrainingEnv(played, reset_seeds, device, restarts, lessons, to_imitate, dearer(run)), searched
+    limit_steps = run.fspa.limit_steps
+    env = TrainingEnv(played, reset_seeds, device, restarts, lessons, to_imitate, dearer(run), limit_steps)
+    return env, searched
 
 
 def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
