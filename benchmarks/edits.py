@@ -27,6 +27,7 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltl_runtime.evaluation.figures import Figures
+    from tltl_runtime.regression.explain.account import Account
     from tltl_runtime.regression.suite.suite import Case, Suite
     from tltl_runtime.regression.verdict.baseline import Reference
     from tltl_runtime.stealth.recordings.episode import Episode
@@ -163,13 +164,18 @@ def judged(suite: Suite, case: Case) -> Record:
         "verdict": done.report.verdict,
         "certain": done.report.certain,
         "episodes": now.episodes,
-        "same": sum((new.steps, new.reward, new.way) == (old.steps, old.reward, old.way) for new, old in pairs),
+        "same": sum(_played(new) == _played(old) for new, old in pairs),
         "now": _rates(now),
         "before": _rates(before),
         "reasons": list(done.report.reasons),
         "cpu_s": round(time.process_time() - began, 1),
         "source": source_digest(*SOURCES),
     }
+
+
+def _played(account: Account) -> tuple[object, ...]:
+    """What shows that two episodes were alike."""
+    return account.summary.steps, account.summary.reward, account.way
 
 
 def _rates(figures: Figures) -> dict[str, float]:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from tltl_runtime.regression.verdict.verdict import Judgement
+    from tltl_runtime.spec.episode_summary import EpisodeSummary
 
 SECTION = "verdicts"
 
@@ -121,15 +122,6 @@ class Plan:
     sizes: Sequence[int] = (1, 9, 30)
 
 
-@dataclass(frozen=True, slots=True)
-class Drawn:
-    """An episode, as far as a verdict looks at it."""
-
-    success: bool
-    progress: float
-    reward: float
-
-
 def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | None = None) -> None:
     """Draw what the store does not have yet."""
     if find_spec("numpy") is None:
@@ -171,7 +163,7 @@ def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
     }
 
 
-def drawn(scenario: Scenario, generator: np.random.Generator) -> tuple[list[Drawn], list[Drawn]]:
+def drawn(scenario: Scenario, generator: np.random.Generator) -> tuple[list[EpisodeSummary], list[EpisodeSummary]]:
     """The episodes of a case and of its baseline, as many as are played at the most."""
     before, now = (_episodes(play, generator) for play in (scenario.before, scenario.now))
     same = {"identical": 1.0, "half": 0.5, "independent": 0.0}[scenario.pairing]
@@ -179,7 +171,7 @@ def drawn(scenario: Scenario, generator: np.random.Generator) -> tuple[list[Draw
     return [old if keep else new for old, new, keep in zip(before, now, kept, strict=True)], before
 
 
-def judged(now: Sequence[Drawn], before: Sequence[Drawn], error: float) -> tuple[Judgement, int]:
+def judged(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], error: float) -> tuple[Judgement, int]:
     """The verdict, and after how many episodes it came."""
     from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
     from tltl_runtime.regression.verdict.verdict import judge
@@ -221,7 +213,7 @@ def _seldom(count: int, trials: int, probability: float) -> float:
     return fsum(map(exp, each))
 
 
-def _episodes(play: Play, generator: np.random.Generator) -> list[Drawn]:
+def _episodes(play: Play, generator: np.random.Generator) -> list[EpisodeSummary]:
     import numpy as np
 
     from tltl_runtime.regression.suite.suite import MOST_EPISODES
@@ -232,7 +224,15 @@ def _episodes(play: Play, generator: np.random.Generator) -> list[Drawn]:
     rewards = np.where(
         successes, generator.normal(play.reward, play.spread, count), generator.normal(*_FAILED, count)
     ).clip(-1.0, 1.0)
-    return [Drawn(*each) for each in zip(successes.tolist(), progress.tolist(), rewards.tolist(), strict=True)]
+    draws = zip(successes.tolist(), progress.tolist(), rewards.tolist(), strict=True)
+    return [_summary(index, *draw) for index, draw in enumerate(draws)]
+
+
+def _summary(index: int, success: bool, progress: float, reward: float) -> EpisodeSummary:
+    """The summary of an episode; a verdict does not look at its steps and its last state."""
+    from tltl_runtime.spec.episode_summary import EpisodeSummary
+
+    return EpisodeSummary(index, None, success, "success" if success else "limit", progress, reward, 1, 0)
 
 
 def _shares(judgements: Sequence[tuple[Judgement, int]]) -> Mapping[str, float]:

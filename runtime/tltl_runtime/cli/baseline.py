@@ -120,7 +120,7 @@ def _tell(suite: Suite, compared: Compared, older: tuple[Reference, ...], *, fre
 
 
 def _passed(reference: Reference) -> int:
-    return sum(account.success for account in reference.accounts)
+    return sum(account.summary.success for account in reference.accounts)
 
 
 def _before(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tltl_runtime.evaluation.outcome import TimedOutcome
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
 from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltlc.core.record import record
@@ -53,7 +52,7 @@ class Evaluation:
     episodes: tuple[EpisodeSummary, ...]
 
 
-def figures_of(episodes: Sequence[TimedOutcome]) -> Figures:
+def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
     """Return the figures over episodes.  Raises ValueError if there are none."""
     passed = sum(episode.success for episode in episodes)
     # First: without episodes, this raises the error with a clear message.

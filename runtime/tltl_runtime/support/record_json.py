@@ -2,7 +2,9 @@
 
 A record becomes an object with a key per field, a mapping with text keys an object, and a tuple a
 list. A text, number, bool or None stays the same, and so does a field annotated as ``Any``, which
-already contains JSON data.
+already contains JSON data. If the class of a record has an attribute ``json_inlined``, a mapping from
+fields that are records to some of their fields without a default, the object has these keys in place
+of the inner objects.
 """
 
 from __future__ import annotations
@@ -26,7 +28,10 @@ def to_json(value: object) -> Any:
     """Return an argument for ``json.dumps`` for a record, a tuple of records or a plain value."""
     names = getattr(type(value), "__match_args__", None)
     if names is not None:
-        return {name: to_json(getattr(value, name)) for name in names}
+        inlined = _inlined(type(value))
+        inner = {key: name for name, keys in inlined.items() for key in keys}
+        keys = [key for name in names for key in inlined.get(name, (name,))]
+        return {key: to_json(getattr(getattr(value, inner[key]) if key in inner else value, key)) for key in keys}
     if isinstance(value, Mapping):
         return {name: to_json(item) for name, item in value.items()}
     return [to_json(item) for item in value] if isinstance(value, (tuple, list)) else value
@@ -106,15 +111,34 @@ def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) ->
     if unknown:
         raise RecordJsonError(f"`{where}` has a key `{min(unknown)}`, which nothing is known of")
     values = {name: _value(kinds[name], item, f"{where}.{name}") for name, item in _object(data, where).items()}
+    missing = _gather_inlined(kind, values)
     try:
         instance: object = kind(**values, **known)
-        return instance
     except ValueError as error:
         raise RecordJsonError(f"`{where}`: {error}") from None
     except TypeError as error:
         # The message of a record's constructor lists the missing fields that have no default.
-        missing = str(error).partition(" lacks ")[2]
-        raise RecordJsonError(f"`{where}` lacks one of the keys {missing}") from None
+        missing.append(str(error).partition(" lacks ")[2])
+    if missing:
+        raise RecordJsonError(f"`{where}` lacks one of the keys {', '.join(missing)}")
+    return instance
+
+
+def _inlined(kind: type) -> Mapping[str, tuple[str, ...]]:
+    """Return the inlined fields of a record's class, each with the keys that stand in its place."""
+    inlined: Mapping[str, tuple[str, ...]] = getattr(kind, "json_inlined", {})
+    return inlined
+
+
+def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
+    """Replace the keys of inlined fields by the records that they describe; return the missing keys."""
+    missing = []
+    for name, keys in _inlined(kind).items():
+        inner = {key: values.pop(key) for key in keys if key in values}
+        lacking = [key for key in keys if key not in inner]
+        values[name] = None if lacking else get_type_hints(kind)[name](**inner)
+        missing += lacking
+    return missing
 
 
 def _object(data: object, where: str) -> dict[str, object]:
@@ -125,9 +149,13 @@ def _object(data: object, where: str) -> dict[str, object]:
 
 @cache
 def _fields(kind: Any) -> Mapping[str, Any]:
-    """Return the types of a record's fields, by name, in order."""
-    hints = get_type_hints(kind)
-    return {name: hints[name] for name in kind.__match_args__}
+    """Return the types of a record's keys in JSON, in order."""
+    hints, inlined = get_type_hints(kind), _inlined(kind)
+    fields: dict[str, Any] = {}
+    for name in kind.__match_args__:
+        inner = get_type_hints(hints[name]) if name in inlined else hints
+        fields |= {key: inner[key] for key in inlined.get(name, (name,))}
+    return fields
 
 
 def _wrong(where: str, expected: str, data: object) -> RecordJsonError:

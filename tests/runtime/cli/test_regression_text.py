@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.runtime.regression.made import several
+from tests.runtime.regression.made import summaries
 from tltl_runtime.cli.support.regression_text import sum_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
@@ -13,7 +13,7 @@ TRAINED = Trained(end="minutes", steps=1, seconds=1.0, searched=0, complete=True
 
 
 def report(verdict: Verdict, outcome: Outcome | None = None) -> CaseReport:
-    figures, files = figures_of(several(25)), ("policy", None)
+    figures, files = figures_of(summaries(25)), ("policy", None)
     retrained = outcome and Retrained(outcome, "", TRAINED, figures, (0.0, 1.0), None, *files)
     return CaseReport("a", "room", "v0", verdict, (), retrained=retrained)
 

@@ -17,7 +17,7 @@ from tests.interfaces.cli.conftest import tltlc  # noqa: F401
 from tests.runtime.cli.test_regress import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
-from tests.runtime.regression.made import several
+from tests.runtime.regression.made import summaries
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
@@ -119,7 +119,7 @@ def _left_the_level(*_: object) -> Retrained:
 
 def _no_way(*_: object) -> Retrained:
     trained = Trained("minutes", 100, 1.0, 10, False, None)
-    return Retrained("no_way", "no way found", trained, figures_of(several(0, 25)), (0.0, 0.2), None, "policy", None)
+    return Retrained("no_way", "no way found", trained, figures_of(summaries(0, 25)), (0.0, 0.2), None, "policy", None)
 
 
 def _worker_lost(*_: object) -> Retrained:

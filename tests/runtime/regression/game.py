@@ -71,7 +71,7 @@ class Played:
 
     def __call__(self, case: Case, count: int, last: Account) -> None:
         assert count == self.counts.get(case.name, 0) + 1
-        assert last.index == count - 1
+        assert last.summary.index == count - 1
         self.counts[case.name] = count
 
 

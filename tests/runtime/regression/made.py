@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tltl_runtime.regression.explain.account import Account, Arrival, Nearest
+from tltl_runtime.regression.explain.account import Account, Arrival, Nearest, summaries_of
 from tltl_runtime.regression.explain.path_points import Way
 from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.recordings.cause import Kind
 from tltlc.core.record import replace
@@ -54,14 +55,16 @@ def made(
 ) -> Account:
     """The account of an episode, by default of one that met its spec."""
     return Account(
-        index=index,
-        seed=1000 + index,
-        success=success,
-        end="success" if success else "limit",
-        progress=(1.0 if success else 0.5) if progress is None else progress,
-        reward=(0.7 if success else -0.4) if reward is None else reward,
-        steps=steps,
-        unmet=states[-1] if unmet is None else unmet,
+        summary=EpisodeSummary(
+            index=index,
+            seed=1000 + index,
+            success=success,
+            end="success" if success else "limit",
+            progress=(1.0 if success else 0.5) if progress is None else progress,
+            reward=(0.7 if success else -0.4) if reward is None else reward,
+            steps=steps,
+            unmet=states[-1] if unmet is None else unmet,
+        ),
         cause=cause or ("success" if success else "limit"),
         by=by,
         place=place,
@@ -72,6 +75,23 @@ def made(
         broke=broke,
         arrived=arrived,
     )
+
+
+def changed(account: Account, **fields: object) -> Account:
+    """The account with other values in its summary."""
+    return replace(account, summary=replace(account.summary, **fields))
+
+
+def summary(
+    index: int = 0, success: bool = True, progress: float | None = None, reward: float | None = None
+) -> EpisodeSummary:
+    """The summary of an episode, by default of one that met its spec."""
+    return made(index, success, progress=progress, reward=reward).summary
+
+
+def summaries(passed: int, failed: int = 0) -> list[EpisodeSummary]:
+    """Summaries of episodes; the first ``failed`` of them do not meet the spec."""
+    return summaries_of(several(passed, failed))
 
 
 def several(passed: int, failed: int = 0) -> list[Account]:

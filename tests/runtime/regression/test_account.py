@@ -35,12 +35,12 @@ def test_every_entered_state_has_an_arrival(episode: Episode, found: Account) ->
     for arrival in found.arrivals:
         assert episode.states[arrival.step] == arrival.state
         assert dist(arrival.place, episode.snapshots[arrival.step].player.position) < 0.01
-    if found.success:
+    if found.summary.success:
         assert episode.fspa.states[states[-1]].distance == 0
 
 
 def test_a_success_has_no_cause_of_failure(found: Account) -> None:
-    if found.success:
+    if found.summary.success:
         assert (found.nearest, found.seen_by, found.cause) == (None, (), "success")
 
 
@@ -51,7 +51,7 @@ def test_an_account_survives_json(found: Account) -> None:
 def test_a_death_has_its_killers_and_the_closest_approach() -> None:
     episode = samples.cover_and_hide_failed()[0]
     account = samples.account_of(0, episode)
-    assert not account.success
+    assert not account.summary.success
     assert account.cause in ("killed", "violated")
     assert account.by
     assert account.seen_by == ("guard",)
@@ -69,7 +69,9 @@ def rows_away(episode: Episode, account: Account) -> list[int]:
     assert account.nearest is not None
     atom = [atom_record.name for atom_record in episode.fspa.atoms].index(account.nearest.atom)
     steps = range(len(episode.actions))
-    return [step for step in steps if episode.states[step] == account.unmet and episode.atoms[step, atom] <= 0.0]
+    return [
+        step for step in steps if episode.states[step] == account.summary.unmet and episode.atoms[step, atom] <= 0.0
+    ]
 
 
 def test_the_closest_approach_is_the_least_distance_to_the_target() -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import SUITE, Played, edit
+from tests.runtime.regression.made import changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of, read_baseline
@@ -69,7 +70,7 @@ def test_the_verdict_of_a_case_if_nothing_changes(game: Path) -> None:
     assert verdict_as_it_is(suite, easy, good) == "pass"
     assert verdict_as_it_is(suite, hopeless, bad) == "fail"
     sometimes_failing = replace(
-        good, accounts=tuple(replace(account, success=account.index % 10 > 0) for account in good.accounts)
+        good, accounts=tuple(changed(account, success=account.summary.index % 10 > 0) for account in good.accounts)
     )
     assert verdict_as_it_is(suite, easy, sometimes_failing) == "review", "nine of ten are too few to be certain"
     assert verdict_as_it_is(suite, replace(easy, episodes=25), good) == "review", "so are 25 episodes"

@@ -7,6 +7,7 @@ from pathlib import Path
 from tests.runtime.regression.game import Played, edit
 from tests.runtime.regression.made import several
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tltl_runtime.regression.explain.account import summaries_of
 from tltl_runtime.regression.report.case_report import report_on
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
@@ -31,7 +32,7 @@ def test_the_headline_is_no_failure_that_is_as_frequent_as_before(game: Path) ->
 
     def headline(before: int) -> str:
         compared = replace(reference, accounts=tuple(several(before, 50 - before)))
-        judgement = judge(now, compared.accounts, 50, ready_case.case.thresholds, 0.05)
+        judgement = judge(summaries_of(now), summaries_of(compared.accounts), 50, ready_case.case.thresholds, 0.05)
         assert judgement is not None and judgement.verdict == "review"
         return report_on(
             Result(ready_case, compared, judgement, tuple(Recorded(account, b"") for account in now))

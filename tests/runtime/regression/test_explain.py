@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from tests.runtime.regression.made import ROOM, made
+from tests.runtime.regression.made import ROOM, changed, made
 from tltl_runtime.regression.explain.account import Account, Nearest
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.stealth.level import Level, Point
@@ -330,7 +330,7 @@ def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fs
     ]  # type: ignore[arg-type]
     end = sentences(level, fspa, now)[1]
     assert "; 14 of them were at `s1` when it broke; in state 0, where this remained: " in end
-    few = [replace(account, arrived=account.index < 3) for account in now]
+    few = [replace(account, arrived=account.summary.index < 3) for account in now]
     approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
     assert f"; 3 of them were at `s1` when it broke; {approach}" in sentences(level, fspa, few)[1]
 
@@ -345,7 +345,7 @@ def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fsp
 
 def test_the_order_of_killers_does_not_count(level: Level, fspa: Fspa) -> None:
     now = deaths(fspa, 14)
-    now[:14] = [replace(account, by=("b", "a") if account.index % 2 else ("a", "b")) for account in now[:14]]
+    now[:14] = [replace(account, by=("b", "a") if account.summary.index % 2 else ("a", "b")) for account in now[:14]]
     assert sentences(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
 
 
@@ -363,13 +363,13 @@ def test_an_obstacle_is_named(level: Level, fspa: Fspa) -> None:
     ],
 )
 def test_longer_and_shorter_successes_are_described(level: Level, fspa: Fspa, steps: int, text: str | None) -> None:
-    now = [replace(account, steps=steps) for account in successes(fspa)]
+    now = [changed(account, steps=steps) for account in successes(fspa)]
     assert sentences(level, fspa, now)[1:] == ([text] if text else [])
 
 
 def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None:
     through = ((2.0, 2.0, 0, 0.0), (5.0, 9.0, 1, 2.0), (8.0, 8.0, 2, 4.0))
-    now = [replace(account, way=through) if account.index < 20 else account for account in successes(fspa)]
+    now = [replace(account, way=through) if account.summary.index < 20 else account for account in successes(fspa)]
     text = "80% of the successful episodes pass through the north hall; before: 0%"
     assert sentences(level, fspa, now)[1:] == [text]
     assert sentences(level, fspa, successes(fspa), now)[1:] == [
@@ -379,7 +379,7 @@ def test_a_new_route_of_successes_is_described(level: Level, fspa: Fspa) -> None
 
 def test_findings_refer_to_existing_episodes(level: Level, fspa: Fspa) -> None:
     now = [made(index, index % 3 > 0, states=states_after(fspa, index % 4)) for index in range(30)]
-    indices = {account.index for account in now}
+    indices = {account.summary.index for account in now}
     for finding in findings(level, fspa, now, successes(fspa)):
         assert set(finding.episodes) <= indices
         assert list(finding.episodes) == sorted(set(finding.episodes))

@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from tests.runtime.regression.made import case, several, suite
+from tests.runtime.regression.made import case, suite, summaries
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
@@ -42,10 +42,10 @@ RULES: dict[str, tuple[set[str], set[str], set[str]]] = {
 """The rules of the schema, from https://github.com/jenkinsci/xunit-plugin."""
 TEXTS = {"failure", "error", "skipped", "system-out", "system-err"}
 
-GOOD = CaseReport("room:v0", "room", "v0", "pass", ("met in 40 of 40 episodes",), figures=figures_of(several(40)))
+GOOD = CaseReport("room:v0", "room", "v0", "pass", ("met in 40 of 40 episodes",), figures=figures_of(summaries(40)))
 DOUBTED = CaseReport("room:v1", "room", "v1", "review", ("reward is lower", "dies `in` the <hall> & more"))
 BAD = CaseReport("room:v2", "room", "v2", "fail", ("it cannot be played", "room.toml:3: TLT0803, …"))
-GOOD = replace(GOOD, baseline=figures_of(several(30, 10)))
+GOOD = replace(GOOD, baseline=figures_of(summaries(30, 10)))
 SUITE: Suite = suite(case("room:v0"), case("room:v1"), case("room:v2"), path=Path("levels/game.toml"))
 
 
@@ -107,7 +107,7 @@ def test_figures_are_properties() -> None:
 def test_the_outcome_of_a_retraining_is_included() -> None:
     trained = Trained("met", 4096, 60.0, 200_000, True, 97)
     retrained = Retrained(
-        "learned", "feasible: <after> …", trained, figures_of(several(3, 1)), (0.2, 0.9), None, "p", None
+        "learned", "feasible: <after> …", trained, figures_of(summaries(3, 1)), (0.2, 0.9), None, "p", None
     )
     root = read((replace(BAD, retrained=retrained), GOOD))
     bad, _ = root.iter("testcase")

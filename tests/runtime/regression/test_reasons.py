@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.regression.made import PLAYED, several
+from tests.runtime.regression.made import PLAYED, summaries
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
@@ -17,8 +17,8 @@ DEFAULT = Thresholds()
 
 def reasons_of(passed: int, failed: int, reward: float = 0.0) -> list[str]:
     """The reasons of a verdict; the rewards differ by ``reward`` from the rewards of the baseline."""
-    before = several(passed + failed)
-    now = [replace(account, reward=account.reward + reward) for account in several(passed, failed)]
+    before = summaries(passed + failed)
+    now = [replace(episode, reward=episode.reward + reward) for episode in summaries(passed, failed)]
     judgement = judge(now, before, passed + failed, DEFAULT, 0.05)
     assert judgement is not None
     return list(reasons(judgement, DEFAULT, now, before))
@@ -39,9 +39,11 @@ def test_a_certain_pass_rate_is_stated(passed: int, failed: int, text: str) -> N
 def test_thresholds_are_shown_as_they_were_chosen() -> None:
     chosen = replace(DEFAULT, pass_rate=0.995, fail_rate=0.125)
     judgement = Judgement("pass", True, (0.9985, 1.0), ())
-    (passed,) = reasons(judgement, chosen, several(3000), several(3000))
+    (passed,) = reasons(judgement, chosen, summaries(3000), summaries(3000))
     assert passed.endswith(": certainly in 99.5% or more")
-    (failed,) = reasons(replace(judgement, verdict="fail", rate_interval=(0.0, 0.125)), chosen, several(1), several(1))
+    (failed,) = reasons(
+        replace(judgement, verdict="fail", rate_interval=(0.0, 0.125)), chosen, summaries(1), summaries(1)
+    )
     assert failed.endswith(": certainly in less than 12.5%")
 
 
@@ -65,8 +67,8 @@ def test_uncertain_changes_are_stated() -> None:
 
 def test_uncertain_changes_refer_to_the_compared_episodes() -> None:
     """The report shows the means of all episodes of the baseline beside the sentence."""
-    now = [replace(account, reward=0.64) for account in several(40)]
-    before = [*several(40), *(replace(account, reward=0.78) for account in several(60))]
+    now = [replace(episode, reward=0.64) for episode in summaries(40)]
+    before = [*summaries(40), *(replace(episode, reward=0.78) for episode in summaries(60))]
     judgement = Judgement("review", False, (0.86, 1.0), ())
     (_, figure) = reasons(judgement, DEFAULT, now, before)
     assert figure == (

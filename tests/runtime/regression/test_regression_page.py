@@ -11,7 +11,7 @@ from typing import get_args
 import pytest
 
 from tests.docs.blocks import DOCS, blocks
-from tests.runtime.regression.made import ROOM, case, several, suite
+from tests.runtime.regression.made import ROOM, case, several, suite, summaries
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
@@ -76,7 +76,7 @@ def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
 
 
 def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
-    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(several(2)), accounts=tuple(several(1)))
+    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(summaries(2)), accounts=tuple(several(1)))
     report_document = document(suite(case("a")), [report], complete=True)
     assert set(rows("field")) - {"tltl"} == set(report_document)
     (case_document,) = report_document["cases"]
@@ -91,8 +91,8 @@ def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
 
 def test_the_page_lists_the_properties() -> None:
     trained = Trained("met", 1, 1.0, 0, True, None)
-    new = Retrained("learned", "", trained, figures_of(several(2)), (0.0, 1.0), None, "retrained/a/policy", None)
-    figures = figures_of(several(2))
+    new = Retrained("learned", "", trained, figures_of(summaries(2)), (0.0, 1.0), None, "retrained/a/policy", None)
+    figures = figures_of(summaries(2))
     report = CaseReport("CASE", "a", "v0", "pass", (), figures=figures, baseline=figures, retrained=new)
     names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
     documented = set(re.findall(r"`(CASE\.\w+)`", PAGE))

@@ -12,6 +12,7 @@ import pytest
 from tests.runtime.evaluation.deadly import Deadly, killed
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
+from tests.runtime.regression.made import changed
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.explain.account import Account
@@ -116,7 +117,7 @@ def test_a_level_without_a_way_is_reported_as_no_way(game: Suite) -> None:
 
     def count_failures(count: int, last: Account) -> None:
         counts.append(count)
-        assert not last.success
+        assert not last.summary.success
 
     result = retrained(game, hopeless, training_of(game, hopeless), 1, count_failures)
     assert (result.outcome, counts) == ("no_way", list(range(1, 26)))
@@ -136,7 +137,7 @@ def test_a_learned_level_is_reported_as_learned(game: Suite) -> None:
     assert result.trained.shortest == 1 and result.best is None
     assert result.figures.pass_rate == 1.0 and result.rate_interval[0] >= 0.85
     episode = read_episode(run.folder / EPISODE)
-    assert episode.seed not in {account.seed for account in easy.report.accounts}
+    assert episode.seed not in {account.summary.seed for account in easy.report.accounts}
     (run.folder / EPISODE).unlink()
     assert retrained(game, easy, run, 1, lambda *_: None) == result
     assert (run.folder / EPISODE).is_file(), "what was removed is played again"
@@ -144,7 +145,7 @@ def test_a_learned_level_is_reported_as_learned(game: Suite) -> None:
 
 def test_a_success_of_the_case_itself_shows_that_the_level_is_feasible(game: Suite) -> None:
     *_, hopeless = judged(game)
-    accounts = (replace(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
+    accounts = (changed(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
     lucky = replace(hopeless, report=replace(hopeless.report, accounts=accounts))
     assert retrained(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
 

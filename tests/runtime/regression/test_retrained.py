@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.regression.made import several
+from tests.runtime.regression.made import summaries
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.retrain.retrained import Best, Outcome, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.suite.suite import Thresholds
@@ -20,7 +20,7 @@ BEST = Best(0.5, "reach near(exit)")
 
 def sentence_of(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
     best = BEST if failed else None
-    figures = figures_of(several(passed, failed))
+    figures = figures_of(summaries(passed, failed))
     interval = rate_interval(passed, failed, 0.05)
     return sentence(outcome, replace(TRAINED, **changed), figures, interval, Thresholds(), best)
 
@@ -72,5 +72,5 @@ def test_the_sentence_for_a_likely_infeasible_level() -> None:
 
 
 def test_a_retraining_survives_json() -> None:
-    retrained = Retrained("no_way", "no", TRAINED, figures_of(several(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
+    retrained = Retrained("no_way", "no", TRAINED, figures_of(summaries(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
     assert from_json(Retrained, to_json(retrained), "retrained") == retrained

@@ -17,7 +17,7 @@ import pytest
 
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.game import EASY, SUITE, Played, edit, with_baseline
-from tests.runtime.regression.made import ROOM
+from tests.runtime.regression.made import ROOM, changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
@@ -61,12 +61,12 @@ def test_cases_are_judged_in_order(game: Path) -> None:
         report = done.report
         assert not done.kept and done.ready and done.reference
         assert report.figures and report.figures.episodes == len(report.accounts) == played[report.name]
-        assert [account.index for account in report.accounts] == list(range(played[report.name]))
+        assert [account.summary.index for account in report.accounts] == list(range(played[report.name]))
         assert report.recordings
         folder = case_folder(read_suite(Path("game.toml")), report.name, Path("new") / CASES)
         assert {path.name for path in folder.iterdir()} == {"case.json", *dict(report.recordings).values()}
         for index, name in report.recordings:
-            assert read_episode(folder / name).seed == report.accounts[index].seed
+            assert read_episode(folder / name).seed == report.accounts[index].summary.seed
 
 
 def test_two_runs_give_equal_results(game: Path) -> None:
@@ -221,7 +221,7 @@ def test_a_level_edited_before_the_last_episode_of_a_baseline_is_reported(game: 
     ready_case = ready(read_suite(Path("game.toml")).cases[0], 3)
     with pytest.raises(TltlError, match=r"TLT0905: `room\.toml` changed while `room:v0` was played"):
         for recorded in episodes(ready_case, 1):
-            if recorded.account.index == ready_case.case.episodes - 1:
+            if recorded.account.summary.index == ready_case.case.episodes - 1:
                 edit("room.toml", "8.0, 8.0", "8.0, 7.5")
 
 
@@ -277,7 +277,7 @@ def test_episodes_after_a_gap_are_not_judged(game: Path, monkeypatch: pytest.Mon
     judged_indices: list[int] = []
     with pytest.raises(TltlError) as error:
         judged_indices.extend(
-            recorded.account.index for recorded in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1)
+            recorded.account.summary.index for recorded in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1)
         )
     assert (error.value, judged_indices) == (lost, [0, 1])
 
@@ -330,7 +330,7 @@ def test_a_baseline_with_unknown_states_is_rejected_before_anything_is_played(ga
     suite = read_suite(Path("game.toml"))
     easy, hopeless = baseline_of(suite)
     *accounts, last = hopeless.accounts
-    damaged = replace(hopeless, accounts=(*accounts, replace(last, unmet=99)))
+    damaged = replace(hopeless, accounts=(*accounts, changed(last, unmet=99)))
     with pytest.raises(TltlError, match=r"TLT0902: .* episode 49 of `room:v0` has the state 99, and"):
         check(suite, suite.cases, (easy, damaged))
 

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.runtime.regression.made import made, several
-from tltl_runtime.regression.explain.account import Account
+from tests.runtime.regression.made import summaries, summary
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.verdict import Judgement, beyond, judge
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.core.record import replace
 
 ERROR = 0.05
@@ -21,16 +21,18 @@ DEFAULT = Thresholds()
 
 
 def judged(
-    now: Sequence[Account],
-    before: Sequence[Account] = (),
+    now: Sequence[EpisodeSummary],
+    before: Sequence[EpisodeSummary] = (),
     episodes: int = 300,
     thresholds: Thresholds = DEFAULT,
     error: float = ERROR,
 ) -> Judgement | None:
-    return judge(now, before or [made(account.index) for account in now], episodes, thresholds, error)
+    return judge(now, before or [summary(episode.index) for episode in now], episodes, thresholds, error)
 
 
-def first(now: Sequence[Account], before: Sequence[Account] = (), error: float = ERROR) -> tuple[int, Judgement]:
+def first(
+    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary] = (), error: float = ERROR
+) -> tuple[int, Judgement]:
     """The number of episodes after which there is a verdict, and the verdict."""
     for count in range(1, len(now) + 1):
         judgement = judged(now[:count], before, len(now), error=error)
@@ -42,22 +44,22 @@ def first(now: Sequence[Account], before: Sequence[Account] = (), error: float =
 @pytest.mark.parametrize("count", [1, 10, LEAST_EPISODES - 1])
 def test_nothing_is_decided_before_25_episodes(count: int) -> None:
     assert LEAST_EPISODES == 25
-    assert judged(several(count)) is None
-    assert judged(several(0, count)) is None
-    assert judged(several(0, count), episodes=count) is None
+    assert judged(summaries(count)) is None
+    assert judged(summaries(0, count)) is None
+    assert judged(summaries(0, count), episodes=count) is None
 
 
 def test_fail_if_the_rate_is_certainly_below_fail_rate() -> None:
-    count, judgement = first(several(0, 40))
+    count, judgement = first(summaries(0, 40))
     assert (count, judgement.verdict, judgement.certain) == (25, "fail", True)
     assert judgement.rate_interval[1] < DEFAULT.fail_rate
     # 15 of 40 is less than half, but not certainly.
     assert rate_interval(15, 25, ERROR)[1] >= 0.5
-    assert judged(several(15, 25)) is None
+    assert judged(summaries(15, 25)) is None
 
 
 def test_fail_takes_precedence_over_changes() -> None:
-    judgement = judged(several(0, 25), [made(index) for index in range(25)])
+    judgement = judged(summaries(0, 25), [summary(index) for index in range(25)])
     assert judgement is not None and judgement.verdict == "fail"
     assert [change.figure for change in judgement.changes] == ["progress", "reward"]
 
@@ -65,15 +67,15 @@ def test_fail_takes_precedence_over_changes() -> None:
 def test_review_if_the_rate_is_certainly_in_between() -> None:
     low, high = rate_interval(140, 60, ERROR)
     assert DEFAULT.fail_rate <= low and high < DEFAULT.pass_rate
-    alike = several(140, 60)
+    alike = summaries(140, 60)
     judgement = judged(alike, alike)
     assert judgement == Judgement("review", True, (low, high), ())
 
 
 def test_review_if_a_figure_has_certainly_changed() -> None:
-    before = several(300)
+    before = summaries(300)
     for figure, value in (("reward", 0.45), ("progress", 0.8)):
-        now = [replace(account, **{figure: value}) for account in before]
+        now = [replace(episode, **{figure: value}) for episode in before]
         count, judgement = first(now, before)
         assert (judgement.verdict, judgement.certain) == ("review", True)
         assert count < 60
@@ -84,17 +86,17 @@ def test_review_if_a_figure_has_certainly_changed() -> None:
 
 
 def test_an_improvement_is_a_change() -> None:
-    before = several(300)
-    _, judgement = first([replace(account, reward=0.95) for account in before], before)
+    before = summaries(300)
+    _, judgement = first([replace(episode, reward=0.95) for episode in before], before)
     assert judgement.verdict == "review" and judgement.changes[0].now > judgement.changes[0].before
 
 
-def noisy(mean: float, spread: float, seed: int, count: int = 200) -> list[Account]:
+def noisy(mean: float, spread: float, seed: int, count: int = 200) -> list[EpisodeSummary]:
     """Episodes of which 2 % fail; the rewards of the others are normal with this mean and deviation."""
     rng = np.random.default_rng(seed)
     met, rewards = rng.random(count) < 0.98, rng.normal(mean, spread, count)
     return [
-        made(index, bool(met[index]), reward=float(rewards[index].clip(-1, 1)) if met[index] else -0.3)
+        summary(index, bool(met[index]), reward=float(rewards[index].clip(-1, 1)) if met[index] else -0.3)
         for index in range(count)
     ]
 
@@ -116,31 +118,31 @@ def test_a_change_above_its_threshold_is_certain() -> None:
 
 
 def test_an_uncertain_change_at_the_end_is_reviewed() -> None:
-    before = [replace(account, reward=0.9 if account.index % 2 else 0.5) for account in several(200)]
-    now = [replace(account, reward=account.reward - 0.053) for account in before]
+    before = [replace(episode, reward=0.9 if episode.index % 2 else 0.5) for episode in summaries(200)]
+    now = [replace(episode, reward=episode.reward - 0.053) for episode in before]
     judgement = judged(now, before, episodes=200)
     assert judgement == Judgement("review", False, rate_interval(200, 0, ERROR), ())
     assert beyond(now, before, DEFAULT) == ("reward",)
     assert judged(
-        [replace(account, reward=account.reward + 0.005) for account in now], before, episodes=200
+        [replace(episode, reward=episode.reward + 0.005) for episode in now], before, episodes=200
     ) == Judgement("pass", False, rate_interval(200, 0, ERROR), ())
 
 
 def test_the_episodes_of_the_baseline_have_not_changed_in_any_order() -> None:
     """The worst case: the first episodes are unlike the mean of the baseline."""
-    before = [replace(account, reward=0.3 if account.index < 60 else 0.7) for account in several(300)]
+    before = [replace(episode, reward=0.3 if episode.index < 60 else 0.7) for episode in summaries(300)]
     assert first(before, before) == (29, Judgement("pass", True, rate_interval(29, 0, ERROR), ()))
 
 
 def test_a_larger_threshold_tolerates_a_change() -> None:
-    before = several(300)
-    now = [replace(account, reward=0.4) for account in before]
+    before = summaries(300)
+    now = [replace(episode, reward=0.4) for episode in before]
     judgement = judged(now[:60], before, thresholds=Thresholds(reward=0.7))
     assert judgement is not None and (judgement.verdict, judgement.changes) == ("pass", ())
 
 
 def test_equal_episodes_have_not_changed_with_thresholds_of_zero() -> None:
-    episodes = [replace(made(index), reward=0.3 if index < 40 else 0.9) for index in range(300)]
+    episodes = [replace(summary(index), reward=0.3 if index < 40 else 0.9) for index in range(300)]
     strict = replace(DEFAULT, progress=0.0, reward=0.0)
     judgements = [judge(episodes[:count], episodes, 300, strict, 0.05) for count in range(25, 60)]
     assert [judgement.verdict for judgement in judgements if judgement][:1] == ["pass"]
@@ -148,44 +150,44 @@ def test_equal_episodes_have_not_changed_with_thresholds_of_zero() -> None:
 
 
 def test_pass_if_the_rate_is_certain_and_the_figures_are_alike() -> None:
-    count, judgement = first(several(300))
+    count, judgement = first(summaries(300))
     assert (count, judgement.verdict, judgement.certain, judgement.changes) == (29, "pass", True, ())
     assert judgement.rate_interval[0] >= DEFAULT.pass_rate > rate_interval(count - 1, 0, ERROR)[0]
 
 
 @pytest.mark.parametrize("cases, count", [(1, 29), (9, 43), (30, 51)])
 def test_more_cases_need_more_episodes(cases: int, count: int) -> None:
-    assert first(several(100), error=0.05 / cases)[0] == count
+    assert first(summaries(100), error=0.05 / cases)[0] == count
 
 
 def test_pass_waits_while_the_figures_differ_by_more_than_half_of_their_thresholds() -> None:
-    before = several(300)
+    before = summaries(300)
     for difference, verdict in ((0.024, "pass"), (0.026, None)):
-        now = [replace(account, reward=account.reward - difference) for account in before]
+        now = [replace(episode, reward=episode.reward - difference) for episode in before]
         judgement = judged(now[:100], before)
         assert (judgement.verdict if judgement else None) == verdict
 
 
 def test_if_nothing_is_certain_the_rate_decides_at_the_end() -> None:
-    before = several(300)
-    other = [replace(account, reward=account.reward - 0.04) for account in before]
+    before = summaries(300)
+    other = [replace(episode, reward=episode.reward - 0.04) for episode in before]
     assert judged(other, before) == Judgement("pass", False, rate_interval(300, 0, ERROR), ())
     low, high = rate_interval(260, 40, ERROR)
     assert low < DEFAULT.pass_rate < high
-    alike = several(260, 40)
+    alike = summaries(260, 40)
     assert judged(alike, alike) == Judgement("review", False, (low, high), ())
 
 
 def test_only_the_episodes_that_the_baseline_has_are_compared() -> None:
-    before = several(25)
-    now = [*several(25), *[replace(account, reward=-1.0) for account in several(35)]]
+    before = summaries(25)
+    now = [*summaries(25), *[replace(episode, reward=-1.0) for episode in summaries(35)]]
     judgement = judged(now, before)
     assert judgement is not None and (judgement.verdict, judgement.changes) == ("pass", ())
 
 
 @given(st.lists(st.tuples(st.booleans(), st.floats(0, 1), st.floats(-1, 1)), min_size=25, max_size=60))
 def test_the_last_episode_settles_every_verdict(drawn: list[tuple[bool, float, float]]) -> None:
-    now = [made(index, met, progress=done, reward=got) for index, (met, done, got) in enumerate(drawn)]
+    now = [summary(index, met, progress=done, reward=got) for index, (met, done, got) in enumerate(drawn)]
     judgement = judged(now, episodes=len(now))
     assert judgement is not None
     low, high = judgement.rate_interval

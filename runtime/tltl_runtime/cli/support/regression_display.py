@@ -29,7 +29,7 @@ class RegressionDisplay:
 
     def __call__(self, case: Case, count: int, last: Account) -> None:
         """Show that ``count`` episodes of a case are finished; ``last`` is the account of the last one."""
-        self._met = last.success + (self._met if count > 1 else 0)
+        self._met = last.summary.success + (self._met if count > 1 else 0)
         if sys.stderr.isatty():
             self._draw(case, count)
         elif count % _EACH == 0 or count == case.episodes:

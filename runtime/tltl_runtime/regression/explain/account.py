@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from types import MappingProxyType
 from typing import Final
 
 from tltl_runtime.regression.explain.path_points import Way, way_of
 from tltl_runtime.regression.explain.stages import target_of
-from tltl_runtime.spec.episode_summary import End, EpisodeSummary
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.recordings.cause import Kind, cause
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.tables import tables
 
@@ -49,24 +50,20 @@ class Nearest:
 
 @record
 class Account:
-    """The account of episode ``index`` of a case.
+    """The account of an episode of a case: its ``summary``, and how it came about.
 
-    ``progress``, ``reward``, ``steps`` and ``unmet`` are as in
-    :class:`~tltl_runtime.spec.episode_summary.EpisodeSummary`.  ``arrivals`` start with the first sample.
+    ``arrivals`` start with the first sample.
     ``cause``, ``by`` and ``place`` describe the end of the episode.  ``seen_by`` are the enemies that
     saw the player shortly before.  ``broke`` are the atoms that broke the spec; ``arrived`` says that
     without them a transition towards acceptance would have been possible.  ``way`` is the simplified
     trajectory.  ``shut`` are the solid barriers that were closed at the end.
     """
 
-    index: int
-    seed: int
-    success: bool
-    end: End
-    progress: float
-    reward: float
-    steps: int
-    unmet: int
+    json_inlined = MappingProxyType(
+        {"summary": ("index", "seed", "success", "end", "progress", "reward", "steps", "unmet")}
+    )
+
+    summary: EpisodeSummary
     cause: Kind
     by: tuple[str, ...]
     place: Point
@@ -79,27 +76,26 @@ class Account:
     shut: tuple[str, ...] = ()
 
 
-def account(played: EpisodeSummary, episode: Episode) -> Account:
+def summaries_of(accounts: Iterable[Account]) -> list[EpisodeSummary]:
+    """Return the summaries of the episodes, in order."""
+    return [account.summary for account in accounts]
+
+
+def account(summary: EpisodeSummary, episode: Episode) -> Account:
     """Return the account of an episode that was played and recorded."""
     ending = cause(episode)
     return Account(
-        index=played.index,
-        seed=played.seed,
-        success=played.success,
-        end=played.end,
-        progress=played.progress,
-        reward=played.reward,
-        steps=played.steps,
-        unmet=played.unmet,
+        # Verdicts and reports need no more, and files hold no more.
+        summary=replace(summary, verdict=None, seconds=None, state=None, label=None),
         cause=ending.kind,
         by=ending.by,
         place=_rounded(ending.place),
-        seen_by=() if played.success else _seen_by(episode, ending.time),
+        seen_by=() if summary.success else _seen_by(episode, ending.time),
         arrivals=_arrivals(episode),
-        nearest=None if played.success else _nearest(episode, played.unmet),
+        nearest=None if summary.success else _nearest(episode, summary.unmet),
         way=way_of(episode),
         broke=ending.broke,
-        arrived=_has_arrived(episode, played.unmet, ending.broke),
+        arrived=_has_arrived(episode, summary.unmet, ending.broke),
         shut=_shut(episode),
     )
 

@@ -67,7 +67,7 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
                 done.append(stage)
             continue
         first = f"{together(done)} as before, then " if done else ""
-        failed = tuple(account.index for account in now if account not in passed_now)
+        failed = tuple(account.summary.index for account in now if account not in passed_now)
         counts = [
             counted(len(passed), len(all_), "episodes") for passed, all_ in ((passed_now, now), (passed_before, before))
         ]
@@ -99,27 +99,29 @@ def _distances(fspa: Fspa, account: Account) -> list[int]:
 
 def ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     """Describe how failed episodes end, most frequent first.  All sentences are distinct."""
-    ends_before = [end_of(level, fspa, account) for account in before if not account.success]
+    ends_before = [end_of(level, fspa, account) for account in before if not account.summary.success]
     for group in failures(level, fspa, now):
         matches = [group.alike(end) for end in ends_before]
         ends_before = [end for end, is_alike in zip(ends_before, matches, strict=True) if not is_alike]
         text = f"{group.text} in {_of(len(group.accounts), now)}; before: in {_of(sum(matches), before)}{group.more}"
-        yield Finding(text, tuple(sorted(account.index for account in group.accounts)))
+        yield Finding(text, tuple(sorted(account.summary.index for account in group.accounts)))
 
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    new, old = ([account.steps for account in accounts if account.success] for accounts in (now, before))
+    new, old = (
+        [account.summary.steps for account in accounts if account.summary.success] for accounts in (now, before)
+    )
     if min(len(new), len(old)) >= _FEW:
         ratio = fmean(new) / fmean(old)
         if not 1 / _SLOWER < ratio < _SLOWER:
             how = "longer" if ratio > 1 else "shorter"
             text = f"successes are {how}: {fmean(new):.0f} steps on average; before: {fmean(old):.0f}"
-            yield Finding(text, tuple(account.index for account in now if account.success))
+            yield Finding(text, tuple(account.summary.index for account in now if account.summary.success))
 
 
 def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     """Describe regions that clearly more or fewer of the successful episodes pass through than before."""
-    new, old = ([account for account in accounts if account.success] for accounts in (now, before))
+    new, old = ([account for account in accounts if account.summary.success] for accounts in (now, before))
     if min(len(new), len(old)) < _FEW:
         return
     for region in level.regions:
@@ -132,7 +134,7 @@ def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) ->
             text = (
                 f"{percent(share)} of the successful episodes pass through the {name}; before: {percent(share_before)}"
             )
-            yield Finding(text, tuple(account.index for account in visits_now))
+            yield Finding(text, tuple(account.summary.index for account in visits_now))
 
 
 def _visits(account: Account, region: Region) -> bool:

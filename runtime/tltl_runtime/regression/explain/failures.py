@@ -57,14 +57,14 @@ class Failures:
 def end_of(level: Level, fspa: Fspa, account: Account) -> End:
     """Return how a failed episode ended."""
     by = tuple(sorted(account.by))
-    return End(account.cause, by, place_name(level, account.place), deed(fspa, account.unmet))
+    return End(account.cause, by, place_name(level, account.place), deed(fspa, account.summary.unmet))
 
 
 def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[Failures]:
     """Group the failed episodes, most frequent ends first.  All texts are distinct."""
     groups: dict[End, list[Account]] = {}
     for account in accounts:
-        if not account.success:
+        if not account.summary.success:
             groups.setdefault(end_of(level, fspa, account), []).append(account)
     frequent = _often(groups, len(accounts))
     stages = Counter(replace(end, undone="") for end in groups)

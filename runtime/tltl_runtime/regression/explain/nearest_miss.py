@@ -31,7 +31,7 @@ def approach(level: Level, fspa: Fspa, undone: str, accounts: Sequence[Account])
 
 def remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
     """Describe the state in which most of the episodes failed, and what remained to be done there."""
-    ((state, count),) = Counter(account.unmet for account in accounts).most_common(1)
+    ((state, count),) = Counter(account.summary.unmet for account in accounts).most_common(1)
     often = "" if count == len(accounts) else "mostly " if 2 * count > len(accounts) else "most often "
     return f"{often}in state {state}, where this remained: {fspa.states[state].label.english}"
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from statistics import fmean
 from typing import Final
 
-from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.suite.changed_keys import changed_keys
 from tltl_runtime.regression.suite.level_texts import Texts
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.verdict import Judgement, beyond
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.capabilities.feasible import check_reach, reach_warnings
 from tltl_runtime.stealth.capabilities.reach import reachable
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
@@ -25,10 +25,10 @@ _OVERLAYS: Final = "overlays/"
 
 
 def reasons(
-    judgement: Judgement, thresholds: Thresholds, now: Sequence[Account], before: Sequence[Account]
+    judgement: Judgement, thresholds: Thresholds, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]
 ) -> Iterator[str]:
     """Describe the statistics of a verdict: the pass rate and the changed figures."""
-    passed, passed_before = (sum(account.success for account in accounts) for accounts in (now, before))
+    passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     good, bad = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
     met = f"met in {counted(passed, len(now), 'episodes')}, before in {counted(passed_before, len(before))}"
     if judgement.verdict == "fail":
@@ -53,7 +53,7 @@ def _moved(figure: str, now: float, before: float) -> str:
     return f"{figure} is {how}, {now:.2f} on average; before: {before:.2f}"
 
 
-def _apart(figure: str, now: Sequence[Account], before: Sequence[Account]) -> str:
+def _apart(figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> str:
     """Say that the mean of a figure has changed over the seeds that both have.
 
     Reports also show the mean over all episodes of the baseline.  The sentence mentions it if it
@@ -61,7 +61,7 @@ def _apart(figure: str, now: Sequence[Account], before: Sequence[Account]) -> st
     """
     count = min(len(now), len(before))
     new, old, overall = (
-        fmean(getattr(account, figure) for account in accounts) for accounts in (now[:count], before[:count], before)
+        fmean(getattr(episode, figure) for episode in episodes) for episodes in (now[:count], before[:count], before)
     )
     if f"{old:.2f}" == f"{overall:.2f}":
         return _moved(figure, new, old)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import Account, summaries_of
 from tltl_runtime.regression.explain.explain import Finding, ends, findings
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.retrain.retrained import Retrained
@@ -71,9 +71,10 @@ def report_on(result: Result) -> CaseReport:
     now = [episode.account for episode in result.episodes]
     before = result.reference.accounts
     level, outdated = result.ready.level, result.ready.outdated
-    statistics = tuple(reasons(result.judgement, case.thresholds, now, before))
+    summaries, summaries_before = summaries_of(now), summaries_of(before)
+    statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before))
     blocked = tuple(obstacles(level, setup.fspa))
-    figures, baseline = figures_of(now), figures_of(before)
+    figures, baseline = figures_of(summaries), figures_of(summaries_before)
     # If a case fails no more often than before, its failures do not explain an uncertain verdict.
     is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
     failed = next(ends(level, setup.fspa, now, before), None) if is_worse else None

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Figures
+from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import Suite
 from tltl_runtime.support.record_json import to_json
@@ -69,5 +70,10 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "explanation": to_json(report.explanation),
         "played": to_json(played),
         "retrained": to_json(report.retrained),
-        "accounts": [{name: to_json(getattr(account, name)) for name in _OF_EPISODES} for account in report.accounts],
+        "accounts": [_episode(account) for account in report.accounts],
     }
+
+
+def _episode(account: Account) -> dict[str, Any]:
+    data = to_json(account)
+    return {name: data[name] for name in _OF_EPISODES}

@@ -11,7 +11,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import Account, summaries_of
 from tltl_runtime.regression.retrain.retrained import Best, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
@@ -172,9 +172,9 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, on_episode: Callab
         return cached
     accounts, recording, interval = _played(ready, error, pool, on_episode)
     thresholds = ready.case.thresholds
-    met = sum(account.success for account in (*accounts, *done.report.accounts))
+    met = sum(account.summary.success for account in (*accounts, *done.report.accounts))
     outcome = outcome_of(trained, interval[0], thresholds, met)
-    overall, best = figures_of(accounts), _best(accounts, setup.fspa)
+    overall, best = figures_of(summaries_of(accounts)), _best(accounts, setup.fspa)
     place = f"{FOLDER}/{run.folder.name}"
     result = Retrained(
         outcome=outcome,
@@ -228,8 +228,8 @@ def _played(
         for episode in playing:
             accounts.append(episode.account)
             on_episode(len(accounts), episode.account)
-            recording = recording or (episode.recording if episode.account.success else b"")
-            passed = sum(account.success for account in accounts)
+            recording = recording or (episode.recording if episode.account.summary.success else b"")
+            passed = sum(account.summary.success for account in accounts)
             interval = rate_interval(passed, len(accounts) - passed, error)
             if len(accounts) >= LEAST_EPISODES and (interval[0] >= wanted or interval[1] < wanted):
                 break
@@ -237,18 +237,18 @@ def _played(
 
 
 def _best(accounts: Sequence[Account], fspa: Fspa) -> Best | None:
-    failed = [account for account in accounts if not account.success]
+    failed = [account for account in accounts if not account.summary.success]
     if not failed:
         return None
-    farthest = max(failed, key=lambda account: account.progress)
-    return Best(farthest.progress, fspa.states[farthest.unmet].label.english)
+    farthest = max(failed, key=lambda account: account.summary.progress)
+    return Best(farthest.summary.progress, fspa.states[farthest.summary.unmet].label.english)
 
 
 def _inputs(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:
     """The hash of everything that the outcome depends on; ``own`` are the episodes by which the case was judged."""
     case = ready.case
     parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
-    return inputs_hash([*parts, sum(account.success for account in own)])
+    return inputs_hash([*parts, sum(account.summary.success for account in own)])
 
 
 def _kept(folder: Path, inputs: str) -> Retrained | None:

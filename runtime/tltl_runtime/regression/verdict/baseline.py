@@ -112,11 +112,13 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     for row, reference in enumerate(parsed.references):
         where = f"baseline.references[{row}].accounts"
         # Episodes are compared by index, and the mean of no episodes is undefined.
-        if not reference.accounts or any(account.index != place for place, account in enumerate(reference.accounts)):
+        if not reference.accounts or any(
+            account.summary.index != place for place, account in enumerate(reference.accounts)
+        ):
             raise _REFUSALS.broken(name, f"{where}: the episodes must be there from number 0 on, without a gap")
         for account in reference.accounts:
             for flaw in _flaws(account):
-                raise _REFUSALS.broken(name, f"{where}[{account.index}]: {flaw}")
+                raise _REFUSALS.broken(name, f"{where}[{account.summary.index}]: {flaw}")
     return tuple(
         Reference(reference.played, reference.accounts, _texts(reference.played, texts), reference.sources)
         for reference in parsed.references
@@ -147,19 +149,21 @@ def _flaws(account: Account) -> Iterator[str]:
     for key in ("arrivals", "way"):
         if not getattr(account, key):
             yield f"`{key}` is empty, and begins where the player does"
-    if account.steps < 1:
-        yield f"`steps` is {account.steps}, and an episode has one at least"
+    if account.summary.seed is None:
+        yield "`seed` is None, and a whole number was expected"
+    if account.summary.steps < 1:
+        yield f"`steps` is {account.summary.steps}, and an episode has one at least"
     if min(_states(account)) < 0:
         yield f"it has the state {min(_states(account))}, and states are counted from 0"
     for key, (least, most) in FIGURES.items():
-        value = getattr(account, key)
+        value = getattr(account.summary, key)
         if not least - _ROUNDING <= value <= most + _ROUNDING:
             yield f"`{key}` is {value:g}, and a number from {least:g} to {most:g} was expected"
 
 
 def _states(account: Account) -> Iterator[int]:
     """The states of the automaton that an account mentions."""
-    yield account.unmet
+    yield account.summary.unmet
     yield from (arrival.state for arrival in account.arrivals)
     yield from (state for *_, state, _ in account.way)
 
@@ -213,7 +217,7 @@ def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
     count, played = len(fspa.states), reference.played
     for account in reference.accounts:
         if (state := max(_states(account))) >= count:
-            where = f"episode {account.index} of `{played.level}:{played.variant}`"
+            where = f"episode {account.summary.index} of `{played.level}:{played.variant}`"
             why = f"{where} has the state {state}, and those of `{played.spec}` are 0 to {count - 1}"
             raise _REFUSALS.broken(str(suite.baseline), why)
 

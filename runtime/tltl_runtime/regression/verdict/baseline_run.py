@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
-from tltl_runtime.regression.explain.account import Account
+from tltl_runtime.regression.explain.account import Account, summaries_of
 from tltl_runtime.regression.suite.level_texts import level_texts
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
@@ -98,9 +98,9 @@ def kept_at(path: Path) -> Path | None:
 
 def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
     """The verdict of a case if it played exactly the episodes of its reference."""
-    accounts, error = reference.accounts, suite.error / len(suite.cases)
+    summaries, error = summaries_of(reference.accounts), suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):
-        if judgement := judge(accounts[:played], accounts, case.episodes, case.thresholds, error):
+        if judgement := judge(summaries[:played], summaries, case.episodes, case.thresholds, error):
             return judgement.verdict
     raise AssertionError("the last episode settles every verdict")
 

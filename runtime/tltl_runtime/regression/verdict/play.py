@@ -14,7 +14,7 @@ from tltl_runtime.evaluation.player import Setup, Task
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
-from tltl_runtime.regression.explain.account import Account, account
+from tltl_runtime.regression.explain.account import Account, account, summaries_of
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
@@ -143,12 +143,13 @@ def judged(
     After each episode, ``on_episode`` gets the number of episodes so far and the last account.
     """
     played: list[Recorded] = []
+    before = summaries_of(reference.accounts)
     with closing(episodes(prepared, pool)) as playing:
         for episode in playing:
             played.append(episode)
             on_episode(len(played), episode.account)
-            now = [recorded.account for recorded in played]
-            judgement = judge(now, reference.accounts, prepared.case.episodes, prepared.case.thresholds, error)
+            now = [recorded.account.summary for recorded in played]
+            judgement = judge(now, before, prepared.case.episodes, prepared.case.thresholds, error)
             if judgement:
                 check_unedited(prepared)
                 return Result(prepared, reference, judgement, tuple(played))

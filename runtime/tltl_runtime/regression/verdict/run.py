@@ -213,8 +213,8 @@ def _kept(folder: Path, inputs: str) -> CaseReport | None:
 def _write(folder: Path, inputs: str, result: Result) -> CaseReport:
     """Write the report on a case and the recordings of the episodes that its findings name."""
     report = report_on(result)
-    by_index = {episode.account.index: episode.recording for episode in result.episodes}
-    successes = [account.index for account in report.accounts if account.success]
+    by_index = {episode.account.summary.index: episode.recording for episode in result.episodes}
+    successes = [account.summary.index for account in report.accounts if account.summary.success]
     mentioned = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
     named = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))

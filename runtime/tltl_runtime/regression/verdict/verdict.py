@@ -29,9 +29,9 @@ from operator import attrgetter
 from statistics import fmean
 from typing import Final, Literal
 
-from tltl_runtime.evaluation.outcome import Outcome
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
 from tltl_runtime.regression.verdict.confidence import mean_p_value, rate_interval
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.core.record import record
 
 Verdict = Literal["pass", "review", "fail"]
@@ -72,7 +72,7 @@ class Judgement:
 
 
 def judge(
-    now: Sequence[Outcome], before: Sequence[Outcome], episodes: int, thresholds: Thresholds, error: float
+    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], episodes: int, thresholds: Thresholds, error: float
 ) -> Judgement | None:
     """Return the verdict on the episodes ``now``, or None if more episodes have to be played.
 
@@ -81,7 +81,7 @@ def judge(
     """
     if len(now) < LEAST_EPISODES:
         return None
-    passed = sum(outcome.success for outcome in now)
+    passed = sum(episode.success for episode in now)
     low, high = interval = rate_interval(passed, len(now) - passed, error)
     differences = _differences(now, before)
     apart = _beyond(differences, thresholds)
@@ -98,7 +98,7 @@ def judge(
     return Judgement("pass" if is_met and not apart else "review", False, interval, changes)
 
 
-def beyond(now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds) -> tuple[str, ...]:
+def beyond(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds) -> tuple[str, ...]:
     """The figures whose means over equal seeds differ by at least their thresholds, possibly by chance."""
     return _beyond(_differences(now, before), thresholds)
 
@@ -107,7 +107,7 @@ def _beyond(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[s
     return tuple(figure for figure, difference in differences.items() if 0 < difference >= getattr(thresholds, figure))
 
 
-def _differences(now: Sequence[Outcome], before: Sequence[Outcome]) -> dict[str, float]:
+def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> dict[str, float]:
     """The absolute difference of the means of each figure, over the seeds that both have."""
     count = min(len(now), len(before))
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
@@ -115,7 +115,11 @@ def _differences(now: Sequence[Outcome], before: Sequence[Outcome]) -> dict[str,
 
 
 def _changes(
-    figures: Sequence[str], now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds, error: float
+    figures: Sequence[str],
+    now: Sequence[EpisodeSummary],
+    before: Sequence[EpisodeSummary],
+    thresholds: Thresholds,
+    error: float,
 ) -> Iterator[Change]:
     """The changes of those figures that have certainly changed."""
     for figure in figures:
@@ -125,5 +129,5 @@ def _changes(
             yield Change(figure, old, fmean(values), p_value)
 
 
-def _values(outcomes: Sequence[Outcome], figure: str) -> list[float]:
-    return list(map(attrgetter(figure), outcomes))
+def _values(episodes: Sequence[EpisodeSummary], figure: str) -> list[float]:
+    return list(map(attrgetter(figure), episodes))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.explain.account import Account, account
+from tltl_runtime.regression.explain.account import Account, account, summaries_of
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
@@ -101,15 +101,15 @@ def reported(
         [account_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
     )
     explanation = findings(level, fspa, accounts, baseline_accounts)
-    passed = sum(account.success for account in accounts)
+    passed = sum(account.summary.success for account in accounts)
     report = CaseReport(
         name=name,
         level=level.name,
         variant=level.variant,
         verdict=verdict,
         causes=(f"met in {passed} of {len(now)} episodes",),
-        figures=figures_of(accounts),
-        baseline=figures_of(baseline_accounts),
+        figures=figures_of(summaries_of(accounts)),
+        baseline=figures_of(summaries_of(baseline_accounts)),
         explanation=explanation,
         accounts=tuple(accounts),
     )

@@ -6,9 +6,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tests.runtime.regression.made import changed
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
-from tltlc.core.record import replace
 
 
 def test_each_recorded_episode_has_a_curve() -> None:
@@ -25,7 +25,7 @@ def test_each_recorded_episode_has_a_curve() -> None:
 
 def test_the_bars_show_the_shares_of_episodes() -> None:
     account = samples.account_of(0, samples.navigation()[0])
-    failed = [replace(account, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
+    failed = [changed(account, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
     root = ElementTree.fromstring(progress_distribution([*failed, account], [account]))
     bars = list(root.iter("rect"))
     assert [element.findtext("title") for element in bars] == [
@@ -42,7 +42,7 @@ def test_the_bars_show_the_shares_of_episodes() -> None:
 
 def test_bars_stand_at_the_labels_of_their_values() -> None:
     account = samples.account_of(0, samples.navigation()[0])
-    root = ElementTree.fromstring(progress_distribution([replace(account, success=False, progress=0.58), account], []))
+    root = ElementTree.fromstring(progress_distribution([changed(account, success=False, progress=0.58), account], []))
     ticks = {
         element.text: float(element.get("x", "nan"))
         for element in root.iter("text")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.runtime.regression.made import changed
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.report.page.heat import ENDS_CELL, TIME_CELL, failed_ends, time_spent
 from tltl_runtime.stealth.level import Box
@@ -32,7 +33,7 @@ def test_the_cells_add_up_to_the_length_of_the_episodes() -> None:
 
 def test_only_ends_of_failures_are_counted() -> None:
     account = samples.account_of(0, samples.navigation()[0])
-    failed = replace(account, success=False, place=(9.5, 0.5, 0.0))
+    failed = replace(changed(account, success=False), place=(9.5, 0.5, 0.0))
     heat = failed_ends(BOUNDS, [account, failed, failed, replace(failed, place=(0.0, 4.0, 0.0))])
     assert (heat.cell, heat.columns) == (ENDS_CELL, 10)
     assert heat.values == ((0, 1.0), (39, 2.0))

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.regression.made import several
+from tests.runtime.regression.made import changed, summaries
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
 from tltl_runtime.evaluation.figures import figures_of
@@ -194,7 +194,7 @@ def test_names_are_escaped() -> None:
 def test_a_retraining_is_shown_with_its_curve() -> None:
     trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
     retrained = Retrained(
-        "no_way", f"no way found: {EVIL}", trained, figures_of(several(0, 2)), (0.0, 0.5), None, "a/p", None
+        "no_way", f"no way found: {EVIL}", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None
     )
     suite = samples.suite()
     case = replace(suite.cases[0], report=replace(suite.cases[0].report, retrained=retrained), curve=b"a curve")
@@ -209,7 +209,7 @@ def test_a_retraining_is_shown_with_its_curve() -> None:
 
 def test_the_outcome_of_a_retraining_is_in_the_table() -> None:
     trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
-    retrained = Retrained("no_way", "no", trained, figures_of(several(0, 2)), (0.0, 0.5), None, "a/p", None)
+    retrained = Retrained("no_way", "no", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None)
     suite = samples.suite()
     case = replace(suite.cases[1], report=replace(suite.cases[1].report, retrained=retrained))
     texts = Page(html_report(replace(suite, cases=(suite.cases[0], case)))).texts
@@ -228,7 +228,9 @@ def test_the_confidence_intervals_are_explained_where_they_are_drawn() -> None:
 
 def test_pass_rates_are_shown_in_percent() -> None:
     suite = samples.suite()
-    report = replace(suite.cases[1].report, figures=figures_of(several(121, 179)), baseline=figures_of(several(299, 1)))
+    report = replace(
+        suite.cases[1].report, figures=figures_of(summaries(121, 179)), baseline=figures_of(summaries(299, 1))
+    )
     texts = Page(html_report(replace(suite, cases=(replace(suite.cases[1], report=report),)))).texts
     assert "121 of 300 · 40 %" in texts and "before 299 of 300 · 99 %" in texts
 
@@ -277,7 +279,7 @@ def test_a_page_of_nine_cases_is_smaller_than_seven_megabytes() -> None:
     long = samples.branching_that_takes_its_time()
     assert len(long.actions) == 600
     account = samples.account_of(0, long)
-    accounts = tuple(replace(account, index=index) for index in range(200))
+    accounts = tuple(changed(account, index=index) for index in range(200))
     reported = samples.reported("branching:v0", "pass", [long], [long])
     report = replace(reported.report, accounts=accounts)
     episodes = dict.fromkeys(range(13), long)

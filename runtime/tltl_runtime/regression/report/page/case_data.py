@@ -44,9 +44,9 @@ def _way(bounds: Box, account: Account) -> dict[str, Any]:
     """The trajectory of an episode on the map, and how it ended."""
     place = account.place
     return {
-        "index": account.index,
+        "index": account.summary.index,
         "unit": _FINE_CM,
-        "end": account.end,
+        "end": account.summary.end,
         "cause": account.cause,
         "by": list(account.by),
         "x": across(bounds, [x for x, *_ in account.way], _FINE_CM),

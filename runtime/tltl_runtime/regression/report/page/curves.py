@@ -83,7 +83,7 @@ def _shares(accounts: Sequence[Account]) -> list[float]:
     """
     counts = [0] * (_BINS + 1)
     for account in accounts:
-        counts[_BINS if account.success else min(_BINS - 1, int(account.progress * _BINS + 1e-9))] += 1
+        counts[_BINS if account.summary.success else min(_BINS - 1, int(account.summary.progress * _BINS + 1e-9))] += 1
     return [count / max(1, len(accounts)) for count in counts]
 
 

@@ -38,7 +38,7 @@ def time_spent(bounds: Box, accounts: Sequence[Account]) -> Heat:
 
 def failed_ends(bounds: Box, accounts: Sequence[Account]) -> Heat:
     """The number of failed episodes that ended in each cell."""
-    return _heat(bounds, ENDS_CELL, [account.place[:2] for account in accounts if not account.success], 1.0)
+    return _heat(bounds, ENDS_CELL, [account.place[:2] for account in accounts if not account.summary.success], 1.0)
 
 
 def _heat(bounds: Box, cell: float, places: Iterable[tuple[float, float]], weight: float) -> Heat:

@@ -33,5 +33,5 @@ def traffic(accounts: Sequence[Account]) -> Traffic:
         states = [arrival.state for arrival in account.arrivals]
         visited.update(set(states))
         took.append(frozenset(pairwise(states)))
-    failed = Counter(account.unmet for account in accounts if not account.success)
+    failed = Counter(account.summary.unmet for account in accounts if not account.summary.success)
     return Traffic(len(accounts), visited, failed, tuple(took))
