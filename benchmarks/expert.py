@@ -19,8 +19,8 @@ from benchmarks.store import Record, Store, source_digest
 from benchmarks.variants import measure_each, variants_of_all
 
 if TYPE_CHECKING:
+    from tltl_runtime.spec.episode_summary import EpisodeSummary
     from tltl_runtime.stealth.level import Level
-    from tltl_runtime.stealth.recordings.outcome import Outcome
 
 SECTION = "expert"
 CARES = ("careful", "careless")
@@ -41,19 +41,20 @@ def played(level: str, variant: str, care: str, episodes: int) -> Record:
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
-    from tltl_runtime.stealth.recordings.outcome import outcome
+    from tltl_runtime.stealth.recordings.episode_summary import opened_barriers, summary_of, was_chased
 
     env = RecordEpisode(make_env(level, variant))
     expert = Expert(env, careful=care == "careful")
     began = time.process_time()
-    by_barrier: dict[str, list[Outcome]] = {}
+    by_barrier: dict[str, list[tuple[EpisodeSummary, bool]]] = {}
     for seed in range(episodes):
         play_episode(env, expert, seed)
-        went = outcome(env.episode)
-        by_barrier.setdefault(_chance(expert.level, went.opened), []).append(went)
+        episode = env.episode
+        barrier = _chance(expert.level, opened_barriers(episode))
+        by_barrier.setdefault(barrier, []).append((summary_of(episode), was_chased(episode)))
     env.close()
     return {
-        "barriers": {name: _summary(outcomes) for name, outcomes in sorted(by_barrier.items())},
+        "barriers": {name: _summary(episodes) for name, episodes in sorted(by_barrier.items())},
         "cpu_s": round((time.process_time() - began) / episodes, 2),
         "source": source_digest("tltlc", "runtime"),
     }
@@ -82,14 +83,15 @@ def _chance(level: Level, opened: Collection[str]) -> str:
     return next((name for name in chosen if name in opened), "")
 
 
-def _summary(outcomes: Sequence[Outcome]) -> Record:
+def _summary(episodes: Sequence[tuple[EpisodeSummary, bool]]) -> Record:
+    """The figures of episodes; the second value says whether an enemy chased the player."""
     return {
-        "episodes": len(outcomes),
-        "successes": sum(each.success for each in outcomes),
-        "progress": _mean(each.progress for each in outcomes),
-        "reward": _mean(each.reward for each in outcomes),
-        "length": _mean(each.steps for each in outcomes),
-        "chased": _mean(each.chased for each in outcomes),
+        "episodes": len(episodes),
+        "successes": sum(episode.success for episode, _ in episodes),
+        "progress": _mean(episode.progress for episode, _ in episodes),
+        "reward": _mean(episode.reward for episode, _ in episodes),
+        "length": _mean(episode.steps for episode, _ in episodes),
+        "chased": _mean(was_chased for _, was_chased in episodes),
     }
 
 

@@ -15,14 +15,13 @@ from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
-from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.env import make_env, spec_of
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.recordings.outcome import outcome
+from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.training.run.versions import versions
 from tltlc.core.record import record
 from tltlc.io.writing import write_file
@@ -105,27 +104,8 @@ class _ExpertPlayer:
 
     def play(self, task: Task) -> Result:
         """Play one episode."""
-        seed = episode_seed(SEED, task.index)
-        info = play_episode(self._env, self._expert, seed)
-        episode = self._env.episode
-        went, unmet = outcome(episode), info["unmet"]
-        return Result(
-            task,
-            EpisodeSummary(
-                index=task.index,
-                seed=seed,
-                success=went.success,
-                verdict=went.verdict,
-                end=went.end,
-                progress=went.progress,
-                reward=went.reward,
-                steps=went.steps,
-                seconds=went.seconds,
-                state=info["state"],
-                unmet=unmet,
-                label=episode.fspa.states[unmet].label.english,
-            ),
-        )
+        play_episode(self._env, self._expert, episode_seed(SEED, task.index))
+        return Result(task, summary_of(self._env.episode, task.index))
 
     def close(self) -> None:
         """Close the environment."""

@@ -10,7 +10,7 @@ from typing import Any, Final, Literal
 
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.outcome import outcome
+from tltl_runtime.stealth.recordings.episode_summary import seen_steps, summary_of
 from tltl_runtime.support.number_text import column, number, share
 from tltlc.resolve.spec import ValueType
 
@@ -28,7 +28,7 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
     ``changes`` has a row for the start and for each change of state. ``notation`` is the notation
     of what remains to be satisfied in each state.
     """
-    level, fspa, result, reason = episode.level, episode.fspa, outcome(episode), cause(episode)
+    level, fspa, result, reason = episode.level, episode.fspa, summary_of(episode), cause(episode)
     states = episode.states.tolist()
     rows = [row for row in range(result.steps + 1) if row == 0 or states[row] != states[row - 1]]
     return {
@@ -52,8 +52,8 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
         "verdict": result.verdict,
         "progress": result.progress,
         "reward": result.reward,
-        "health": result.health,
-        "seen_steps": result.seen_steps,
+        "health": episode.snapshots[-1].health,
+        "seen_steps": seen_steps(episode),
         "params": dict(episode.params),
         "versions": dict(episode.versions),
         "changes": [

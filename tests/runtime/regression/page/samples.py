@@ -11,11 +11,11 @@ from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
 from tltl_runtime.regression.verdict.verdict import Verdict
-from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.recordings.episode_summary import summary_of
 
 
 def navigation() -> tuple[Episode, ...]:
@@ -69,23 +69,7 @@ def branching_that_takes_its_time() -> Episode:
 
 def account_of(index: int, episode: Episode) -> Account:
     """The account of an episode, as if a case had played it."""
-    states = episode.states.tolist()
-    unmet = states[-2] if episode.verdict == "violated" else states[-1]
-    played = EpisodeSummary(
-        index=index,
-        seed=episode.seed,
-        success=episode.success,
-        verdict=episode.verdict,
-        end=episode.end,
-        progress=float(episode.progress[-1]),
-        reward=float(episode.rewards.sum()),
-        steps=len(episode.actions),
-        seconds=episode.snapshots[-1].time,
-        state=states[-1],
-        unmet=unmet,
-        label=episode.fspa.states[unmet].label.english,
-    )
-    return account(played, episode)
+    return account(summary_of(episode, index), episode)
 
 
 def reported(
