@@ -26,7 +26,7 @@ from tltlc.interfaces.cli.report import Report
 
 if TYPE_CHECKING:
     from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
-    from tltl_runtime.evaluation.player import Recorded, Result
+    from tltl_runtime.evaluation.player import PlayedEpisode, Recorded
 
 
 _MOST_NAMED: Final = 6
@@ -143,7 +143,7 @@ def _command(policy: Path | None, level: str | None, spec: str | None, seed: int
     return join([*words, "--seed", str(seed)])
 
 
-def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
+def _counted(playing: Iterator[PlayedEpisode], count: int) -> Iterator[PlayedEpisode]:
     """Yield the results and report progress on standard error: a bar on a terminal, else a line for each tenth."""
     from tltl_runtime.evaluation.player import CHOICES
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from tltl_runtime.evaluation.local import Process
-from tltl_runtime.evaluation.player import Player, Plays, Recorded, Result, Setup, Task
+from tltl_runtime.evaluation.player import PlayedEpisode, Player, Plays, Recorded, Setup, Task
 from tltl_runtime.evaluation.spread import Alone, spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
@@ -95,7 +95,7 @@ def results(
     workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
     alone: Alone | None = None,
-) -> Generator[Result]:
+) -> Generator[PlayedEpisode]:
     """Play the tasks and yield their results in order.  Closing the iterator ends the workers.
 
     While no core of a Ray cluster is free, ``waiting`` is called with the seconds that are left to
@@ -119,7 +119,7 @@ def results(
 
 def results_here(
     make: Callable[[], Plays], tasks: Sequence[Task], workers: int, seed: int, alone: Alone | None = None
-) -> Generator[Result]:
+) -> Generator[PlayedEpisode]:
     """Play the tasks on this machine and yield their results in order, like :func:`results`.
 
     ``make`` makes the player of each process.  It is pickled if there are worker processes.

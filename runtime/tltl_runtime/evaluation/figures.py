@@ -10,7 +10,7 @@ from tltlc.core.record import record
 
 
 @record
-class Ended:
+class FailureGroup:
     """Failed episodes with the same end.
 
     ``state`` is the automaton state at the end, or before the violation.  ``label`` says what
@@ -48,7 +48,7 @@ class Evaluation:
     """The result of an evaluation: the figures, how failed episodes ended, and all episodes."""
 
     figures: Figures
-    ended: tuple[Ended, ...]
+    ended: tuple[FailureGroup, ...]
     episodes: tuple[EpisodeSummary, ...]
 
 
@@ -72,14 +72,14 @@ def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
     return Evaluation(figures_of(episodes), _ended(episodes), tuple(episodes))
 
 
-def _ended(episodes: Sequence[EpisodeSummary]) -> tuple[Ended, ...]:
+def _ended(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:
     """Group the failed episodes by state and end, the most frequent group first."""
     groups: dict[tuple[int, str, End], list[int]] = {}
     for episode in episodes:
         if not episode.success:
             groups.setdefault((episode.unmet, episode.label or "", episode.end), []).append(episode.index)
     ended = [
-        Ended(state, label, end, len(indices), len(indices) / len(episodes), tuple(indices))
+        FailureGroup(state, label, end, len(indices), len(indices) / len(episodes), tuple(indices))
         for (state, label, end), indices in groups.items()
     ]
     return tuple(sorted(ended, key=lambda group: (-group.count, group.state, group.end)))

@@ -13,7 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import BaseContext
 from typing import Final
 
-from tltl_runtime.evaluation.player import Plays, Result, Task
+from tltl_runtime.evaluation.player import PlayedEpisode, Plays, Task
 from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.support.child_processes import interrupts_withheld
 
@@ -28,9 +28,9 @@ class Process:
     def __init__(self, make: Callable[[], Plays]) -> None:
         self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
-    def play(self, task: Task) -> Future[Result]:
+    def play(self, task: Task) -> Future[PlayedEpisode]:
         """Start to play an episode."""
-        future: Future[Result] = Future()
+        future: Future[PlayedEpisode] = Future()
         try:
             with interrupts_withheld():
                 playing = self._executor.submit(_play, task)
@@ -88,14 +88,14 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-def _play(task: Task) -> Result:
+def _play(task: Task) -> PlayedEpisode:
     # The player is made here because an exception in `_begin` would be lost.
     global _player
     _player = _player or _make()
     return _player.play(task)
 
 
-def _pass_on(done: Future[Result], future: Future[Result]) -> None:
+def _pass_on(done: Future[PlayedEpisode], future: Future[PlayedEpisode]) -> None:
     error = done.exception()
     if isinstance(error, BrokenProcessPool):
         future.set_exception(LostError(_ENDED))

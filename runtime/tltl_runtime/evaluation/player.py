@@ -53,7 +53,7 @@ class Task:
 
 
 @record
-class Result:
+class PlayedEpisode:
     """A played episode, with its trajectory and the bytes of its recording if requested."""
 
     task: Task
@@ -65,7 +65,7 @@ class Result:
 class Plays(Protocol):
     """Plays the episodes of an evaluation, one after the other."""
 
-    def play(self, task: Task) -> Result:
+    def play(self, task: Task) -> PlayedEpisode:
         """Play one episode."""
 
     def close(self) -> None:
@@ -90,18 +90,18 @@ class Player:
         if setup.recorded is not None:
             self._env = self._recorder = RecordEpisode(self._env)
 
-    def play(self, task: Task) -> Result:
+    def play(self, task: Task) -> PlayedEpisode:
         """Play one episode."""
         setup = self._setup
         # In one thread, equal observations give equal logits on any number of cores.
         with threads(1):
             played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
         if self._recorder is None:
-            return Result(task, played)
+            return PlayedEpisode(task, played)
         player = f"{setup.player}, {CHOICES[task.sampled]}, episode {task.index}"
         episode = replace(self._recorder.episode, player=player)
         kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
-        return Result(task, played, trajectory(episode), to_bytes(episode) if kept else b"")
+        return PlayedEpisode(task, played, trajectory(episode), to_bytes(episode) if kept else b"")
 
     def close(self) -> None:
         """Free the game."""

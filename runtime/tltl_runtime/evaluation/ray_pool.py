@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from typing import Any, Final
 
-from tltl_runtime.evaluation.player import Player, Result, Setup, Task
+from tltl_runtime.evaluation.player import PlayedEpisode, Player, Setup, Task
 from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.vector.cluster import cluster, free_cores, there
 
@@ -43,9 +43,9 @@ class RayWorker:
         # No restarts: Ray would silently play the episode again that killed the actor.
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
 
-    def play(self, task: Task) -> Future[Result]:
+    def play(self, task: Task) -> Future[PlayedEpisode]:
         """Start to play an episode."""
-        future: Future[Result] = Future()
+        future: Future[PlayedEpisode] = Future()
         playing = self.actor.play.remote(self._setup, task).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
         return future
@@ -54,7 +54,7 @@ class RayWorker:
         """End the actor."""
         self._ray.kill(self.actor)
 
-    def _pass_on(self, done: Future[Result], future: Future[Result]) -> None:
+    def _pass_on(self, done: Future[PlayedEpisode], future: Future[PlayedEpisode]) -> None:
         error = done.exception()
         if error is None:
             future.set_result(done.result())
@@ -75,6 +75,6 @@ class _Actor:
     def __init__(self) -> None:
         self._player: Player | None = None
 
-    def play(self, setup: Setup, task: Task) -> Result:
+    def play(self, setup: Setup, task: Task) -> PlayedEpisode:
         self._player = self._player or Player(setup)
         return self._player.play(task)

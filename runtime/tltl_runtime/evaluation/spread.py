@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Protocol
 
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import CHOICES, Result, Task
+from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Task
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -18,7 +18,7 @@ class LostError(Exception):
 class Worker(Protocol):
     """Plays one episode at a time, for example in another process."""
 
-    def play(self, task: Task) -> Future[Result]:
+    def play(self, task: Task) -> Future[PlayedEpisode]:
         """Start an episode; the future raises the exception of the game, or :class:`LostError`."""
 
     def close(self) -> None:
@@ -29,7 +29,9 @@ Alone = Callable[[Task], str]
 """Returns the command that plays a single episode."""
 
 
-def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int, alone: Alone | None = None) -> Iterator[Result]:
+def spread(
+    workers: Sequence[Worker], tasks: Sequence[Task], seed: int, alone: Alone | None = None
+) -> Iterator[PlayedEpisode]:
     """Give each free worker the next task; yield the results in the order of the tasks.
 
     If a task fails, the results that are already there are yielded before the error.  They may have
@@ -40,8 +42,8 @@ def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int, alone: A
             ``seed``.
     """
     remaining = iter(enumerate(tasks))
-    running: dict[Future[Result], tuple[Worker, int]] = {}
-    results: dict[int, Result] = {}
+    running: dict[Future[PlayedEpisode], tuple[Worker, int]] = {}
+    results: dict[int, PlayedEpisode] = {}
     for worker, (index, task) in zip(workers, remaining, strict=False):
         running[worker.play(task)] = worker, index
     for wanted in range(len(tasks)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tltl_runtime.evaluation.figures import Ended, Evaluation, Figures
+from tltl_runtime.evaluation.figures import Evaluation, FailureGroup, Figures
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.support.number_text import column, number, share
@@ -52,7 +52,7 @@ def _std(figures: Figures, spread: Spread, places: int) -> str:
     return number(spread.std, places) if figures.episodes > 1 else "-"
 
 
-def _failures(ended: Ended) -> tuple[str, str]:
+def _failures(ended: FailureGroup) -> tuple[str, str]:
     indices = ", ".join(map(str, ended.episodes[:_MOST_LISTED])) + (", …" if ended.count > _MOST_LISTED else "")
     heading = column(f"  {ended.count} ", f"{_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}")
     return heading, column(f"    episode{'s' if ended.count > 1 else ''} ", indices)

@@ -8,7 +8,7 @@ import pytest
 
 from tests.runtime.regression.game import Played, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.cli.support.regression_files import Outcome, json_text, write_reports
+from tltl_runtime.cli.support.regression_files import SuiteRun, json_text, write_reports
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.run import Done, regress
@@ -22,7 +22,7 @@ def _suite(game: Path) -> Suite:
     return read_suite(Path("game.toml"))
 
 
-def page(outcome: Outcome) -> str:
+def page(outcome: SuiteRun) -> str:
     path = write_reports(outcome, {})
     assert path is not None
     return path.read_text(encoding="utf-8")
@@ -33,18 +33,18 @@ def judged(suite: Suite, count: int) -> tuple[Done, ...]:
 
 
 def test_cases_that_were_left_out_show_their_earlier_verdicts(suite: Suite) -> None:
-    text = page(Outcome(suite, Path("run"), (), True, NAMES))
+    text = page(SuiteRun(suite, Path("run"), (), True, NAMES))
     assert text.count("earlier: pass") == 2 and text.count("earlier: fail") == 1
-    assert "earlier" not in page(Outcome(suite, Path("elsewhere"), (), True, NAMES))
+    assert "earlier" not in page(SuiteRun(suite, Path("elsewhere"), (), True, NAMES))
 
 
 def test_cases_that_were_not_run_show_the_reason(suite: Suite) -> None:
     changed = tuple(f"{number}.toml" for number in range(10))
-    text = page(Outcome(suite, Path("run"), judged(suite, 1), False, ("room:v1",), ("hopeless",), changed))
+    text = page(SuiteRun(suite, Path("run"), judged(suite, 1), False, ("room:v1",), ("hopeless",), changed))
     names = ", ".join(f"<code>{name}</code>" for name in changed[:8])
     assert text.count(f"it depends on none of the files that --changed names: {names} and 2 more") == 2
     assert text.count("the run was stopped before; the same command goes on") == 2
-    assert page(Outcome(suite, Path("run"), (), True, NAMES)).count("--changed names no file") == 6
+    assert page(SuiteRun(suite, Path("run"), (), True, NAMES)).count("--changed names no file") == 6
 
 
 @pytest.mark.parametrize(
@@ -52,28 +52,28 @@ def test_cases_that_were_not_run_show_the_reason(suite: Suite) -> None:
 )
 def test_unreadable_results_of_an_earlier_run_are_left_out(suite: Suite, kept: str) -> None:
     Path("run/cases/hopeless/case.json").write_text(kept, encoding="utf-8")
-    text = page(Outcome(suite, Path("run"), (), True, NAMES))
+    text = page(SuiteRun(suite, Path("run"), (), True, NAMES))
     assert text.count("earlier: pass") == 2 and "earlier: fail" not in text
 
 
 def test_the_level_of_the_baseline_is_drawn_if_it_looks_different(suite: Suite) -> None:
     words = "The level as it was when the baseline was recorded: room v0."
-    assert words not in page(Outcome(suite, Path("run"), judged(suite, 1), True))
+    assert words not in page(SuiteRun(suite, Path("run"), judged(suite, 1), True))
     edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [8.0, 7.0, 0.0]")
-    text = page(Outcome(suite, Path("run"), judged(suite, 1), True))
+    text = page(SuiteRun(suite, Path("run"), judged(suite, 1), True))
     assert words in text and "not known any more" not in text
     edit("room.toml", "at = [8.0, 7.0, 0.0]", "at = [8.0, 6.0, 0.0]")
     references = tuple(replace(reference, texts=()) for reference in baseline_of(suite))
     cases = tuple(regress(suite, suite.cases[:1], references, Path("run"), 1, Played()))
-    text = page(Outcome(suite, Path("run"), cases, True))
+    text = page(SuiteRun(suite, Path("run"), cases, True))
     assert words not in text and "what it was then is not known any more" in text
 
 
 def test_the_page_of_the_shipped_suite_explains_its_findings(tmp_path: Path, suite: Suite) -> None:
-    shipped = Outcome(read_suite(SHIPPED), tmp_path, (), True)
+    shipped = SuiteRun(read_suite(SHIPPED), tmp_path, (), True)
     text = page(shipped)
     assert "<h1>Regression report: shipped</h1>" in text
     assert "Its variants v1 and v2 were changed on purpose" in text
     assert '"suite": "suite.toml"' in json_text(shipped), "the file's name"
-    other_text = page(Outcome(suite, tmp_path, (), True))
+    other_text = page(SuiteRun(suite, tmp_path, (), True))
     assert "<h1>Regression report: game</h1>" in other_text and "on purpose" not in other_text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.evaluation.figures import Ended, evaluation_of, figures_of
+from tltl_runtime.evaluation.figures import FailureGroup, evaluation_of, figures_of
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltlc.core.record import replace
@@ -45,9 +45,9 @@ def test_failed_episodes_are_grouped_by_state_and_end() -> None:
     evaluation = evaluation_of(EPISODES)
     assert evaluation.figures == figures_of(EPISODES)
     assert evaluation.ended == (
-        Ended(0, "Reach 0.", "violation", 2, 0.2, (2, 4)),
-        Ended(0, "Reach 0.", "limit", 1, 0.1, (3,)),
-        Ended(1, "Reach 1.", "limit", 1, 0.1, (1,)),
+        FailureGroup(0, "Reach 0.", "violation", 2, 0.2, (2, 4)),
+        FailureGroup(0, "Reach 0.", "limit", 1, 0.1, (3,)),
+        FailureGroup(1, "Reach 1.", "limit", 1, 0.1, (1,)),
     )
     assert evaluation.episodes == tuple(EPISODES)
 

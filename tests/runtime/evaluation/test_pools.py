@@ -21,7 +21,7 @@ from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, results_here, set_up
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
+from tltl_runtime.evaluation.player import PlayedEpisode, Player, Recorded, Setup, Task
 from tltl_runtime.evaluation.spread import LostError, spread
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -132,7 +132,7 @@ def test_an_error_of_the_game_is_raised_unchanged(policy: Policy, workers: Pool)
 class Ends:
     """A player without a policy that kills its process."""
 
-    def play(self, task: Task) -> Result:
+    def play(self, task: Task) -> PlayedEpisode:
         killed()
         raise AssertionError("it was killed")
 
@@ -164,12 +164,12 @@ def test_a_result_is_yielded_before_the_next_episode_starts(policy: Policy, monk
 class Prompt:
     """A worker that is done at once; it is lost in episode 1, and never finishes episode 0."""
 
-    def play(self, task: Task) -> Future[Result]:
-        future: Future[Result] = Future()
+    def play(self, task: Task) -> Future[PlayedEpisode]:
+        future: Future[PlayedEpisode] = Future()
         if task.index == 1:
             future.set_exception(LostError("gone"))
         elif task.index != 0:
-            future.set_result(Result(task, None))  # type: ignore[arg-type]
+            future.set_result(PlayedEpisode(task, None))  # type: ignore[arg-type]
         return future
 
     def close(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tltl_runtime.regression.explain.account import Account, Arrival, Nearest, summaries_of
+from tltl_runtime.regression.explain.account import Account, Arrival, NearestMiss, summaries_of
 from tltl_runtime.regression.explain.path_points import Way
 from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
@@ -50,7 +50,7 @@ def made(
     broke: tuple[str, ...] = (),
     arrived: bool = False,
     place: Point = (5.0, 5.0, 0.0),
-    nearest: Nearest | None = None,
+    nearest: NearestMiss | None = None,
     way: Way = ((2.0, 2.0, 0, 0.0), (2.0, 2.0, 0, 1.0)),
 ) -> Account:
     """The account of an episode, by default of one that met its spec."""

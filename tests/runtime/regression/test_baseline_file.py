@@ -9,7 +9,7 @@ import pytest
 
 from tests.runtime.regression.game import EASY
 from tests.runtime.regression.made import PLAYED, made, reference, several, suite
-from tltl_runtime.regression.explain.account import Nearest
+from tltl_runtime.regression.explain.account import NearestMiss
 from tltl_runtime.regression.suite.suite import SHIPPED, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import (
     baseline_command,
@@ -26,7 +26,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
 SUITE = suite()
-NEAREST = Nearest("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)
+NEAREST = NearestMiss("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)
 
 
 def test_a_baseline_is_read_as_it_was_written(tmp_path: Path) -> None:
@@ -61,6 +61,7 @@ def test_the_baseline_lies_beside_the_suite() -> None:
         ("progress", 7),
         ("progress", -0.5),
         ("steps", 0),
+        ("seed", None),
         ("arrivals", []),
         ("way", []),
     ],
@@ -76,6 +77,19 @@ def test_a_wrong_value_is_rejected(tmp_path: Path, key: str, value: object) -> N
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "TLT0902"
     assert key in diagnostic.title
+
+
+def test_missing_keys_are_named_in_their_order(tmp_path: Path) -> None:
+    path = tmp_path / "game.baseline.json"
+    write_baseline(path, (reference([made(0)]),))
+    document = json.loads(path.read_text(encoding="utf-8"))
+    for key in ("cause", "index", "unmet"):
+        del document["references"][0]["accounts"][0][key]
+    path.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(
+        TltlError, match=r"`baseline\.references\[0\]\.accounts\[0\]` lacks one of the keys index, unmet, cause"
+    ):
+        read_baseline(path)
 
 
 @pytest.mark.parametrize(("key", "path"), [("arrivals", ("state",)), ("way", (2,)), ("unmet", ())])

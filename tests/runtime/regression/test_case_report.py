@@ -11,7 +11,7 @@ from tltl_runtime.regression.explain.account import summaries_of
 from tltl_runtime.regression.report.case_report import report_on
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
-from tltl_runtime.regression.verdict.play import Recorded, Result, ready
+from tltl_runtime.regression.verdict.play import JudgedCase, Recorded, ready
 from tltl_runtime.regression.verdict.run import regress
 from tltl_runtime.regression.verdict.verdict import judge
 from tltlc.core.record import replace
@@ -35,7 +35,7 @@ def test_the_headline_is_no_failure_that_is_as_frequent_as_before(game: Path) ->
         judgement = judge(summaries_of(now), summaries_of(compared.accounts), 50, ready_case.case.thresholds, 0.05)
         assert judgement is not None and judgement.verdict == "review"
         return report_on(
-            Result(ready_case, compared, judgement, tuple(Recorded(account, b"") for account in now))
+            JudgedCase(ready_case, compared, judgement, tuple(Recorded(account, b"") for account in now))
         ).headline
 
     assert headline(47).startswith("met in 47 of 50 episodes (94%), before in 47 of 50 (94%): ")

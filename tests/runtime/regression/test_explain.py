@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from tests.runtime.regression.made import ROOM, changed, made
-from tltl_runtime.regression.explain.account import Account, Nearest
+from tltl_runtime.regression.explain.account import Account, NearestMiss
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import load_level
@@ -68,7 +68,7 @@ def test_one_failure_in_twenty_is_not_as_before(level: Level, fspa: Fspa, fewer:
 
 
 def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Level, fspa: Fspa) -> None:
-    near = Nearest("near(exit)", -0.2, NORTH, "exit", 3.2)
+    near = NearestMiss("near(exit)", -0.2, NORTH, "exit", 3.2)
     died = {"cause": "killed", "by": ("guard",), "seen_by": ("guard",), "place": NORTH, "nearest": near}
     now = successes(fspa)
     for index in range(14):
@@ -272,21 +272,21 @@ def test_stages_that_differ_between_episodes_are_described_by_distance(level: Le
 
 def test_a_limit_of_less_than_half_is_called_most_often(level: Level, fspa: Fspa) -> None:
     near = [
-        Nearest("alive", -0.5, MIDDLE),
-        *(Nearest(f"near({name})", -0.4, MIDDLE, name, 2.5) for name in ("s1", "s2")),
+        NearestMiss("alive", -0.5, MIDDLE),
+        *(NearestMiss(f"near({name})", -0.4, MIDDLE, name, 2.5) for name in ("s1", "s2")),
     ]
     now = [made(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
     assert "; most often the limit is `alive`, -0.50 at best; in state 0, " in sentences(level, fspa, now)[1]
 
 
 def test_a_limit_that_is_no_distance_names_the_atom(level: Level, fspa: Fspa) -> None:
-    near = [Nearest("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
+    near = [NearestMiss("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
     now = [made(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
     assert sentences(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
 
 
 def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
-    best, most = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
+    best, most = NearestMiss("alive", 0.0, MIDDLE), NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     now = [
         made(index, False, states=states_after(fspa, 0), nearest=best if index == 7 else most) for index in range(25)
     ]
@@ -305,7 +305,7 @@ def test_the_limit_of_most_episodes_is_named(level: Level, fspa: Fspa) -> None:
     ],
 )
 def test_near_misses_have_enough_decimals(level: Level, fspa: Fspa, came: float, said: str) -> None:
-    near = Nearest("near(s1)", -0.01, MIDDLE, "s1", came)
+    near = NearestMiss("near(s1)", -0.01, MIDDLE, "s1", came)
     now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert f"; closest approach to `s1`: {said}" in sentences(level, fspa, now)[1]
 
@@ -314,7 +314,7 @@ def test_a_distance_that_depends_on_a_param_has_no_threshold(level: Level) -> No
     (fspa,) = compile_text(
         SPEC.replace("near(s1)", "near(s1, close=arm)").replace("spec", "param arm: length = 2 m\nspec")
     )
-    near = Nearest("near(s1, close=arm)", -0.4, MIDDLE, "s1", 2.5)
+    near = NearestMiss("near(s1, close=arm)", -0.4, MIDDLE, "s1", 2.5)
     now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert (
         "; closest approach to `s1`: 2.5 m (`near(s1, close=arm)` is the limit); "
@@ -323,7 +323,7 @@ def test_a_distance_that_depends_on_a_param_has_no_threshold(level: Level) -> No
 
 
 def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fspa: Fspa) -> None:
-    not_yet = Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
+    not_yet = NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     account_fields = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
     now = [
         made(index, False, states=states_after(fspa, 0), arrived=index < 14, **account_fields) for index in range(25)
@@ -336,10 +336,10 @@ def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: Level, fs
 
 
 def test_an_atom_that_must_not_hold_is_described_as_such(level: Level, fspa: Fspa) -> None:
-    near = Nearest("visible", -1.0, MIDDLE, wanted=False)
+    near = NearestMiss("visible", -1.0, MIDDLE, wanted=False)
     now = [made(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert "; the limit is that `visible` holds; " in sentences(level, fspa, now)[1]
-    with_open = [replace(account, nearest=Nearest("open", -1.0, MIDDLE)) for account in now]
+    with_open = [replace(account, nearest=NearestMiss("open", -1.0, MIDDLE)) for account in now]
     assert "; the limit is `open`; " in sentences(level, fspa, with_open)[1]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.runtime.evaluation.deadly import killed
 from tests.runtime.policies.examples import card_of, policy_of
-from tltl_runtime.evaluation.player import Result, Task
+from tltl_runtime.evaluation.player import PlayedEpisode, Task
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.table1 import table_cells
@@ -94,7 +94,7 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
 class Mortal(table_cells._ExpertPlayer):
     """A player that kills its process in its first episode."""
 
-    def play(self, task: Task) -> Result:
+    def play(self, task: Task) -> PlayedEpisode:
         killed()
         return super().play(task)
 

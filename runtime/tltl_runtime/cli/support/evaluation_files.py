@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
-from tltl_runtime.evaluation.player import CHOICES, Result, Setup
+from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -96,7 +96,7 @@ class EvaluationFiles:
         """The names of files of an earlier evaluation that were removed and not written again."""
         return tuple(name for name in self._removed if self._folder and not (self._folder / name).exists())
 
-    def add(self, result: Result) -> None:
+    def add(self, result: PlayedEpisode) -> None:
         """Add the next result, and write its recording if it has one."""
         sampled = result.task.sampled
         if self._folder is not None and not any(self._played.values()):

@@ -47,7 +47,7 @@ _NO_UTF8: Final = re.compile("[\ud800-\udfff]")
 
 
 @record
-class Outcome:
+class SuiteRun:
     """The outcome of a run of a suite in its ``folder``.
 
     ``left_out`` are the names of the cases that depend on none of the ``changed`` files.  ``missing`` are
@@ -64,18 +64,18 @@ class Outcome:
     changed: tuple[str, ...] = ()
 
 
-def json_text(outcome: Outcome) -> str:
+def json_text(outcome: SuiteRun) -> str:
     """The JSON report."""
     reports = [done.report for done in outcome.cases]
     data = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
     return _encodable(json.dumps(data, indent=2, ensure_ascii=False)) + "\n"
 
 
-def _junit_text(outcome: Outcome) -> str:
+def _junit_text(outcome: SuiteRun) -> str:
     return junit(outcome.suite, [done.report for done in outcome.cases], outcome.missing)
 
 
-def _page_text(outcome: Outcome) -> str:
+def _page_text(outcome: SuiteRun) -> str:
     """The HTML page."""
     suite = outcome.suite
     is_shipped = suite.path == SHIPPED
@@ -92,7 +92,7 @@ def _page_text(outcome: Outcome) -> str:
     return _encodable(html_report(contents))
 
 
-def _not_run(outcome: Outcome) -> Iterator[NotRun]:
+def _not_run(outcome: SuiteRun) -> Iterator[NotRun]:
     """Yield the cases that were not judged, in the suite's order."""
     unaffected = "--changed names no file"
     if outcome.changed:
@@ -107,7 +107,7 @@ def _not_run(outcome: Outcome) -> Iterator[NotRun]:
             yield NotRun(case.name, reasons[case.name], _earlier(outcome, case.name))
 
 
-def _earlier(outcome: Outcome, name: str) -> Verdict | None:
+def _earlier(outcome: SuiteRun, name: str) -> Verdict | None:
     """The verdict of an earlier run in the folder on a case, or None."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -121,7 +121,7 @@ def _encodable(text: str) -> str:
     return _NO_UTF8.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
-REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {
+REPORTS: Final[Mapping[str, Callable[[SuiteRun], str]]] = {
     "--json": json_text,
     "--junit": _junit_text,
     "--html": _page_text,
@@ -129,7 +129,7 @@ REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {
 """The functions that make the reports, by option.  The page takes longest and comes last."""
 
 
-def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
+def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
     """Write the requested reports, and the page into the folder of the run.  Return the path of a page, or None.
 
     The keys of ``files`` are options.  The folder gets no page if the run was stopped before its first

@@ -13,7 +13,7 @@ import click
 
 from tltl_runtime.cli.support.printable import plain
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
-from tltl_runtime.cli.support.regression_files import REPORTS, Outcome, write_reports
+from tltl_runtime.cli.support.regression_files import REPORTS, SuiteRun, write_reports
 from tltl_runtime.cli.support.regression_text import case_lines, sum_line
 from tltl_runtime.cli.support.retraining import Retraining, retrain_cases
 from tltl_runtime.cli.support.writable_paths import check_apart, check_no_training, check_writable, is_output
@@ -197,14 +197,14 @@ def _stopped(wanted: Wanted, results: list[Done], cases: int) -> None:
 
 def _outcome(
     suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], wanted: Wanted, results: list[Done]
-) -> Outcome:
+) -> SuiteRun:
     """The outcome of the run so far."""
     missing = tuple(case.name for case in cases[len(results) :])
     complete = not missing and not _untrained(wanted, results)
-    return Outcome(suite, wanted.folder, tuple(results), complete, left_out, missing, wanted.changed or ())
+    return SuiteRun(suite, wanted.folder, tuple(results), complete, left_out, missing, wanted.changed or ())
 
 
-def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
+def _tell_too(outcome: SuiteRun, wanted: Wanted) -> None:
     """Report on a run that an error has ended.  A further error is printed, so that it does not hide the first."""
     try:
         _tell(outcome, wanted)
@@ -212,7 +212,7 @@ def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
         exits.report(error)
 
 
-def _are_meant(outcome: Outcome) -> bool:
+def _are_meant(outcome: SuiteRun) -> bool:
     """Whether there are findings, and all of them concern changed variants."""
     findings = {done.report.name for done in outcome.cases if done.report.verdict != "pass"}
     return bool(findings) and all(
@@ -220,7 +220,7 @@ def _are_meant(outcome: Outcome) -> bool:
     )
 
 
-def _tell(outcome: Outcome, wanted: Wanted) -> None:
+def _tell(outcome: SuiteRun, wanted: Wanted) -> None:
     """Print the summary and write the requested reports."""
     reports = [done.report for done in outcome.cases]
     click.echo(sum_line(reports, outcome.missing), err=wanted.printed is not None)

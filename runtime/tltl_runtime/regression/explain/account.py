@@ -30,7 +30,7 @@ class Arrival:
 
 
 @record
-class Nearest:
+class NearestMiss:
     """The nearest miss: how near an episode came to leaving the state in which it failed, towards acceptance.
 
     ``robustness``, in [-1, 1], is the guard's greatest robustness, and ``place`` is where the player
@@ -69,7 +69,7 @@ class Account:
     place: Point
     seen_by: tuple[str, ...]
     arrivals: tuple[Arrival, ...]
-    nearest: Nearest | None
+    nearest: NearestMiss | None
     way: Way
     broke: tuple[str, ...] = ()
     arrived: bool = False
@@ -127,7 +127,7 @@ def _shut(episode: Episode) -> tuple[str, ...]:
     return tuple(barrier.name for barrier, is_open in barriers if barrier.kind == "solid" and not is_open)
 
 
-def _nearest(episode: Episode, state: int) -> Nearest | None:
+def _nearest(episode: Episode, state: int) -> NearestMiss | None:
     """The nearest miss in a state; None if no edge leads from it towards acceptance, or the state was not visited."""
     fspa = episode.fspa
     guards = [edge.guard for edge in tables(fspa).improving[state]]
@@ -139,7 +139,7 @@ def _nearest(episode: Episode, state: int) -> Nearest | None:
     row = -step
     atom, wanted = bounding_literal(guards, atoms[row])
     target, distance = _distance(episode, atom, steps) if wanted else (None, None)
-    return Nearest(fspa.atoms[atom].name, round(best, 4), _place(episode, row + 1), target, distance, wanted)
+    return NearestMiss(fspa.atoms[atom].name, round(best, 4), _place(episode, row + 1), target, distance, wanted)
 
 
 def _last_stay(episode: Episode, state: int) -> list[int]:

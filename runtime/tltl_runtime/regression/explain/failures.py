@@ -26,7 +26,7 @@ One tenth of all episodes is enough, too.
 
 
 @record
-class End:
+class FailureEnd:
     """How and where an episode failed, and what it had to do next."""
 
     cause: Kind
@@ -50,19 +50,19 @@ class Failures:
 
     text: str
     accounts: tuple[Account, ...]
-    alike: Callable[[End], bool]
+    alike: Callable[[FailureEnd], bool]
     more: str = ""
 
 
-def end_of(level: Level, fspa: Fspa, account: Account) -> End:
+def end_of(level: Level, fspa: Fspa, account: Account) -> FailureEnd:
     """Return how a failed episode ended."""
     by = tuple(sorted(account.by))
-    return End(account.cause, by, place_name(level, account.place), deed(fspa, account.summary.unmet))
+    return FailureEnd(account.cause, by, place_name(level, account.place), deed(fspa, account.summary.unmet))
 
 
 def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[Failures]:
     """Group the failed episodes, most frequent ends first.  All texts are distinct."""
-    groups: dict[End, list[Account]] = {}
+    groups: dict[FailureEnd, list[Account]] = {}
     for account in accounts:
         if not account.summary.success:
             groups.setdefault(end_of(level, fspa, account), []).append(account)
@@ -85,7 +85,7 @@ def _often(groups: Mapping[_T, Sequence[Account]], episodes: int) -> list[_T]:
 
 
 def _few(
-    level: Level, groups: Mapping[End, Sequence[Account]], frequent: Collection[End], episodes: int
+    level: Level, groups: Mapping[FailureEnd, Sequence[Account]], frequent: Collection[FailureEnd], episodes: int
 ) -> Iterator[Failures]:
     """Group the remaining ends: by cause if frequent, then all others together."""
     causes: dict[_What, list[Account]] = {}
@@ -108,8 +108,8 @@ def _few(
 
 
 def _one_cause(
-    level: Level, ends: Sequence[End], accounts: Sequence[Account], frequent: Collection[End]
-) -> tuple[str, Callable[[End], bool]]:
+    level: Level, ends: Sequence[FailureEnd], accounts: Sequence[Account], frequent: Collection[FailureEnd]
+) -> tuple[str, Callable[[FailureEnd], bool]]:
     """A text for these ends of one cause, and a predicate for further ends that it covers.
 
     The ends in ``frequent`` have texts of their own.
@@ -126,14 +126,14 @@ def _one_cause(
     elif places <= apart:
         stage = " at other stages"
 
-    def alike(end: End) -> bool:
+    def alike(end: FailureEnd) -> bool:
         same_place = end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in apart
         return end.what == cause and same_place and (not stage.startswith(" before") or end.undone in stages)
 
     return _end_text(level, replace(ends[0], where=where), accounts) + stage, alike
 
 
-def _end_text(level: Level, end: End, accounts: Sequence[Account]) -> str:
+def _end_text(level: Level, end: FailureEnd, accounts: Sequence[Account]) -> str:
     """Describe the end of these episodes.  Asides end with a comma, since the number of episodes follows."""
     by = f" by {_names(end.by)}" if end.by else ""
     broke = _mostly("breaking", [account.broke for account in accounts])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from tltl_runtime.regression.explain.account import Account, Nearest
+from tltl_runtime.regression.explain.account import Account, NearestMiss
 from tltl_runtime.regression.explain.stages import REACHES, near_enough
 from tltl_runtime.stealth.capabilities.capabilities import given_params
 from tltl_runtime.stealth.level import Level
@@ -36,7 +36,7 @@ def remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
     return f"{often}in state {state}, where this remained: {fspa.states[state].label.english}"
 
 
-def _limit(level: Level, fspa: Fspa, near: Sequence[Nearest], of: str) -> str:
+def _limit(level: Level, fspa: Fspa, near: Sequence[NearestMiss], of: str) -> str:
     """Describe the most frequent limiting atom and the nearest miss; ``of`` says which episodes are meant."""
     (((atom, wanted), count),) = Counter((miss.atom, miss.wanted) for miss in near).most_common(1)
     limited = [miss for miss in near if (miss.atom, miss.wanted) == (atom, wanted)]

@@ -13,7 +13,7 @@ from tltl_runtime.regression.retrain.retrained import Retrained
 from tltl_runtime.regression.suite.level_texts import level_texts
 from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
-from tltl_runtime.regression.verdict.play import Result
+from tltl_runtime.regression.verdict.play import JudgedCase
 from tltl_runtime.regression.verdict.verdict import Change, Judgement, Verdict
 from tltl_runtime.stealth.levels.place import shown_variant
 from tltlc.core.record import record
@@ -65,7 +65,7 @@ class CaseReport:
         return (*self.causes, *(finding.text for finding in self.explanation), *self.edits)
 
 
-def report_on(result: Result) -> CaseReport:
+def report_on(result: JudgedCase) -> CaseReport:
     """Return the report on a case that was played."""
     case, setup = result.ready.case, result.ready.setup
     now = [episode.account for episode in result.episodes]
@@ -99,7 +99,7 @@ def report_on(result: Result) -> CaseReport:
     )
 
 
-def _edits(result: Result) -> Iterator[str]:
+def _edits(result: JudgedCase) -> Iterator[str]:
     """The differences from the baseline.  For a file that was edited meanwhile, the changed keys are unknown."""
     ready, before = result.ready, result.reference
     texts = level_texts(ready.setup.level, ready.setup.variant, ready.played.files)

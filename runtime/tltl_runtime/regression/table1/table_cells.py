@@ -10,7 +10,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import Result, Task
+from tltl_runtime.evaluation.player import PlayedEpisode, Task
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
@@ -102,10 +102,10 @@ class _ExpertPlayer:
         self._env = RecordEpisode(make_env(level, variant))
         self._expert = Expert(self._env)
 
-    def play(self, task: Task) -> Result:
+    def play(self, task: Task) -> PlayedEpisode:
         """Play one episode."""
         play_episode(self._env, self._expert, episode_seed(SEED, task.index))
-        return Result(task, summary_of(self._env.episode, task.index))
+        return PlayedEpisode(task, summary_of(self._env.episode, task.index))
 
     def close(self) -> None:
         """Close the environment."""

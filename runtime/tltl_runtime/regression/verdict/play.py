@@ -61,7 +61,7 @@ class Recorded:
 
 
 @record
-class Result:
+class JudgedCase:
     """A judged case, with the played episodes in order."""
 
     ready: Ready
@@ -137,7 +137,7 @@ def check_unedited(prepared: Ready) -> None:
 
 def judged(
     prepared: Ready, reference: Reference, error: float, pool: Pool, on_episode: Callable[[int, Account], None]
-) -> Result:
+) -> JudgedCase:
     """Play a case until its verdict is settled.
 
     After each episode, ``on_episode`` gets the number of episodes so far and the last account.
@@ -152,7 +152,7 @@ def judged(
             judgement = judge(now, before, prepared.case.episodes, prepared.case.thresholds, error)
             if judgement:
                 check_unedited(prepared)
-                return Result(prepared, reference, judgement, tuple(played))
+                return JudgedCase(prepared, reference, judgement, tuple(played))
     raise AssertionError("the last episode settles every verdict")
 
 

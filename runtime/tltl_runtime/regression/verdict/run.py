@@ -14,7 +14,7 @@ from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, r
 from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
-from tltl_runtime.regression.verdict.play import Ready, Result, Told, judged, ready
+from tltl_runtime.regression.verdict.play import JudgedCase, Ready, Told, judged, ready
 from tltl_runtime.stealth.recordings.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltl_runtime.support.folder_lock import held
@@ -210,7 +210,7 @@ def _kept(folder: Path, inputs: str) -> CaseReport | None:
     return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 
 
-def _write(folder: Path, inputs: str, result: Result) -> CaseReport:
+def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
     """Write the report on a case and the recordings of the episodes that its findings name."""
     report = report_on(result)
     by_index = {episode.account.summary.index: episode.recording for episode in result.episodes}
