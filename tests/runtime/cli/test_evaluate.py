@@ -37,6 +37,7 @@ from tltlc.core.record import replace
 Run = Callable[..., Outcome]
 STARTER = Path(tltl_runtime.__file__).with_name("starter")
 LEVELS = ("navigation", "cover_and_hide", "branching")
+EPISODE = "index seed success verdict end progress reward steps seconds state unmet label".split()
 FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "ended", "episodes"]
 
 
@@ -82,6 +83,7 @@ def test_the_json_report(tltlc: Run, policy: Path) -> None:  # noqa: F811
     assert report["progress"].keys() == report["reward"].keys() == {"mean", "std"}
     for episode in (*report["episodes"], *report["argmax"]["episodes"]):
         assert episode["reward"] == pytest.approx(episode["progress"] - 1.0)
+        assert list(episode) == EPISODE
     assert re.fullmatch("[0-9a-f]{64}", report["policy"]["sha256"])
     assert {"tltlc", "pybullet", "numpy", "torch"} < report["versions"].keys()
 
