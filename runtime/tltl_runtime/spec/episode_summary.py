@@ -20,12 +20,13 @@ class EpisodeSummary:
 
     ``index`` numbers the episodes of an evaluation or a training, from 0.  ``seed`` is the seed of
     the environment's reset, or None if the episode continued the environment's random stream.
-    ``progress`` is the best value, in [0, 1]; ``reward`` the sum over the ``steps``, with the default
-    reward options.  ``unmet`` is the automaton state at the end, or the state before a violation.
+    ``progress`` is the best value, in [0, 1].  ``reward`` is the sum of the rewards of the ``steps``;
+    training, which may use other rewards, computes it by :func:`progress_return`.  ``unmet`` is the
+    automaton state at the end, or the state before a violation.
 
-    The other fields are None in training and in a summary that was read from a baseline: ``verdict``
-    is the verdict of the last step, ``seconds`` are game time, ``state`` is the automaton state at
-    the end, and ``label`` says in English what remained to be done in the state ``unmet``.
+    ``verdict`` is the verdict of the last step, ``seconds`` are game time, ``state`` is the automaton
+    state at the end, and ``label`` says in English what remained to be done in the state ``unmet``.
+    These four are None in training and regression, whose files do not hold them.
     """
 
     index: int
