@@ -15,7 +15,7 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.infinite.analysis import analysis_of_rabin
 from tltlc.automaton.infinite.construct import rabin
-from tltlc.automaton.infinite.work import DEFAULT_WORK, Work
+from tltlc.automaton.work import DEFAULT_WORK, Work
 
 SECTION = "infinite"
 TABLE: Final = Path(__file__).with_name("infinite.tsv")

@@ -17,7 +17,7 @@ from tltlc.automaton.compare import Trace, are_equivalent, is_included, less_is_
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces, holds
 

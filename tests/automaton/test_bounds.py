@@ -14,7 +14,7 @@ from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.letters import Letters
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.logic import formula as f
 from tltlc.logic.bounded import counted_down
 from tltlc.logic.formula import Formula

@@ -173,7 +173,7 @@ def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
     If that takes too much work, returns the values of the artefact.
     """
     from tltlc.automaton.infinite.analysis import analysis_of_fspa
-    from tltlc.automaton.infinite.work import OutOfWork, Work
+    from tltlc.automaton.work import OutOfWork, Work
 
     try:
         analysis = analysis_of_fspa(fspa, Work(CYCLES_WORK))

@@ -15,7 +15,7 @@ from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of
 from tltlc.automaton.infinite.letters import LEAF, Letters, at_most_one
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_marks
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, telling_apart
-from tltlc.automaton.infinite.work import DEFAULT_WORK, Work
+from tltlc.automaton.work import DEFAULT_WORK, Work
 from tltlc.core.record import record
 
 _NO_EDGE: Final = -1

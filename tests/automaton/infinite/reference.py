@@ -14,7 +14,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.infinite.analysis import analysis_of_rabin
 from tltlc.automaton.infinite.automaton import Rabin
 from tltlc.automaton.infinite.construct import rabin
-from tltlc.automaton.infinite.work import DEFAULT_WORK, Work
+from tltlc.automaton.work import DEFAULT_WORK, Work
 from tltlc.logic.formula import Formula
 
 TABLE = Path(__file__).parents[2] / "corpus" / "infinite_sizes.tsv"

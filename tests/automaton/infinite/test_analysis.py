@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tltlc.automaton.infinite.analysis import Analysis
 from tltlc.automaton.infinite.cycles import Edge
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 
 PAIRS = 2
 marks = st.frozensets(st.integers(0, 2 * PAIRS - 1), max_size=3)

@@ -17,7 +17,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.infinite.automaton import Rabin
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import Formula, not_
 
 Groups = tuple[tuple[str, ...], ...]

@@ -13,7 +13,7 @@ from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite import blowup
 from tltlc.automaton.infinite.blowup import blow_up
 from tltlc.automaton.infinite.contradiction import unsatisfiable
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label

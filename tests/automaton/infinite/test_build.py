@@ -17,7 +17,7 @@ from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build, spec_from_
 from tltlc.automaton.fspa import Fspa, State
 from tltlc.automaton.infinite import construct
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.work import DEFAULT_WORK, STEPS_PER_STATE, OutOfWork
+from tltlc.automaton.work import DEFAULT_WORK, STEPS_PER_STATE, OutOfWork
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.formula import Formula

@@ -8,7 +8,7 @@ from tests.calls import calls
 from tltlc.automaton.infinite.cycles import Edge, decomposition
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks
 from tltlc.automaton.infinite.products import telling_apart
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 
 NONE: Marks = frozenset()
 SIZE = 200

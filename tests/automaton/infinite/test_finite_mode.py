@@ -13,7 +13,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.logic import formula as f
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula

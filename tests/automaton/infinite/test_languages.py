@@ -12,7 +12,7 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.automaton import Rabin
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.infinite.languages import accepting, equal_states
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 
 
 @pytest.mark.parametrize("seed", range(3))

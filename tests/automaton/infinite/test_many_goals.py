@@ -7,7 +7,7 @@ import pytest
 from tltlc.automaton.infinite.after_automaton import STEPS_PER_OBLIGATION, After
 from tltlc.automaton.infinite.infinite import infinite_form
 from tltlc.automaton.infinite.letters import Letters
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 from tltlc.logic import formula as build
 
 

@@ -11,7 +11,7 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually, has, is_pi_2, is_sigma_2
 from tltlc.automaton.infinite.infinite import infinite_form, is_rigid, negated, readable
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import FALSE, TRUE, Formula
 
 SEEDS = pytest.mark.parametrize("seed", range(10))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, telling_apart
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 
 START, OVER = (0, 0), (1, 1)
 ONE_FIN, ONE_INF, OTHER_FIN, OTHER_INF = range(4)

@@ -9,7 +9,7 @@ import pytest
 from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.pairs import Piece
 from tltlc.automaton.infinite.state_merging import shrunk
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 
 A, B, C = ("a",), ("b",), ("c",)
 

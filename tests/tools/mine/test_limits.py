@@ -11,7 +11,7 @@ from random import Random
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.core.source import SourceFile
 from tltlc.io.limits import WORK
 from tltlc.resolve.options import ResolveOptions

@@ -13,7 +13,7 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
 from tltlc.automaton.infinite.infinite import conjunction, disjunction
 from tltlc.automaton.infinite.letters import Letters
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.logic import formula as build
 from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
@@ -34,7 +34,7 @@ class After:
     ``formulas[v]`` is the formula of variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid
     formula.  Methods that make obligations raise :class:`~tltlc.automaton.diagrams.OutOfSteps` if
     one becomes too large.  Methods that make functions of letters raise
-    :class:`~tltlc.automaton.infinite.work.OutOfWork`.
+    :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, atoms: Sequence[str], letters: Letters[Any]) -> None:

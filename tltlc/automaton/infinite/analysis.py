@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.automaton.infinite.cycles import Edge, Edges, accepting_parts, parts, rejecting_parts
 from tltlc.automaton.infinite.mark_conditions import pair_clauses, pair_marks
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.resolve.spec import Judge
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class Analysis:
 
     ``targets`` maps each state to its successors; ``goals`` is the set of goals.  State 0 is
     initial.  Marks are numbered as by :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`.
-    The constructor and every method may raise :class:`~tltlc.automaton.infinite.work.OutOfWork`.
+    The constructor and every method may raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, states: int, edges: Sequence[Edge], pairs: int, work: Work) -> None:

@@ -8,7 +8,7 @@ from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import ADVICE, Size, blamed, why
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.construct import rabin
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.spec import Part, Spec
 

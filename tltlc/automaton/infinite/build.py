@@ -12,7 +12,7 @@ from tltlc.automaton.infinite.assembly import assembled
 from tltlc.automaton.infinite.blowup import blow_up
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.infinite.readback import Writer, text_of
-from tltlc.automaton.infinite.work import STEPS_PER_STATE, OutOfWork, Work
+from tltlc.automaton.work import STEPS_PER_STATE, OutOfWork, Work
 from tltlc.resolve.spec import Spec
 
 
@@ -21,7 +21,7 @@ def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> F
 
     A state is ``accepting`` if it lies on an accepted cycle; it is a trap if no such state can be
     reached from it.  Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 if the
-    construction takes more than :data:`~tltlc.automaton.infinite.work.STEPS_PER_STATE` steps for
+    construction takes more than :data:`~tltlc.automaton.work.STEPS_PER_STATE` steps for
     each state of ``state_budget``, TLT0502 if there are too many edges or prime implicants.
     """
     with recursion_room():

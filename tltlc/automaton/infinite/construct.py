@@ -27,7 +27,7 @@ from tltlc.automaton.infinite.languages import equal_states
 from tltlc.automaton.infinite.letters import Letters, at_most_one
 from tltlc.automaton.infinite.pairs import Piece, with_pairs
 from tltlc.automaton.infinite.state_merging import shrunk
-from tltlc.automaton.infinite.work import DEFAULT_WORK, OutOfWork, Work
+from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import replace
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula

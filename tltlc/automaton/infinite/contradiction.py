@@ -10,7 +10,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.analysis import analysis_of_rabin
 from tltlc.automaton.infinite.construct import rabin
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 from tltlc.logic.formula import and_
 from tltlc.resolve.spec import Part, Spec
 

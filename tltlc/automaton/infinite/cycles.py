@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
 Edge = tuple[Any, Any, Marks]
@@ -41,7 +41,7 @@ def decomposition(edges: Iterable[Edge], clauses: Sequence[Clause], work: Work) 
     """Return the tree of a strongly connected set of edges, with children in the order of their edges.
 
     In this module, work counts the edges that are visited; its functions raise
-    :class:`~tltlc.automaton.infinite.work.OutOfWork`.
+    :class:`~tltlc.automaton.work.OutOfWork`.
     """
     order = {edge: place for place, edge in enumerate(edges)}
     count = 0

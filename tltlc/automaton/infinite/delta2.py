@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import Final
 
 from tltlc.automaton.infinite import infinite
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import FALSE, TRUE, Formula
 
 

@@ -16,7 +16,7 @@ from tltlc.automaton.diagrams import FALSE, TRUE, OutOfSteps
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.infinite import conjunction, disjunction
 from tltlc.automaton.infinite.letters import Letters
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.logic.formula import Formula, not_
 
 _MOST_TERMS: Final = 48

@@ -20,7 +20,7 @@ from tltlc.automaton.infinite.cycles import accepting_parts, parts, rejecting_pa
 from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.mark_conditions import Marks
 from tltlc.automaton.infinite.pairs import Piece
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 
 _MOST_TOGETHER: Final = 48
 """The most states of a component that one state of a factor may stand for."""

@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, side_by_side, telling_apart
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 
 _WORDS: Final = 48
 """The number of random cycles that distinguish states before they are compared exactly."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import Any, Final, Generic, TypeVar
 
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 
 Leaf = TypeVar("Leaf", bound=Hashable)
 
@@ -20,7 +20,7 @@ class Letters(Generic[Leaf]):
     """A table of nodes: ``atom[n]``, ``low[n]`` and ``high[n]`` describe node ``n``; ``value[n]`` is a leaf's value.
 
     New inner nodes count as work.  Operations raise
-    :class:`~tltlc.automaton.infinite.work.OutOfWork` if no work is left.
+    :class:`~tltlc.automaton.work.OutOfWork` if no work is left.
     """
 
     __slots__ = ("_leaves", "_nodes", "atom", "high", "low", "value", "work")

@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any, Literal
 
 from tltlc.automaton.fspa import Mark
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
 Kind = Literal["inf", "fin"]

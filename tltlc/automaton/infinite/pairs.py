@@ -16,7 +16,7 @@ from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
 from tltlc.automaton.infinite.component import Leaf, Local, State, explored
 from tltlc.automaton.infinite.cycles import Edge, Node, decomposition
 from tltlc.automaton.infinite.letters import Letters
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 from tltlc.core.record import record
 
 _FOR_FEWER_PAIRS: Final = 100_000

@@ -9,7 +9,7 @@ from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of, parts
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_clauses, pair_marks
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 
 Both = tuple[Any, Any]
 """A state of the first automaton and a state of the second."""

@@ -14,7 +14,7 @@ from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.pairs import Piece
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, side_by_side, telling_apart
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 
 
 def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece:

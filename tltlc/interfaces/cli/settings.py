@@ -102,7 +102,7 @@ def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...
 def work_of(settings: Settings) -> int:
     """Return the steps that a search may take, as many as for an automaton over infinite traces."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
-    from tltlc.automaton.infinite.work import STEPS_PER_STATE
+    from tltlc.automaton.work import STEPS_PER_STATE
 
     return STEPS_PER_STATE * (settings.state_budget or DEFAULT_STATE_BUDGET)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, Union
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
 from tltlc.tools.witness.blocks import values

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from tltlc.automaton.infinite.work import DEFAULT_WORK
+from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.resolve.spec import Atom

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tltlc.automaton.infinite.work import DEFAULT_WORK, OutOfWork
+from tltlc.automaton.work import DEFAULT_WORK, OutOfWork
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.tools.diff.assumed_exclusive import Declared, assumed

@@ -7,7 +7,7 @@ from itertools import combinations, islice
 from typing import TYPE_CHECKING, Final, Literal
 
 from tltlc.automaton.compare import Literals, Trace, separating
-from tltlc.automaton.infinite.work import DEFAULT_WORK, OutOfWork
+from tltlc.automaton.work import DEFAULT_WORK, OutOfWork
 from tltlc.core.record import record, replace
 from tltlc.tools.diff.values import apart, meaning
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from tltlc.automaton.infinite.work import DEFAULT_WORK
+from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.tools.diff.breaking import Change, Move, Version, compared

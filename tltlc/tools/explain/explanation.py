@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import folded
 from tltlc.core.record import record
 from tltlc.logic.formula import TRUE, Formula, rebuild

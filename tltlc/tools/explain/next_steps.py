@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Edge, Fspa
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 
 _MOST_WORK: Final = 500_000
 """The most steps that the comparison of states may take."""

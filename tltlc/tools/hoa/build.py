@@ -15,7 +15,7 @@ from tltlc.automaton.infinite.component import IMPOSSIBLE, Local, State
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.letters import Letters, at_most_one
 from tltlc.automaton.infinite.pairs import Piece, as_it_stands, with_pairs
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.resolve.spec import Judge
 from tltlc.tools.hoa.checks import is_finite

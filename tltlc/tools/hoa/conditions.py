@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from tltlc.automaton.infinite.mark_conditions import Clause, Kind, Marks, Skeleton, clauses
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.tools.hoa.tree import Hoa, Term
 
 
 class Acceptance:
     """The disjunctive normal form of a condition; each different ``Fin`` or ``Inf`` in it is a mark.
 
-    Raises :class:`~tltlc.automaton.infinite.work.OutOfWork` if there are too many clauses.
+    Raises :class:`~tltlc.automaton.work.OutOfWork` if there are too many clauses.
     """
 
     def __init__(self, hoa: Hoa, work: Work) -> None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import os
 from tltlc.automaton.infinite.assembly import assembled
 from tltlc.automaton.infinite.readback import text_of as infinite_text
-from tltlc.automaton.infinite.work import DEFAULT_WORK, OutOfWork, Work
+from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.automaton.compare import Letter, are_equivalent
 from tltlc.automaton.fspa import Edge, Fspa
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.monitor.guards import holds

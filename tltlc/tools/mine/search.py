@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import ceil
 
-from tltlc.automaton.infinite.work import Work
+from tltlc.automaton.work import Work
 from tltlc.core.record import record
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, count

@@ -16,7 +16,7 @@ from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Final
 
-from tltlc.automaton.infinite.work import OutOfWork, Work
+from tltlc.automaton.work import OutOfWork, Work
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, Samples, Verdicts, count
 from tltlc.tools.mine.clause import Clause

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.infinite.work import OutOfWork
+from tltlc.automaton.work import OutOfWork
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.tools.witness.cover import Untaken
 from tltlc.tools.witness.traces import Witness

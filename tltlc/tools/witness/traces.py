@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from tltlc.automaton.fspa import Edge, Fspa, Pair, State
-from tltlc.automaton.infinite.work import DEFAULT_WORK
+from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import record, replace
 from tltlc.tools.witness.samples import Sample
 from tltlc.tools.witness.transitions import Move, Moves

@@ -69,7 +69,7 @@ def _accept_the_same(one: Fspa, other: Fspa) -> bool:
     if one.semantics == "finite":
         return True
     from tltlc.automaton.compare import are_equivalent
-    from tltlc.automaton.infinite.work import OutOfWork
+    from tltlc.automaton.work import OutOfWork
 
     try:
         return are_equivalent(one, other, _WORK)
