@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import state_formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.finite import build as build_module
 from tltlc.automaton.finite import composition
-from tltlc.automaton.finite.build import allowed_letters, build, spec_from_formula
+from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.build import build_infinite
+from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import WORK
@@ -170,9 +170,9 @@ def test_long_labels_are_an_error_before_they_are_written(monkeypatch: pytest.Mo
 @given(state_formulas(("a", "b", "c"), max_leaves=5), state_formulas(("a", "b", "c"), max_leaves=5), st.booleans())
 @settings(max_examples=200, deadline=None)
 def test_joining_constrained_transitions_keeps_the_constraint(one: Formula, other: Formula, conjunction: bool) -> None:
-    diagrams = Diagrams()
+    diagrams = TransitionDiagrams()
     successors = Successors(["a", "b", "c"], diagrams)
-    allowed = allowed_letters(diagrams, [[0, 1, 2]])
+    allowed = diagrams.allowed_letters([[0, 1, 2]])
     left, right = (successors.of_formula(negation_normal_form(formula)) for formula in (one, other))
     join = diagrams.conjoin if conjunction else diagrams.disjoin
     joined = join(diagrams.constrain(left, allowed), diagrams.constrain(right, allowed))
@@ -181,13 +181,13 @@ def test_joining_constrained_transitions_keeps_the_constraint(one: Formula, othe
 
 def test_a_product_over_exclusive_atoms_makes_few_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
     """An earlier version built the transitions for all letters, and restricted them to the possible ones afterwards."""
-    created: list[Diagrams] = []
-    monkeypatch.setattr(build_module, "Diagrams", lambda: created.append(Diagrams()) or created[-1])
+    created: list[TransitionDiagrams] = []
+    monkeypatch.setattr(build_module, "TransitionDiagrams", lambda: created.append(TransitionDiagrams()) or created[-1])
     monkeypatch.setattr(build_module, "_labels", None)
     with pytest.raises(TypeError):
         build(spec_from_formula(any_order(10), exclusive=[names(10)]))
     (diagrams,) = created
-    assert len(diagrams.atom) < 35 * 2**10
+    assert len(diagrams.variable) < 35 * 2**10
 
 
 def refusal(spec: Spec, budget: int = 1_000) -> Diagnostic:

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 
 from tests.automaton.test_budgets import any_order, names, refusal
 from tests.logic.strategies import formulas
-from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.finite import composition
-from tltlc.automaton.finite.build import allowed_letters, build, minimal_machine, spec_from_formula
+from tltlc.automaton.finite.build import build, minimal_machine, spec_from_formula
 from tltlc.automaton.finite.composition import _Composition
 from tltlc.automaton.finite.estimate import Estimate
 from tltlc.automaton.finite.machine import Machine
 from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, always, and_, atom, eventually, next_, not_, or_
 from tltlc.logic.normal_form import negation_normal_form
@@ -26,10 +26,10 @@ ATOMS = ("a", "b", "c")
 
 def machines(
     parts: list[Formula], exclusive: list[list[int]], atoms: tuple[str, ...]
-) -> tuple[Diagrams, list[Machine]]:
-    diagrams = Diagrams()
+) -> tuple[TransitionDiagrams, list[Machine]]:
+    diagrams = TransitionDiagrams()
     successors = Successors(atoms, diagrams)
-    composition = _Composition(successors, 1_000, allowed_letters(diagrams, exclusive))
+    composition = _Composition(successors, 1_000, diagrams.allowed_letters(exclusive))
     return diagrams, [composition.minimal(negation_normal_form(part)) for part in parts]
 
 

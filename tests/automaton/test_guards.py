@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import state_formulas
 from tltlc.automaton import guards
-from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Guard
+from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula, and_, atom, iff, not_, or_
@@ -104,7 +104,7 @@ def test_a_guard_with_too_many_products_is_an_error() -> None:
 
 
 def test_a_short_form_stays_a_sum_where_the_product_would_be_very_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    diagrams = Diagrams()
+    diagrams = TransitionDiagrams()
     guard = REJECT
     for pair in range(3):
         both = diagrams.node(2 * pair, REJECT, diagrams.node(2 * pair + 1, REJECT, ACCEPT))

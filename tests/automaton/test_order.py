@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from tests.automaton.test_composition import _isomorphic
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.finite import build as build_module
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.finite.order import better_order, reordered, restored
+from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, iff, or_
 from tltlc.resolve.spec import Spec
@@ -57,12 +57,14 @@ def test_another_order_gives_the_same_automaton(
 
 def test_pairs_compile_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """In the given order, twelve pairs take fourteen seconds; thirteen fail after 23 s and a gigabyte of memory."""
-    diagrams: list[Diagrams] = []
-    monkeypatch.setattr(build_module, "Diagrams", lambda: diagrams.append(Diagrams()) or diagrams[-1])
+    diagrams: list[TransitionDiagrams] = []
+    monkeypatch.setattr(
+        build_module, "TransitionDiagrams", lambda: diagrams.append(TransitionDiagrams()) or diagrams[-1]
+    )
     fspa = build(pairs(13))
     assert len(fspa.states) == 2
     assert [atom.name for atom in fspa.atoms] == [*(f"a{n}" for n in range(13)), *(f"b{n}" for n in range(13))]
-    assert sum(len(diagram.atom) for diagram in diagrams) < 400_000
+    assert sum(len(diagram.variable) for diagram in diagrams) < 400_000
 
 
 def test_a_spec_that_takes_few_steps_keeps_its_order(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,11 +12,11 @@ from tests.backends.strategies import EXCLUSIVE, automata, hostile_automata, hos
 from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
 from tltlc import __version__, backends, compile_text
-from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
 from tltlc.automaton.infinite.build import build_infinite
 from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.backends import hoa
 from tltlc.backends.drawing.texts import visible
 from tltlc.core.record import replace
@@ -203,7 +203,7 @@ def test_labels_come_from_the_primes_not_from_the_text() -> None:
 @given(automata())
 def test_a_guard_too_large_for_a_short_label_is_the_sum_of_its_primes(fspa: Fspa) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(hoa, "Diagrams", lambda: Diagrams(step_limit=0))
+        patch.setattr(hoa, "TransitionDiagrams", lambda: TransitionDiagrams(steps=0))
         parsed = read(emitted(replace(fspa, exclusive=())))
     for state, letter in itertools.product(fspa.states, itertools.product((False, True), repeat=len(fspa.atoms))):
         expected = [edge.target for edge in fspa.edges_from(state.id) if holds(edge, letter)]

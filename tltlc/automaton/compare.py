@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final, TypeVar
 
+from tltlc.automaton.diagrams import LEAF, Diagrams, at_most_one
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of
-from tltlc.automaton.infinite.letters import LEAF, Letters, at_most_one
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_marks
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, telling_apart
 from tltlc.automaton.work import DEFAULT_WORK, Work
@@ -95,7 +95,7 @@ class _Product:
         impossible = tuple(impossible)
         self._names = _in_order((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
         self._place = {name: index for index, name in enumerate(self._names)}
-        self._letters: Letters[Any] = Letters(work)
+        self._letters: Diagrams[Any] = Diagrams(work)
         groups = [[fspa.atoms[atom].name for atom in group] for fspa in self._pair for group in fspa.exclusive]
         places = [[self._place[name] for name in group] for group in groups]
         # Strings, since the table could not tell True and False from the indices 1 and 0 of edges.
@@ -245,10 +245,10 @@ class _Product:
             if node in seen:
                 continue
             seen.add(node)
-            if letters.atom[node] == LEAF:
+            if letters.variable[node] == LEAF:
                 letter_of[letters.value[node]] = present
             else:
-                stack.append((letters.high[node], [*present, self._names[letters.atom[node]]]))
+                stack.append((letters.high[node], [*present, self._names[letters.variable[node]]]))
                 stack.append((letters.low[node], present))
         return letter_of
 

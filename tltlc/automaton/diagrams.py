@@ -1,183 +1,156 @@
-"""Hash-consed decision diagrams: the data structure of the whole construction.
+"""Hash-consed decision diagrams: functions of Boolean variables, the data structure of all constructions.
 
-There are two kinds of nodes.  Each node is an int and canonical, so ``==`` decides equality.
+A function maps each assignment of the variables to a value.  Its diagram is a directed acyclic
+graph: an inner node tests a variable, a leaf holds a value.  A node is an int and canonical, so
+``==`` decides whether two functions are equal.
 
-*Obligations* are Boolean functions over temporal subformulas and atoms: binary decision diagrams
-whose variables are formulas.  Formulas that are equal as such functions are one obligation, so the
-construction treats them as one state.
+The finite and the infinite construction use the same type for different functions:
 
-*Transitions* are functions from a letter (the atoms that hold at a sample) to a leaf.  A leaf is a
-pair: the obligation that remains, and whether the trace is accepted if this sample is its last.
-Inner nodes test an atom, by index, in order.
+- *obligations* (:class:`~tltlc.automaton.transitions.ObligationDiagrams`): Boolean functions over temporal
+  subformulas;
+- *transitions* (:class:`~tltlc.automaton.transitions.TransitionDiagrams`) and guards: from a letter, the
+  atoms that hold at a sample, to what remains and whether the trace may end;
+- steps over infinite traces: from a letter to any hashable value, such as a target and its marks.
 
 No operation enumerates letters; all are memoised.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final
+from typing import Any, Final, Generic, TypeVar
 
-FALSE: Final = 0
-"""The obligation ``false``: no trace satisfies it."""
-TRUE: Final = 1
-"""The obligation ``true``: every trace satisfies it."""
+from tltlc.automaton.work import Work
 
-REJECT: Final = 0
-"""The transition of ``false`` on every letter: (FALSE, not accepted)."""
-ACCEPT: Final = 1
-"""The transition of ``true`` on every letter: (TRUE, accepted)."""
-IMPOSSIBLE: Final = 2
-"""The leaf of letters that ``exclusive`` declarations rule out."""
+Leaf = TypeVar("Leaf", bound=Hashable)
 
 LEAF: Final = 1 << 40
-"""The ``atom`` of a leaf, greater than every atom's index."""
+"""The ``variable`` of a leaf, greater than every variable."""
+
+_NO_NODE: Final = -1
 
 
 class OutOfSteps(Exception):
     """Raised when an operation takes more steps than its limit: the formula blows up."""
 
 
-class Diagrams:
-    """A table of nodes and the operations on them.
+class StepLimit:
+    """The most steps that each operation may take in total; tables may share it.
 
-    ``atom[n]``, ``low[n]`` and ``high[n]`` describe transition ``n``.  For a leaf, ``low`` is the
-    obligation, and ``high`` is 1 if the trace may end here, else 0.  ``variable[n]``, ``absent[n]``
-    and ``present[n]`` describe obligation ``n``.  Each of the four operations (``both``,
-    ``either``, ``conjoin``, ``disjoin``) may take ``step_limit`` steps in total, then it raises
-    :class:`OutOfSteps`.  Each step is cached, so the limit bounds memory too.
+    An operation takes a step for each pair of nodes that it combines, and caches the result, so the
+    limit bounds memory too.
     """
 
-    __slots__ = (
-        "_memos",
-        "_nodes",
-        "_obligations",
-        "absent",
-        "atom",
-        "both",
-        "conjoin",
-        "disjoin",
-        "either",
-        "high",
-        "low",
-        "node",
-        "present",
-        "step_limit",
-        "variable",
-    )
+    __slots__ = ("_memos", "steps")
 
-    def __init__(self, step_limit: int = 2_000_000) -> None:
-        self.step_limit = step_limit
+    def __init__(self, steps: int = 2_000_000) -> None:
+        self.steps = steps
         self._memos: list[dict[tuple[int, int], int]] = []
-        self.variable: list[int] = [LEAF, LEAF]
-        self.absent: list[int] = [FALSE, TRUE]
-        self.present: list[int] = [FALSE, TRUE]
-        self._obligations: dict[tuple[int, int, int], int] = {}
-        self.atom: list[int] = [LEAF, LEAF, LEAF]
-        self.low: list[int] = [FALSE, TRUE, -1]
-        self.high: list[int] = [0, 1, 0]
-        self._nodes: dict[tuple[int, int, int], int] = {(LEAF, FALSE, 0): REJECT, (LEAF, TRUE, 1): ACCEPT}
-        self.node: Callable[[int, int, int], int] = self._node_maker()
-        self.both: Callable[[int, int], int] = self._obligation_operation(absorbing=FALSE, neutral=TRUE)
-        self.either: Callable[[int, int], int] = self._obligation_operation(absorbing=TRUE, neutral=FALSE)
-        self.conjoin: Callable[[int, int], int] = self._transition_operation(
-            REJECT, ACCEPT, self.both, conjunction=True
-        )
-        self.disjoin: Callable[[int, int], int] = self._transition_operation(
-            ACCEPT, REJECT, self.either, conjunction=False
-        )
+
+    def memo(self) -> dict[tuple[int, int], int]:
+        """Return the empty cache of a further operation; its length is the number of steps taken."""
+        self._memos.append({})
+        return self._memos[-1]
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
         """Allow each operation at most ``steps`` further steps inside the ``with`` block."""
-        before = self.step_limit
-        self.step_limit = min(before, max(map(len, self._memos)) + steps)
+        before = self.steps
+        self.steps = min(before, max(map(len, self._memos)) + steps)
         try:
             yield
         finally:
-            self.step_limit = before
+            self.steps = before
+
+
+class Diagrams(Generic[Leaf]):
+    """A table of nodes and the operations on them.
+
+    ``variable[n]``, ``low[n]`` and ``high[n]`` describe inner node ``n``: the function ``high[n]``
+    where the variable holds, ``low[n]`` elsewhere.  Variables are ints and are tested in ascending
+    order.  ``value[n]`` is the value of leaf ``n``, whose ``variable`` is :data:`LEAF`.
+
+    New inner nodes, and the steps of :meth:`combined`, count as ``work`` if it is given.  These
+    operations raise :class:`~tltlc.automaton.work.OutOfWork` if no work is left.
+    """
+
+    __slots__ = ("_leaves", "_nodes", "_work", "high", "low", "node", "value", "variable")
+
+    def __init__(self, work: Work | None = None) -> None:
+        self.variable: list[int] = []
+        self.low: list[int] = []
+        self.high: list[int] = []
+        self.value: list[Any] = []
+        self._nodes: dict[tuple[int, int, int], int] = {}
+        self._leaves: dict[Leaf, int] = {}
+        self._work = work
+        self.node: Callable[[int, int, int], int] = self._node_maker()
+
+    @property
+    def work(self) -> Work:
+        """The work that operations count; raises ValueError if this table has none."""
+        if self._work is None:
+            raise ValueError("this table of diagrams counts no work")
+        return self._work
 
     # --- making nodes -------------------------------------------------------------------------
 
-    def obligation(self, variable: int, absent: int, present: int) -> int:
-        """Return the obligation that is ``present`` where the variable holds and ``absent`` elsewhere."""
-        if absent == present:
-            return absent
-        key = (variable, absent, present)
-        number = self._obligations.get(key)
+    def leaf(self, value: Leaf) -> int:
+        """Return the function that has one value everywhere."""
+        number = self._leaves.get(value)
         if number is None:
-            number = self._obligations[key] = len(self.variable)
-            self.variable.append(variable)
-            self.absent.append(absent)
-            self.present.append(present)
+            number = self._leaves[value] = self._add(LEAF, _NO_NODE, _NO_NODE, value)
         return number
 
-    def leaf(self, obligation: int, accepted: int) -> int:
-        """Return the transition to one obligation on every letter."""
-        key = (LEAF, obligation, accepted)
-        number = self._nodes.get(key)
-        return self._add(key) if number is None else number
-
-    def _add(self, key: tuple[int, int, int]) -> int:
-        number = len(self.atom)
-        self._nodes[key] = number
-        self.atom.append(key[0])
-        self.low.append(key[1])
-        self.high.append(key[2])
+    def _inner(self, key: tuple[int, int, int]) -> int:
+        """Add an inner node that is not in the table yet."""
+        if self._work is not None:
+            self._work.spend()
+        number = self._nodes[key] = self._add(*key, None)
         return number
+
+    def _add(self, variable: int, low: int, high: int, value: Leaf | None) -> int:
+        self.variable.append(variable)
+        self.low.append(low)
+        self.high.append(high)
+        self.value.append(value)
+        return len(self.variable) - 1
 
     # --- operations ---------------------------------------------------------------------------
-    # Each is a closure over the tables: attribute look-ups would cost a third of the run time.
+    # Most are closures over the tables: attribute look-ups would cost a third of the run time.
 
     def _node_maker(self) -> Callable[[int, int, int], int]:
-        nodes, add = self._nodes, self._add
+        nodes, inner = self._nodes, self._inner
 
-        def node(atom: int, low: int, high: int) -> int:
-            """Return the transition ``high`` on letters with the atom, ``low`` on the others."""
+        def node(variable: int, low: int, high: int) -> int:
+            """Return the function ``high`` where the variable holds, ``low`` elsewhere."""
             if low == high:
                 return low
-            key = (atom, low, high)
+            key = (variable, low, high)
             number = nodes.get(key)
-            return add(key) if number is None else number
+            return inner(key) if number is None else number
 
         return node
 
-    def _obligation_operation(self, absorbing: int, neutral: int) -> Callable[[int, int], int]:
-        variable, absent, present, make = self.variable, self.absent, self.present, self.obligation
-        memo: dict[tuple[int, int], int] = {}
-        self._memos.append(memo)
-
-        def operate(x: int, y: int) -> int:
-            if x == y or y == neutral:
-                return x
-            if x == neutral:
-                return y
-            if x == absorbing or y == absorbing:
-                return absorbing
-            key = (x, y) if x < y else (y, x)
-            result = memo.get(key)
-            if result is None:
-                if len(memo) >= self.step_limit:
-                    raise OutOfSteps
-                vx, vy = variable[x], variable[y]
-                if vx == vy:
-                    result = make(vx, operate(absent[x], absent[y]), operate(present[x], present[y]))
-                elif vx < vy:
-                    result = make(vx, operate(absent[x], y), operate(present[x], y))
-                else:
-                    result = make(vy, operate(x, absent[y]), operate(x, present[y]))
-                memo[key] = result
-            return result
-
-        return operate
-
-    def _transition_operation(
-        self, absorbing: int, neutral: int, combine: Callable[[int, int], int], *, conjunction: bool
+    def lattice_operation(
+        self,
+        combine: Callable[[Any, Any], Leaf],
+        limit: StepLimit,
+        *,
+        absorbing: int,
+        neutral: int,
+        undefined: int = _NO_NODE,
     ) -> Callable[[int, int], int]:
-        atom, low, high, nodes, add = self.atom, self.low, self.high, self._nodes, self._add
-        memo: dict[tuple[int, int], int] = {}
-        self._memos.append(memo)
+        """Return an operation on two functions that applies ``combine`` to their values.
+
+        ``combine`` must be commutative and idempotent.  ``absorbing`` and ``neutral`` are the leaves
+        of its absorbing and its neutral value.  ``undefined`` is a leaf that wins over every function
+        except ``absorbing``.  The operation raises :class:`OutOfSteps` after ``limit.steps`` steps.
+        """
+        variable, low, high, value = self.variable, self.low, self.high, self.value
+        nodes, inner, leaf = self._nodes, self._inner, self.leaf
+        memo = limit.memo()
 
         def operate(x: int, y: int) -> int:
             if x == y or y == neutral:
@@ -190,88 +163,84 @@ class Diagrams:
             result = memo.get(key)
             if result is not None:
                 return result
-            if x == IMPOSSIBLE or y == IMPOSSIBLE:
-                return IMPOSSIBLE
-            if len(memo) >= self.step_limit:
+            if x == undefined or y == undefined:
+                return undefined
+            if len(memo) >= limit.steps:
                 raise OutOfSteps
-            ax, ay = atom[x], atom[y]
-            if ax == ay:
-                if ax == LEAF:
-                    accepted = high[x] & high[y] if conjunction else high[x] | high[y]
-                    triple = (LEAF, combine(low[x], low[y]), accepted)
-                    result = nodes.get(triple)
-                    memo[key] = result = add(triple) if result is None else result
+            vx, vy = variable[x], variable[y]
+            if vx == vy:
+                if vx == LEAF:
+                    memo[key] = result = leaf(combine(value[x], value[y]))
                     return result
                 below, above = operate(low[x], low[y]), operate(high[x], high[y])
-            elif ax < ay:
+            elif vx < vy:
                 below, above = operate(low[x], y), operate(high[x], y)
             else:
-                ax = ay
+                vx = vy
                 below, above = operate(x, low[y]), operate(x, high[y])
             if below == above:
                 result = below
             else:
-                triple = (ax, below, above)
+                triple = (vx, below, above)
                 result = nodes.get(triple)
                 if result is None:
-                    result = add(triple)
+                    result = inner(triple)
             memo[key] = result
             return result
 
         return operate
 
-    def constrain(self, transition: int, allowed: int) -> int:
-        """Return the transition on letters where ``allowed`` is ``ACCEPT``, ``IMPOSSIBLE`` on the others.
+    def combined(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
+        """Return the function that applies ``combine`` to the values of x and y; any ``combine`` will do.
 
-        ``allowed`` is a Boolean function of the letter: a transition whose leaves are ``ACCEPT``
-        and ``REJECT``.
+        Calls with the same ``combine`` may share ``memo``.
         """
-        atom, low, high, node = self.atom, self.low, self.high, self.node
-        memo: dict[tuple[int, int], int] = {}
-
-        def operate(x: int, d: int) -> int:
-            if d == ACCEPT:
-                return x
-            if d == REJECT:
-                return IMPOSSIBLE
-            key = (x, d)
-            result = memo.get(key)
-            if result is None:
-                ax, ad = atom[x], atom[d]
-                if ax == ad:
-                    result = node(ax, operate(low[x], low[d]), operate(high[x], high[d]))
-                elif ax < ad:
-                    result = node(ax, operate(low[x], d), operate(high[x], d))
-                else:
-                    result = node(ad, operate(x, low[d]), operate(x, high[d]))
-                memo[key] = result
+        result = memo.get((x, y))
+        if result is not None:
             return result
+        vx, vy = self.variable[x], self.variable[y]
+        if vx == vy == LEAF:
+            result = self.leaf(combine(self.value[x], self.value[y]))
+        else:
+            if self._work is not None:
+                self._work.spend()
+            first = min(vx, vy)
+            low_x, high_x = (self.low[x], self.high[x]) if vx == first else (x, x)
+            low_y, high_y = (self.low[y], self.high[y]) if vy == first else (y, y)
+            low, high = self.combined(combine, low_x, low_y, memo), self.combined(combine, high_x, high_y, memo)
+            result = self.node(first, low, high)
+        memo[x, y] = result
+        return result
 
-        return operate(transition, allowed)
+    def mapped(self, change: Callable[[Any], Leaf], x: int, memo: dict[int, int]) -> int:
+        """Return the function with ``change`` applied to every value.
 
-    def relabel(self, transition: int, leaf_map: Callable[[int], int], memo: dict[int, int]) -> int:
-        """Return the transition with ``leaf_map`` applied to each leaf; calls with the same map may share ``memo``."""
-        atom, low, high, node = self.atom, self.low, self.high, self.node
+        Calls with the same ``change`` may share ``memo``, from nodes to results.  A leaf that is in
+        ``memo`` before the first call gets that result.
+        """
+        variable, low, high, value, node, leaf = self.variable, self.low, self.high, self.value, self.node, self.leaf
 
         def rebuild(n: int) -> int:
             result = memo.get(n)
             if result is None:
-                a = atom[n]
-                result = leaf_map(n) if a == LEAF else node(a, rebuild(low[n]), rebuild(high[n]))
+                tested = variable[n]
+                result = leaf(change(value[n])) if tested == LEAF else node(tested, rebuild(low[n]), rebuild(high[n]))
                 memo[n] = result
             return result
 
-        return rebuild(transition)
+        return rebuild(x)
 
-    def leaves(self, *transitions: int) -> list[int]:
-        """Return the distinct leaves of transitions, left to right."""
-        atom, low, high = self.atom, self.low, self.high
+    # --- reading ------------------------------------------------------------------------------
+
+    def leaves(self, *functions: int) -> list[int]:
+        """Return the distinct leaves of functions, left to right."""
+        variable, low, high = self.variable, self.low, self.high
         leaves: list[int] = []
-        stack = list(dict.fromkeys(reversed(transitions)))
+        stack = list(dict.fromkeys(reversed(functions)))
         seen = set(stack)
         while stack:
             n = stack.pop()
-            if atom[n] == LEAF:
+            if variable[n] == LEAF:
                 leaves.append(n)
                 continue
             for child in (high[n], low[n]):
@@ -279,3 +248,58 @@ class Diagrams:
                     seen.add(child)
                     stack.append(child)
         return leaves
+
+    def values(self, x: int) -> list[Any]:
+        """Return the distinct values of a function, left to right."""
+        return [self.value[leaf] for leaf in self.leaves(x)]
+
+    def assignment_with(self, x: int, value: Leaf) -> frozenset[int]:
+        """Return the variables that hold in some assignment to which a function gives a value.
+
+        Raises ValueError if there is none.
+        """
+        stack: list[tuple[int, tuple[int, ...]]] = [(x, ())]
+        seen = {x}
+        while stack:
+            n, holding = stack.pop()
+            if self.variable[n] == LEAF:
+                if self.value[n] == value:
+                    return frozenset(holding)
+                continue
+            for child, extended in ((self.high[n], (*holding, self.variable[n])), (self.low[n], holding)):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append((child, extended))
+        raise ValueError(f"no assignment has the value {value!r}")
+
+    def at(self, x: int, holds: Callable[[int], bool]) -> Any:
+        """Return the value under an assignment; ``holds`` returns for a variable whether it holds."""
+        while self.variable[x] != LEAF:
+            x = self.high[x] if holds(self.variable[x]) else self.low[x]
+        return self.value[x]
+
+
+def at_most_one(
+    diagrams: Diagrams[Any],
+    groups: Iterable[Sequence[int]],
+    yes: Hashable,
+    no: Hashable,
+    conjoin: Callable[[int, int], int] | None = None,
+) -> int:
+    """Return the function that is ``yes`` where at most one variable of each group holds, ``no`` elsewhere.
+
+    ``conjoin``, if given, is the conjunction of functions to these two values.
+    """
+
+    def combined(x: int, y: int) -> int:
+        return diagrams.combined(lambda one, other: other if one == yes else no, x, y, {})
+
+    always, never = diagrams.leaf(yes), diagrams.leaf(no)
+    join, allowed = conjoin or combined, always
+    for group in groups:
+        none, one = always, always
+        for variable in sorted(set(group), reverse=True):
+            one = diagrams.node(variable, one, none)
+            none = diagrams.node(variable, none, never)
+        allowed = join(allowed, one)
+    return allowed

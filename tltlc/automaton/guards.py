@@ -1,7 +1,7 @@
 """Guards: Boolean functions of the atoms, written as their prime implicants and as a short text.
 
 A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT``
-(:mod:`tltlc.automaton.diagrams`).  A literal is the int ``2 * atom + polarity``; a cube is an
+(:mod:`tltlc.automaton.transitions`).  A literal is the int ``2 * atom + polarity``; a cube is an
 ascending tuple of literals.
 """
 
@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, REJECT, Diagrams
+from tltlc.automaton.diagrams import LEAF
 from tltlc.automaton.fspa import Implicant
+from tltlc.automaton.transitions import ACCEPT, IMPOSSIBLE, REJECT, TransitionDiagrams
 from tltlc.io.limits import WORK
 from tltlc.logic import formula as build
 from tltlc.logic.text.printer import operand_text
@@ -68,7 +69,7 @@ class Guards:
         "_total",
     )
 
-    def __init__(self, diagrams: Diagrams, names: Sequence[str], allowed: int = ACCEPT) -> None:
+    def __init__(self, diagrams: TransitionDiagrams, names: Sequence[str], allowed: int = ACCEPT) -> None:
         self._diagrams = diagrams
         self._allowed = allowed
         self._names = names
@@ -93,7 +94,7 @@ class Guards:
         guards = self._by_leaf.get(transition)
         if guards is None:
             diagrams = self._diagrams
-            atom = diagrams.atom[transition]
+            atom = diagrams.variable[transition]
             if atom == LEAF:
                 guards = {transition: ACCEPT}
             else:
@@ -187,7 +188,7 @@ class Guards:
     def _negation(self, guard: int) -> int:
         negations = self._negations
         negation = negations.get(guard)
-        return self._diagrams.relabel(guard, negations.__getitem__, negations) if negation is None else negation
+        return self._diagrams.mapped(_negated, guard, negations) if negation is None else negation
 
     def _possible(self, cube: Cube) -> bool:
         """Whether some allowed letter satisfies the cube; cached, since guards share many cubes."""
@@ -207,7 +208,7 @@ class Guards:
                 return True
             if node == REJECT:
                 continue
-            polarity = wanted.get(diagrams.atom[node])
+            polarity = wanted.get(diagrams.variable[node])
             for value, child in ((0, diagrams.low[node]), (1, diagrams.high[node])):
                 if polarity in (None, value) and child not in seen:
                     seen.add(child)
@@ -223,7 +224,7 @@ class Guards:
         known = self._primes.get(function)
         if known is None:
             diagrams = self._diagrams
-            atom, low, high = diagrams.atom[function], diagrams.low[function], diagrams.high[function]
+            atom, low, high = diagrams.variable[function], diagrams.low[function], diagrams.high[function]
             shared = self._all_primes(diagrams.conjoin(low, high))
             common = set(shared)
             known = (
@@ -245,7 +246,7 @@ class Guards:
         if cover is None:
             diagrams, negation = self._diagrams, self._negation
             conjoin, disjoin = diagrams.conjoin, diagrams.disjoin
-            atom = min(diagrams.atom[lower], diagrams.atom[upper])
+            atom = min(diagrams.variable[lower], diagrams.variable[upper])
             lower0, lower1 = _cofactors(diagrams, lower, atom)
             upper0, upper1 = _cofactors(diagrams, upper, atom)
             # First cover what needs a product with a literal of the atom, then the rest without one.
@@ -272,7 +273,12 @@ class Guards:
             raise TooManyPrimes("all guards", WORK["partial products"], "partial products")
 
 
-def _cofactors(diagrams: Diagrams, function: int, atom: int) -> tuple[int, int]:
-    if diagrams.atom[function] != atom:
+def _negated(leaf: tuple[int, int]) -> tuple[int, int]:
+    """Return the other value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``."""
+    return 1 - leaf[0], 1 - leaf[1]
+
+
+def _cofactors(diagrams: TransitionDiagrams, function: int, atom: int) -> tuple[int, int]:
+    if diagrams.variable[function] != atom:
         return function, function
     return diagrams.low[function], diagrams.high[function]

@@ -13,11 +13,12 @@ from itertools import combinations
 
 from tltlc import __version__
 from tltlc.artefact.size import check_size
-from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.infinite.mark_conditions import pair_marks
+from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import visible
 
@@ -101,10 +102,8 @@ class _Labels:
     """
 
     def __init__(self, fspa: Fspa) -> None:
-        from tltlc.automaton.finite.build import allowed_letters
-
-        self._diagrams = Diagrams()
-        self._allowed = allowed_letters(self._diagrams, fspa.exclusive)
+        self._diagrams = TransitionDiagrams()
+        self._allowed = self._diagrams.allowed_letters(fspa.exclusive)
         self._guards = Guards(self._diagrams, [str(number) for number in range(len(fspa.atoms))], self._allowed)
         self._known: dict[tuple[Implicant, ...], str] = {}
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.pairs import Piece
 from tltlc.automaton.infinite.state_merging import shrunk
 from tltlc.automaton.work import Work
@@ -14,7 +14,7 @@ from tltlc.automaton.work import Work
 A, B, C = ("a",), ("b",), ("c",)
 
 
-def piece(letters: Letters[Any], *, pairs: int, marked: frozenset[Any]) -> Piece:
+def piece(letters: Diagrams[Any], *, pairs: int, marked: frozenset[Any]) -> Piece:
     """Return a component: ``a`` goes to ``c`` on one letter, ``c`` to ``b``, ``b`` to ``a``; ``a`` also has a loop.
 
     The loop has the marks ``marked``.
@@ -27,13 +27,13 @@ def piece(letters: Letters[Any], *, pairs: int, marked: frozenset[Any]) -> Piece
 
 @pytest.mark.parametrize("pairs", [1, 600])
 def test_states_reached_only_through_a_removed_state_are_removed(pairs: int) -> None:
-    letters: Letters[Any] = Letters(Work(10**6))
+    letters: Diagrams[Any] = Diagrams(Work(10**6))
     small = shrunk(letters, piece(letters, pairs=pairs, marked=frozenset({(0, "inf")})), letters.work, 10**6)
     assert list(small.steps) == [A]
 
 
 def test_loops_with_other_marks_stay() -> None:
-    letters: Letters[Any] = Letters(Work(10**6))
+    letters: Diagrams[Any] = Diagrams(Work(10**6))
     whole = piece(letters, pairs=1, marked=frozenset())
     small = shrunk(letters, whole, letters.work, 10**6)
     marks = {marks for step in small.steps.values() for _, marks in letters.values(step)}
@@ -42,7 +42,7 @@ def test_loops_with_other_marks_stay() -> None:
 
 @pytest.mark.parametrize("pair", [0, 599])
 def test_marks_of_many_pairs_are_distinct(pair: int) -> None:
-    letters: Letters[Any] = Letters(Work(10**6))
+    letters: Diagrams[Any] = Diagrams(Work(10**6))
     accepted, rejected = frozenset({(pair, "inf")}), frozenset({(pair, "fin")})
     steps = {
         A: letters.leaf((B, accepted)),

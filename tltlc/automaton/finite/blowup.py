@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
-from tltlc.automaton.diagrams import Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.labels import LabelsTooLong
 from tltlc.automaton.finite.machine import OutOfStates, machine
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.guards import TooManyPrimes
+from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.normal_form import negation_normal_form
@@ -124,7 +125,7 @@ def _cause(part: Part) -> Label:
 def _size(part: Part, spec: Spec) -> Size | None:
     """Return how many states one part's automaton has; None for :data:`_PART_BUDGET` or more."""
     normal = negation_normal_form(part.formula)
-    successors = Successors([atom.name for atom in spec.atoms], Diagrams(step_limit=100_000))
+    successors = Successors([atom.name for atom in spec.atoms], TransitionDiagrams(steps=100_000))
     successors.number_variables(normal)
     try:
         states = len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)

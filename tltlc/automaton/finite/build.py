@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
-from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import blow_up, recursion_room
 from tltlc.automaton.finite.composition import minimal_machine as compose
 from tltlc.automaton.finite.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooLong
@@ -19,6 +19,7 @@ from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.judge import default_judge, judge_of
+from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Signal as SignalValue
 from tltlc.io.limits import WORK
@@ -52,14 +53,14 @@ def minimal_machine(
     atoms: Sequence[str],
     state_budget: int,
     exclusive: Iterable[Sequence[int]] = (),
-    diagrams: Diagrams | None = None,
+    diagrams: TransitionDiagrams | None = None,
 ) -> tuple[Successors, Machine, int]:
     """Return the tables of a formula's minimal machine, the machine, and the letters that ``exclusive`` allows."""
     normal = negation_normal_form(formula)
-    diagrams = Diagrams() if diagrams is None else diagrams
+    diagrams = TransitionDiagrams() if diagrams is None else diagrams
     successors = Successors(atoms, diagrams)
     successors.number_variables(normal)
-    allowed = allowed_letters(diagrams, exclusive)
+    allowed = diagrams.allowed_letters(exclusive)
     return successors, compose(successors, normal, state_budget, allowed), allowed
 
 
@@ -81,24 +82,24 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
     the default limit).
     """
     names = [atom.name for atom in spec.atoms]
-    diagrams = Diagrams()
+    diagrams = TransitionDiagrams()
 
     def bounded_steps() -> AbstractContextManager[None]:
-        return diagrams.at_most(steps) if steps is not None else nullcontext()
+        return diagrams.limit.at_most(steps) if steps is not None else nullcontext()
 
     with bounded_steps():
         successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive, diagrams)
     targets = _targets(minimal, diagrams)
-    distance = distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    distance = distances(targets, accepting=lambda leaf: diagrams.value[leaf][1] == 1)
     order = breadth_first(next(iter(targets)), targets, distance)
-    verdict = verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    verdict = verdicts(targets, distance, accepting=lambda leaf: diagrams.value[leaf][1] == 1)
     labels = _labels(spec.formula, successors, minimal, order, allowed)
 
     states = tuple(
         State(
             id=number,
             label=labels[leaf],
-            accepting=diagrams.high[leaf] == 1,
+            accepting=diagrams.value[leaf][1] == 1,
             verdict=verdict[leaf],
             distance=distance[leaf],
         )
@@ -127,35 +128,23 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
     )
 
 
-def allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:
-    """Return the letters with at most one atom of each group, as a transition to ``ACCEPT`` or ``REJECT``."""
-    allowed = ACCEPT
-    for group in exclusive:
-        none, at_most_one = ACCEPT, ACCEPT
-        for atom in sorted(set(group), reverse=True):
-            at_most_one = diagrams.node(atom, at_most_one, none)
-            none = diagrams.node(atom, none, REJECT)
-        allowed = diagrams.conjoin(allowed, at_most_one)
-    return allowed
-
-
 # --- states ---------------------------------------------------------------------------------------
 # A state is a leaf: the obligation that remains, and whether the trace may end here.
 
 
-def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
+def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
     """Return the states of the automaton, the initial one first.
 
     No trace is empty, so the initial state may accept or reject.  It is merged with the leaf of its
     obligation that is reached; if both leaves are reached, or none, it is the rejecting one.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
-    rejecting, accepting = diagrams.leaf(minimal.initial, 0), diagrams.leaf(minimal.initial, 1)
+    rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
     initial = accepting if accepting in reached and rejecting not in reached else rejecting
     return [initial, *(leaf for leaf in reached if leaf not in (initial, IMPOSSIBLE))]
 
 
-def _targets(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
+def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[int]]:
     """Map each state, the initial one first, to the states that it leads to, with one edge to each.
 
     Raises :class:`TooManyPrimes` if there are more edges than the row "edges" of ``WORK`` allows.
@@ -163,7 +152,7 @@ def _targets(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
     targets: dict[int, list[int]] = {}
     left = WORK["edges"]
     for leaf in state_leaves(minimal, diagrams):
-        reached = diagrams.leaves(minimal.transitions[diagrams.low[leaf]])
+        reached = diagrams.leaves(minimal.transitions[diagrams.value[leaf][0]])
         targets[leaf] = [target for target in reached if target != IMPOSSIBLE]
         left -= len(targets[leaf])
         if left < 0:
@@ -230,12 +219,12 @@ def verdicts(
     return {state: verdict(state) for state in targets}
 
 
-def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Diagrams) -> tuple[Edge, ...]:
+def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: TransitionDiagrams) -> tuple[Edge, ...]:
     number = {leaf: index for index, leaf in enumerate(order)}
     guard_of: dict[int, Guard] = {}
     edges: list[Edge] = []
     for source, leaf in enumerate(order):
-        for target, guard in guards.by_leaf(minimal.transitions[diagrams.low[leaf]]).items():
+        for target, guard in guards.by_leaf(minimal.transitions[diagrams.value[leaf][0]]).items():
             if guard not in guard_of:
                 guard_of[guard] = Guard(guards.text(guard), guards.primes(guard))
             edges.append(Edge(source, number[target], guard_of[guard]))
@@ -266,7 +255,8 @@ def _labels(
         if left < 0:
             raise LabelsTooLong
     texts = {state: text_of(formula) for state, formula in formulas.items()}
-    return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
+    value = diagrams.value
+    return {leaf: _at_the_end(texts[value[leaf][0]], value[leaf][1] == 1) for leaf in order}
 
 
 def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formula]:

@@ -12,10 +12,11 @@ from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, LEAF, TRUE, Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import LEAF, OutOfSteps
 from tltlc.automaton.finite.estimate import Estimate
 from tltlc.automaton.finite.machine import Machine, OutOfStates, machine
 from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.transitions import ACCEPT, FALSE, IMPOSSIBLE, TRUE, TransitionDiagrams
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
@@ -48,7 +49,7 @@ class _Composition:
         if formula.op not in ("and", "or"):
             return self._machine(whole)
         try:
-            with self._successors.diagrams.at_most(WHOLE_STEPS):
+            with self._successors.diagrams.limit.at_most(WHOLE_STEPS):
                 return self._machine(whole)
         except (OutOfStates, OutOfSteps, RecursionError):
             return self._by_parts(formula)
@@ -62,7 +63,7 @@ class _Composition:
 
     def _by_parts(self, formula: Formula) -> Machine:
         diagrams = self._successors.diagrams
-        join = diagrams.both if formula.op == "and" else diagrams.either
+        join = diagrams.obligations.both if formula.op == "and" else diagrams.obligations.either
         machines = [self.minimal(part) for part in formula.args]
         if self._estimate.exceeds(machines, formula.op == "and", self._state_budget):
             raise OutOfStates
@@ -90,21 +91,18 @@ def _embedded(successors: Successors, minimal: Machine) -> int:
         if obligations[state] not in (FALSE, TRUE):
             successors.define_state(
                 obligations[state],
-                diagrams.relabel(
-                    transition,
-                    lambda leaf: diagrams.leaf(obligations[diagrams.low[leaf]], diagrams.high[leaf]),
-                    memo,
-                ),
+                diagrams.mapped(lambda leaf: (obligations[leaf[0]], leaf[1]), transition, memo),
             )
     return obligations[minimal.initial]
 
 
-def _settled(diagrams: Diagrams, state: int, transition: int) -> int | None:
+def _settled(diagrams: TransitionDiagrams, state: int, transition: int) -> int | None:
     """Return TRUE or FALSE for a state that every possible letter leads back to, None for the others."""
     # The empty letter is always possible: if it leads elsewhere, the other letters do not matter.
     leaf = transition
-    while diagrams.atom[leaf] != LEAF:
+    while diagrams.variable[leaf] != LEAF:
         leaf = diagrams.low[leaf]
-    if diagrams.low[leaf] != state or any(other not in (leaf, IMPOSSIBLE) for other in diagrams.leaves(transition)):
+    following, accepted = diagrams.value[leaf]
+    if following != state or any(other not in (leaf, IMPOSSIBLE) for other in diagrams.leaves(transition)):
         return None
-    return TRUE if diagrams.high[leaf] else FALSE
+    return TRUE if accepted else FALSE

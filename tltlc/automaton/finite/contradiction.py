@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tltlc.automaton.diagrams import IMPOSSIBLE, Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import minimal_machine
 from tltlc.automaton.finite.machine import OutOfStates
+from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.logic.formula import and_
 from tltlc.resolve.spec import Part, Spec
 
@@ -42,10 +43,12 @@ def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
     names = [atom.name for atom in spec.atoms]
     try:
         with recursion_room():
-            successors, machine, _ = minimal_machine(whole, names, _STATES, spec.exclusive, Diagrams(step_limit=_STEPS))
+            successors, machine, _ = minimal_machine(
+                whole, names, _STATES, spec.exclusive, TransitionDiagrams(steps=_STEPS)
+            )
     except (OutOfStates, OutOfSteps, RecursionError):
         return False
     diagrams = successors.diagrams
     # The minimal machine of `false` has one state: a trap that no possible letter leaves or accepts in.
     leaves = [leaf for leaf in diagrams.leaves(*machine.transitions.values()) if leaf != IMPOSSIBLE]
-    return len(machine.transitions) == 1 and not any(diagrams.high[leaf] for leaf in leaves)
+    return len(machine.transitions) == 1 and not any(diagrams.value[leaf][1] for leaf in leaves)

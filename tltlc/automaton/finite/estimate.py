@@ -18,8 +18,9 @@ from math import prod
 from operator import and_, or_
 from typing import Final
 
-from tltlc.automaton.diagrams import IMPOSSIBLE, LEAF, Diagrams
+from tltlc.automaton.diagrams import LEAF
 from tltlc.automaton.finite.machine import Machine
+from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 
 _NONE: Final = -1
 """The letter without an atom; every other letter is the index of its atom."""
@@ -38,7 +39,7 @@ class _OutOfSteps(Exception):
 class Estimate:
     """Counts the states of products; ``steps`` bounds the look-ups of all counts together."""
 
-    def __init__(self, diagrams: Diagrams, steps: int) -> None:
+    def __init__(self, diagrams: TransitionDiagrams, steps: int) -> None:
         self._diagrams = diagrams
         self._left = steps
         self._known: dict[int, int] = {}
@@ -82,7 +83,7 @@ class Estimate:
 
     def _table(self, machine: Machine) -> _Table:
         """Return the moves of a machine, for the letters that ``exclusive`` allows."""
-        low, high = self._diagrams.low, self._diagrams.high
+        value = self._diagrams.value
         leaves = {state: self._leaves(transition) for state, transition in machine.transitions.items()}
         letters = sorted(set().union(*leaves.values()))
         self._take(len(letters) * len(leaves))
@@ -91,12 +92,12 @@ class Estimate:
             reached = {state: of_state.get(letter, of_state[_NONE]) for state, of_state in leaves.items()}
             # Impossible letters are left out; they are the same for all machines.
             if IMPOSSIBLE not in reached.values():
-                table[letter] = {state: (low[leaf], high[leaf]) for state, leaf in reached.items()}
+                table[letter] = {state: value[leaf] for state, leaf in reached.items()}
         return table
 
     def _leaves(self, node: int) -> dict[int, int]:
         """Map letters to the leaves of a transition; a missing letter leads to the leaf of ``_NONE``."""
-        atom, low, high = self._diagrams.atom, self._diagrams.low, self._diagrams.high
+        atom, low, high = self._diagrams.variable, self._diagrams.low, self._diagrams.high
         leaves = {}
         while atom[node] != LEAF:
             self._take(1)
@@ -106,7 +107,7 @@ class Estimate:
 
     def _without_atoms(self, node: int) -> int:
         """Return the leaf below a node for the letter without further atoms; cached for all nodes on the path."""
-        atom, low, known = self._diagrams.atom, self._diagrams.low, self._known
+        atom, low, known = self._diagrams.variable, self._diagrams.low, self._known
         path = []
         while node not in known and atom[node] != LEAF:
             path.append(node)

@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, TRUE, OutOfSteps
+from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.machine import Machine, stands_for
 from tltlc.automaton.finite.readback import Writer
 from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.transitions import ACCEPT, FALSE, TRUE
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
 from tltlc.logic.rewrite import simplify
@@ -143,7 +144,7 @@ class Labels:
             return False
         successors = self._successors
         try:
-            with successors.diagrams.at_most(_PROOF_STEPS):
+            with successors.diagrams.limit.at_most(_PROOF_STEPS):
                 obligation = label if isinstance(label, int) else successors.obligation(label)
                 if (obligation, state) in self._refuted:
                     return False

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import LEAF, OutOfSteps
 from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.transitions import ACCEPT, IMPOSSIBLE, TransitionDiagrams
 from tltlc.core.record import record
 
 
@@ -36,7 +37,7 @@ class Machine:
 def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
     """Return the minimal machine of an obligation over the letters that ``allowed`` accepts.
 
-    ``allowed`` is a transition as in :meth:`Diagrams.constrain`.  Raises :class:`OutOfStates` if
+    ``allowed`` is a transition as in :meth:`TransitionDiagrams.constrain`.  Raises :class:`OutOfStates` if
     more than ``state_budget`` obligations are reached, and :class:`OutOfSteps` if their transitions
     take too many steps.
     """
@@ -46,7 +47,7 @@ def machine(successors: Successors, obligation: int, state_budget: int, allowed:
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
     """Return the transition of every reachable obligation in breadth-first order, the initial one first."""
     diagrams = successors.diagrams
-    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     transition_of = successors.of_obligation
     transitions: dict[int, int] = {}
     seen = {initial}
@@ -69,9 +70,9 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
             if atom[node] != LEAF:
                 stack.append(high[node])
                 stack.append(low[node])
-            elif low[node] not in seen:
-                seen.add(low[node])
-                queue.append(low[node])
+            elif value[node][0] not in seen:
+                seen.add(value[node][0])
+                queue.append(value[node][0])
     return transitions
 
 
@@ -84,7 +85,7 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
     in Hopcroft's algorithm.
     """
     diagrams = successors.diagrams
-    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     block = dict.fromkeys(transitions, 0)
     members: list[list[int]] = [list(transitions)]
     states_of: dict[int, list[int]] = {}
@@ -102,7 +103,8 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
         # A node is made after its children, so ascending order visits children first.
         for node in changed:
             if atom[node] == LEAF:
-                new = -1 if node == IMPOSSIBLE else -2 - 2 * block[low[node]] - high[node]
+                following, accepted = value[node]
+                new = -1 if node == IMPOSSIBLE else -2 - 2 * block[following] - accepted
             else:
                 below, above = signature[low[node]], signature[high[node]]
                 if below == above:
@@ -145,16 +147,16 @@ def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
     return ancestors
 
 
-def _links(diagrams: Diagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+def _links(diagrams: TransitionDiagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
     """Return the parents of every node under ``roots``, and the leaves that lead to each state."""
-    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     parents: dict[int, list[int]] = {root: [] for root in roots}
     leaves_of: dict[int, list[int]] = {}
     stack = list(parents)
     while stack:
         node = stack.pop()
         if atom[node] == LEAF:
-            leaves_of.setdefault(low[node], []).append(node)
+            leaves_of.setdefault(value[node][0], []).append(node)
             continue
         for child in (low[node], high[node]):
             known = parents.get(child)
@@ -179,13 +181,13 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
         representative.update(dict.fromkeys(group, first))
     memo: dict[int, int] = {IMPOSSIBLE: IMPOSSIBLE}
 
-    def to_representative(leaf: int) -> int:
-        return diagrams.leaf(representative[diagrams.low[leaf]], diagrams.high[leaf])
+    def to_representative(leaf: tuple[int, int]) -> tuple[int, int]:
+        return representative[leaf[0]], leaf[1]
 
     return Machine(
         initial=initial,
         transitions={
-            state: diagrams.relabel(transition, to_representative, memo)
+            state: diagrams.mapped(to_representative, transition, memo)
             for state, transition in transitions.items()
             if representative[state] == state
         },
@@ -210,7 +212,7 @@ def stands_for(
     after ``pair_limit`` obligations.
     """
     diagrams = successors.diagrams
-    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     if obligation in known:
         return known[obligation] == state
     assumed = {obligation: state}
@@ -229,13 +231,14 @@ def stands_for(
             if am == an == LEAF:
                 if m == n == IMPOSSIBLE:
                     continue
-                if IMPOSSIBLE in (m, n) or high[m] != high[n]:
+                (following, accepted), (expected, accepting) = value[m], value[n]
+                if IMPOSSIBLE in (m, n) or accepted != accepting:
                     return False
-                matched = known.get(low[m], assumed.get(low[m]))
+                matched = known.get(following, assumed.get(following))
                 if matched is None:
-                    assumed[low[m]] = low[n]
-                    queue.append(low[m])
-                elif matched != low[n]:
+                    assumed[following] = expected
+                    queue.append(following)
+                elif matched != expected:
                     return False
                 continue
             lows = (low[m] if am <= an else m, low[n] if an <= am else n)

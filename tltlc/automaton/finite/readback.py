@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 
-from tltlc.automaton.diagrams import FALSE, TRUE
 from tltlc.automaton.finite.successors import Successors
+from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
 from tltlc.logic.bounded import bounded, counted_down
 from tltlc.logic.formula import Formula
@@ -48,15 +48,15 @@ class Writer:
 
     def support(self, obligation: int) -> list[int]:
         """Return the variables that the obligation depends on, ascending."""
-        diagrams = self._successors.diagrams
+        obligations = self._successors.diagrams.obligations
         seen, stack = {FALSE, TRUE, obligation}, [obligation]
         variables: set[int] = set()
         while stack:
             node = stack.pop()
             if node in (FALSE, TRUE):
                 continue
-            variables.add(diagrams.variable[node])
-            for child in (diagrams.absent[node], diagrams.present[node]):
+            variables.add(obligations.variable[node])
+            for child in (obligations.low[node], obligations.high[node]):
                 if child not in seen:
                     seen.add(child)
                     stack.append(child)
@@ -64,20 +64,20 @@ class Writer:
 
     def restricted(self, obligation: int, variables: Collection[int], value: bool) -> int:
         """Return the obligation with all the variables set to ``value``."""
-        diagrams = self._successors.diagrams
+        obligations = self._successors.diagrams.obligations
         last = max(variables)
         memo: dict[int, int] = {}
 
         def restrict(node: int) -> int:
-            tested = diagrams.variable[node]
+            tested = obligations.variable[node]
             if tested > last:
                 return node
             if tested in variables:
-                return restrict(diagrams.present[node] if value else diagrams.absent[node])
+                return restrict(obligations.high[node] if value else obligations.low[node])
             result = memo.get(node)
             if result is None:
-                absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
-                result = memo[node] = diagrams.obligation(tested, absent, present)
+                absent, present = restrict(obligations.low[node]), restrict(obligations.high[node])
+                result = memo[node] = obligations.node(tested, absent, present)
             return result
 
         return restrict(obligation)
@@ -95,7 +95,8 @@ class Writer:
         return known
 
     def _with_longest_bounds(self, obligation: int) -> int:
-        diagrams, successors = self._successors.diagrams, self._successors
+        successors = self._successors
+        obligations = successors.diagrams.obligations
         removed: set[int] = set()
         for variable in self.support(obligation):
             formula = successors.formulas[variable]
@@ -113,7 +114,7 @@ class Writer:
                 continue
             # Obligations are monotone in their temporal variables.
             without, with_ = (self.restricted(smaller, (variable,), value) for value in (False, True))
-            if diagrams.either(without, diagrams.both(successors.obligation(formula), with_)) == obligation:
+            if obligations.either(without, obligations.both(successors.obligation(formula), with_)) == obligation:
                 obligation = smaller
                 removed |= shorter_variables
         return obligation
@@ -130,7 +131,7 @@ class Writer:
             return 0, build.FALSE
         if obligation == TRUE:
             return 0, build.TRUE
-        first = self._successors.diagrams.variable[obligation]
+        first = self._successors.diagrams.obligations.variable[obligation]
         formula = self._successors.formulas[first]
         if formula is not None and self._successors.obligation(formula) == obligation:
             return self._literal(first, True)
@@ -148,10 +149,10 @@ class Writer:
         if terms is not None:
             products = [[self._literal(*literal) for literal in self._independent(term, FALSE)] for term in terms]
             return _joined(build.or_, [_joined(build.and_, product) for product in products])
-        diagrams = self._successors.diagrams
-        test = self._literal(diagrams.variable[obligation], True)
-        present = _joined(build.and_, [test, self._placed(diagrams.present[obligation])])
-        return _joined(build.or_, [present, self._placed(diagrams.absent[obligation])])
+        obligations = self._successors.diagrams.obligations
+        test = self._literal(obligations.variable[obligation], True)
+        present = _joined(build.and_, [test, self._placed(obligations.high[obligation])])
+        return _joined(build.or_, [present, self._placed(obligations.low[obligation])])
 
     def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
         """Return the common factors of the obligation, and the obligation without them.
@@ -194,10 +195,10 @@ class Writer:
         """Return the obligation as a sum of products, or None if it has too many terms."""
         if obligation in self._sums:
             return self._sums[obligation]
-        diagrams = self._successors.diagrams
-        variable = diagrams.variable[obligation]
-        absent, present = diagrams.absent[obligation], diagrams.present[obligation]
-        shared = diagrams.both(absent, present)
+        obligations = self._successors.diagrams.obligations
+        variable = obligations.variable[obligation]
+        absent, present = obligations.low[obligation], obligations.high[obligation]
+        shared = obligations.both(absent, present)
         common, alone = self._terms(shared), self._terms(present)
         # If the variable is temporal, the obligation is monotone in it: `shared` is `absent`, and no term negates it.
         without = common if shared == absent else self._terms(absent)

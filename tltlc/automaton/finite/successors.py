@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, REJECT, TRUE, Diagrams
+from tltlc.automaton.transitions import ACCEPT, FALSE, REJECT, TRUE, TransitionDiagrams
 from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
 
@@ -35,7 +35,7 @@ class Successors:
         "stands_for",
     )
 
-    def __init__(self, atoms: Sequence[str], diagrams: Diagrams) -> None:
+    def __init__(self, atoms: Sequence[str], diagrams: TransitionDiagrams) -> None:
         self.diagrams = diagrams
         self.formulas: list[Formula | None] = []
         self.stands_for: dict[int, int] = {}
@@ -74,19 +74,19 @@ class Successors:
         op = formula.op
         diagrams = self.diagrams
         if op == "and" or op == "or":
-            combine, result = (diagrams.both, TRUE) if op == "and" else (diagrams.either, FALSE)
+            combine, result = (diagrams.obligations.both, TRUE) if op == "and" else (diagrams.obligations.either, FALSE)
             for argument in reversed(formula.args):
                 result = combine(self.obligation(argument), result)
             return result
         if op == "true" or op == "false":
             return TRUE if op == "true" else FALSE
         if op == "not":
-            return diagrams.obligation(self.variable(formula.args[0]), TRUE, FALSE)
-        result = diagrams.obligation(self.variable(formula), FALSE, TRUE)
+            return diagrams.obligations.node(self.variable(formula.args[0]), TRUE, FALSE)
+        result = diagrams.obligations.node(self.variable(formula), FALSE, TRUE)
         for weaker in _implied_by(formula):
-            result = diagrams.both(result, self.obligation(weaker))
+            result = diagrams.obligations.both(result, self.obligation(weaker))
         for stronger in _that_imply(formula):
-            result = diagrams.either(result, self.obligation(stronger))
+            result = diagrams.obligations.either(result, self.obligation(stronger))
         return result
 
     def variable(self, formula: Formula) -> int:
@@ -102,18 +102,18 @@ class Successors:
         variable = len(self.formulas)
         self.formulas.append(None)
         self.stands_for[variable] = stands_for
-        return self.diagrams.obligation(variable, FALSE, TRUE)
+        return self.diagrams.obligations.node(variable, FALSE, TRUE)
 
     def define_state(self, state: int, transition: int) -> None:
         """Give an obligation made by :meth:`new_state` its transition."""
-        self._of_state[self.diagrams.variable[state]] = transition
+        self._of_state[self.diagrams.obligations.variable[state]] = transition
 
     def of_obligation(self, obligation: int) -> int:
         """Return the transition of an obligation."""
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
-        absent, present = self.diagrams.absent, self.diagrams.present
+        absent, present = self.diagrams.obligations.low, self.diagrams.obligations.high
         # No recursion: obligations are as deep as bounds are long.
         stack = [obligation]
         while stack:
@@ -134,7 +134,7 @@ class Successors:
         false and true.
         """
         diagrams = self.diagrams
-        variable = diagrams.variable[obligation]
+        variable = diagrams.obligations.variable[obligation]
         formula = self.formulas[variable]
         if formula is None:
             return diagrams.disjoin(absent, diagrams.conjoin(self._of_state[variable], present))
@@ -184,8 +184,8 @@ class Successors:
                 result = operate(known[argument], result)
             return result
         if op == "X" or op == "N":
-            return diagrams.leaf(self.obligation(args[0]), int(op == "N"))
-        again = diagrams.leaf(self.obligation(formula), int(op in "GWR"))
+            return diagrams.leaf((self.obligation(args[0]), int(op == "N")))
+        again = diagrams.leaf((self.obligation(formula), int(op in "GWR")))
         if op == "F":
             return disjoin(known[args[0]], again)
         if op == "G":

@@ -1,7 +1,7 @@
 """The after-automaton: its states are obligations, what remains of the formula after the letters so far.
 
 An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, stored
-as a binary decision diagram (:class:`~tltlc.automaton.diagrams.Diagrams`).  Formulas that are equal
+as a binary decision diagram (:class:`~tltlc.automaton.transitions.ObligationDiagrams`).  Formulas that are equal
 as such functions are therefore one state.
 """
 
@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
-from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.infinite import conjunction, disjunction
-from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.transitions import FALSE, TRUE, ObligationDiagrams
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic import formula as build
 from tltlc.logic.bounded import counted_down, counted_down_from
@@ -37,8 +37,8 @@ class After:
     :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
-    def __init__(self, atoms: Sequence[str], letters: Letters[Any]) -> None:
-        self.diagrams = Diagrams()
+    def __init__(self, atoms: Sequence[str], letters: Diagrams[Any]) -> None:
+        self.obligations = ObligationDiagrams()
         self.letters = letters
         self.formulas: list[Formula] = []
         self.atoms = tuple(atoms)
@@ -76,19 +76,19 @@ class After:
             case "false":
                 return FALSE
             case "and" | "or":
-                combine = self.diagrams.both if formula.op == "and" else self.diagrams.either
+                combine = self.obligations.both if formula.op == "and" else self.obligations.either
                 result = self.obligation(formula.args[-1])
                 for argument in reversed(formula.args[:-1]):
                     result = combine(self.obligation(argument), result)
                 return result
             case "not":
-                return self.diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
-        result = self.diagrams.obligation(self._variable(formula), FALSE, TRUE)
+                return self.obligations.node(self._variable(formula.args[0]), TRUE, FALSE)
+        result = self.obligations.node(self._variable(formula), FALSE, TRUE)
         # This makes `p U q | q` and `p U q` one obligation, as over finite traces (`automaton/finite/successors.py`).
         for weaker in _implied_by(formula):
-            result = self.diagrams.both(result, self.obligation(weaker))
+            result = self.obligations.both(result, self.obligation(weaker))
         for stronger in _that_imply(formula):
-            result = self.diagrams.either(result, self.obligation(stronger))
+            result = self.obligations.either(result, self.obligation(stronger))
         return result
 
     def _variable(self, formula: Formula) -> int:
@@ -103,7 +103,7 @@ class After:
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
-        absent, present = self.diagrams.absent, self.diagrams.present
+        absent, present = self.obligations.low, self.obligations.high
         # No recursion: obligations are as deep as bounds are long.
         stack = [obligation]
         while stack:
@@ -123,7 +123,7 @@ class After:
         ``absent`` and ``present`` are the functions of the obligation with its first variable false
         and true.
         """
-        formula, letters = self.formulas[self.diagrams.variable[obligation]], self.letters
+        formula, letters = self.formulas[self.obligations.variable[obligation]], self.letters
         if formula.op == "atom":
             atom = self._atoms[formula.name]
             true, false = letters.leaf(TRUE), letters.leaf(FALSE)
@@ -134,11 +134,11 @@ class After:
 
     def both(self, x: int, y: int) -> int:
         """Return the ``and`` of two functions on every letter."""
-        return self.letters.combined(self._counted(self.diagrams.both), x, y, self._both)
+        return self.letters.combined(self._counted(self.obligations.both), x, y, self._both)
 
     def either(self, x: int, y: int) -> int:
         """Return the ``or`` of two functions on every letter."""
-        return self.letters.combined(self._counted(self.diagrams.either), x, y, self._either)
+        return self.letters.combined(self._counted(self.obligations.either), x, y, self._either)
 
     def _counted(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
         """Return ``combine`` with a counter: it raises OutOfWork if a function gets too many different values."""
@@ -190,9 +190,9 @@ class After:
         """Return a formula of an obligation: the smallest one seen so far, or one read from its diagram."""
         known = self._sources.get(obligation)
         if known is None:
-            diagrams = self.diagrams
-            variable = self.formulas[diagrams.variable[obligation]]
-            absent, present = self.formula(diagrams.absent[obligation]), self.formula(diagrams.present[obligation])
+            obligations = self.obligations
+            variable = self.formulas[obligations.variable[obligation]]
+            absent, present = self.formula(obligations.low[obligation]), self.formula(obligations.high[obligation])
             if variable.op == "atom":
                 negative = build.not_(variable)
                 known = disjunction((conjunction((variable, present)), conjunction((negative, absent))))
@@ -210,16 +210,16 @@ class After:
             return obligation
         result = memo.get(obligation)
         if result is None:
-            diagrams = self.diagrams
-            formula = self.formulas[diagrams.variable[obligation]]
-            absent = self.replaced(diagrams.absent[obligation], change, memo)
-            present = self.replaced(diagrams.present[obligation], change, memo)
+            obligations = self.obligations
+            formula = self.formulas[obligations.variable[obligation]]
+            absent = self.replaced(obligations.low[obligation], change, memo)
+            present = self.replaced(obligations.high[obligation], change, memo)
             if formula.op == "atom":
                 holds = self.obligation(formula)
                 fails = self.obligation(build.not_(formula))
-                result = diagrams.either(diagrams.both(holds, present), diagrams.both(fails, absent))
+                result = obligations.either(obligations.both(holds, present), obligations.both(fails, absent))
             else:
-                result = diagrams.either(absent, diagrams.both(change(formula), present))
+                result = obligations.either(absent, obligations.both(change(formula), present))
             memo[obligation] = result
         return result
 

@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
 from tltlc.automaton.infinite.component import IMPOSSIBLE, State
-from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.pairs import Piece
 
 Place = tuple[int, State]
@@ -16,7 +16,7 @@ Place = tuple[int, State]
 
 
 def joined(
-    letters: Letters[Any],
+    letters: Diagrams[Any],
     pieces: Sequence[Piece],
     entry: Mapping[int, Place],
     initial: Place,
@@ -40,7 +40,7 @@ def joined(
     return Rabin(letters, final, labels, max(piece.pairs for piece in pieces)), number
 
 
-def _steps(letters: Letters[Any], pieces: Sequence[Piece], entry: Mapping[int, Place]) -> dict[Place, int]:
+def _steps(letters: Diagrams[Any], pieces: Sequence[Piece], entry: Mapping[int, Place]) -> dict[Place, int]:
     """Return the steps of all components, with each exit replaced by the entry of the next component."""
     steps: dict[Place, int] = {}
     for number, piece in enumerate(pieces):
@@ -57,7 +57,7 @@ def _steps(letters: Letters[Any], pieces: Sequence[Piece], entry: Mapping[int, P
     return steps
 
 
-def _reached(letters: Letters[Any], steps: Mapping[Place, int], initial: Place) -> list[Place]:
+def _reached(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Place) -> list[Place]:
     reached, seen = [initial], {initial}
     for place in reached:
         for leaf in letters.values(steps[place]):
@@ -68,7 +68,7 @@ def _reached(letters: Letters[Any], steps: Mapping[Place, int], initial: Place) 
 
 
 def _numbered(
-    letters: Letters[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
+    letters: Diagrams[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
 ) -> dict[Place, int]:
     """Number the states from 0 in order; states that cannot be distinguished get the same number.
 
@@ -109,6 +109,6 @@ def _numbered(
     return {place: numbers.setdefault(block[place], len(numbers)) for place in reached}
 
 
-def _read(letters: Letters[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
+def _read(letters: Diagrams[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
     """Return a step with each target replaced by its number."""
     return letters.mapped(lambda leaf: leaf and (number[leaf[0]], leaf[1]), step, memo)

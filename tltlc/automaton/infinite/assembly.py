@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
-from tltlc.automaton.diagrams import IMPOSSIBLE, Diagrams
-from tltlc.automaton.finite.build import allowed_letters, breadth_first, distances
+from tltlc.automaton.diagrams import LEAF, Diagrams
+from tltlc.automaton.finite.build import breadth_first, distances
 from tltlc.automaton.fspa import Edge, Guard, Pair, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.infinite.automaton import Rabin
-from tltlc.automaton.infinite.letters import LEAF, Letters
+from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.core.record import record
 from tltlc.io.limits import WORK
 
@@ -74,8 +74,8 @@ def _edges(
 
     Each edge has one set of marks.
     """
-    diagrams, leaves = Diagrams(), _Leaves()
-    guards = Guards(diagrams, atoms, allowed_letters(diagrams, exclusive))
+    diagrams, leaves = TransitionDiagrams(), _Leaves()
+    guards = Guards(diagrams, atoms, diagrams.allowed_letters(exclusive))
     guard_of: dict[int, Guard] = {}
     marked_edges: list[tuple[int, int, list[Any], Guard]] = []
     for state in order:
@@ -83,7 +83,7 @@ def _edges(
         for leaf, guard in guards.by_leaf(transition).items():
             if guard not in guard_of:
                 guard_of[guard] = Guard(guards.text(guard), guards.primes(guard))
-            target, marks = leaves.values[diagrams.low[leaf]]
+            target, marks = leaves.values[diagrams.value[leaf][0]]
             marked_edges.append((number[state], number[target], sorted(marks), guard_of[guard]))
             if len(marked_edges) > WORK["edges"]:
                 raise TooManyPrimes("the automaton", WORK["edges"], "edges")
@@ -104,18 +104,18 @@ class _Leaves:
         self._numbers: dict[Any, int] = {}
         self._known: dict[int, int] = {}
 
-    def transition(self, letters: Letters[Any], step: int, diagrams: Diagrams) -> int:
+    def transition(self, letters: Diagrams[Any], step: int, diagrams: TransitionDiagrams) -> int:
         """Return a step as a transition."""
         node = self._known.get(step)
         if node is None:
-            if letters.atom[step] != LEAF:
+            if letters.variable[step] != LEAF:
                 low = self.transition(letters, letters.low[step], diagrams)
                 high = self.transition(letters, letters.high[step], diagrams)
-                node = diagrams.node(letters.atom[step], low, high)
+                node = diagrams.node(letters.variable[step], low, high)
             elif letters.value[step] is None:
                 node = IMPOSSIBLE
             else:
-                node = diagrams.leaf(self._number(letters.value[step]), 0)
+                node = diagrams.leaf((self._number(letters.value[step]), 0))
             self._known[step] = node
         return node
 

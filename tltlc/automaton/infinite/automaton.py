@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
-from tltlc.automaton.infinite.letters import Letters
 from tltlc.core.record import record
 
 PairMarks = frozenset[Mark]
@@ -24,7 +24,7 @@ class Rabin:
     A state's label is the formula that remains, or other data that identifies it.
     """
 
-    letters: Letters[Any]
+    letters: Diagrams[Any]
     steps: tuple[int, ...]
     labels: tuple[Any, ...]
     pairs: int

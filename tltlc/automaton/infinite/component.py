@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from typing import Any, Final
 
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.delta2 import is_pi_2
 from tltlc.automaton.infinite.graphs import smallest_bottom
 from tltlc.automaton.infinite.leaf_automata import Breakpoint, Memory, Part, Recurrence, RoundRobin
-from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks, Skeleton, clauses
 from tltlc.core.record import record
 from tltlc.logic.formula import Formula
@@ -86,7 +86,7 @@ def _breakpoint(after: After, formula: Formula) -> Breakpoint:
 
 
 def local(
-    letters: Letters[Any],
+    letters: Diagrams[Any],
     step_of: Callable[[int], int],
     inside: Collection[int],
     first: int,
@@ -111,7 +111,7 @@ def local(
 
 
 def explored(
-    letters: Letters[Any], initial: State, step_of: Callable[[State], int]
+    letters: Diagrams[Any], initial: State, step_of: Callable[[State], int]
 ) -> tuple[dict[State, int], list[State]]:
     """Return the steps of all reachable states, in breadth-first order, and the smallest bottom component."""
     steps: dict[State, int] = {}
@@ -128,7 +128,7 @@ def explored(
     return steps, smallest_bottom(targets, initial)
 
 
-def merged(letters: Letters[Any], one: Local) -> Local:
+def merged(letters: Diagrams[Any], one: Local) -> Local:
     """Merge states that cannot be distinguished by labels and by the marks that clauses use."""
     labels, steps, accepts = one.labels, one.steps, one.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
@@ -161,7 +161,7 @@ def merged(letters: Letters[Any], one: Local) -> Local:
 
 
 def _step(
-    letters: Letters[Any], step_of: Callable[[int], int], inside: Collection[int], state: State, parts: Sequence[Part]
+    letters: Diagrams[Any], step_of: Callable[[int], int], inside: Collection[int], state: State, parts: Sequence[Part]
 ) -> int:
     """Return the :data:`Leaf` after a state of the product, as a function of the letter."""
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations, product
 from typing import Any, Final
 
-from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.diagrams import Diagrams, OutOfSteps, at_most_one
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.assembled_components import Place, joined
@@ -24,7 +24,6 @@ from tltlc.automaton.infinite.factors import factor
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.infinite import infinite_form
 from tltlc.automaton.infinite.languages import equal_states
-from tltlc.automaton.infinite.letters import Letters, at_most_one
 from tltlc.automaton.infinite.pairs import Piece, with_pairs
 from tltlc.automaton.infinite.state_merging import shrunk
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
@@ -66,7 +65,7 @@ class _Construction:
         self.work = Work(work)
         # A larger budget is set because the default is too little for some component.
         self._for_an_attempt = _FOR_AN_ATTEMPT * max(1, work // DEFAULT_WORK)
-        self.letters: Letters[Any] = Letters(self.work)
+        self.letters: Diagrams[Any] = Diagrams(self.work)
         self.after = After(atoms, self.letters)
         self.initial = self.after.obligation(formula)
         self._exclusive = exclusive

@@ -12,10 +12,10 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, Literal
 
-from tltlc.automaton.diagrams import FALSE, TRUE, OutOfSteps
+from tltlc.automaton.diagrams import Diagrams, OutOfSteps
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.infinite import conjunction, disjunction
-from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.automaton.work import Work
 from tltlc.logic.formula import Formula, not_
 
@@ -39,7 +39,7 @@ class Factoring:
     """Rewrites formulas in normal form over ``atoms``; the results are equal on every infinite trace."""
 
     def __init__(self, atoms: Sequence[str]) -> None:
-        self._after = After(atoms, Letters(Work(0)))
+        self._after = After(atoms, Diagrams(Work(0)))
         nothing: _Term = frozenset()
         self._terms: dict[tuple[_Op, int], tuple[_Term, ...]] = {
             ("or", FALSE): (),
@@ -54,7 +54,7 @@ class Factoring:
         operators: tuple[_Op, ...] = ("or", "and")
         for op in operators:
             try:
-                with self._after.diagrams.at_most(_MOST_STEPS):
+                with self._after.obligations.limit.at_most(_MOST_STEPS):
                     terms = self._needed(self._primes(self._after.obligation(formula), op), op)
             except (_TooManyTerms, OutOfSteps):
                 continue
@@ -69,10 +69,12 @@ class Factoring:
         """Return all prime implicants, or implicates."""
         primes = self._terms.get((op, obligation))
         if primes is None:
-            diagrams = self._after.diagrams
-            variable = diagrams.variable[obligation]
-            absent, present = diagrams.absent[obligation], diagrams.present[obligation]
-            primes = common = self._primes((diagrams.both if op == "or" else diagrams.either)(absent, present), op)
+            obligations = self._after.obligations
+            variable = obligations.variable[obligation]
+            absent, present = obligations.low[obligation], obligations.high[obligation]
+            primes = common = self._primes(
+                (obligations.both if op == "or" else obligations.either)(absent, present), op
+            )
             with_it, without = (present, absent) if op == "or" else (absent, present)
             for literal, rest in ((2 * variable, with_it), (2 * variable + 1, without)):
                 new = (term for term in self._primes(rest, op) if not any(shared <= term for shared in common))
@@ -117,7 +119,7 @@ class Factoring:
         literals = frozenset().union(*others)
         if not any(literal ^ 1 in literals for literal in literals):
             return False
-        combine = self._after.diagrams.either if op == "or" else self._after.diagrams.both
+        combine = self._after.obligations.either if op == "or" else self._after.obligations.both
         without = self._obligation(others, op)
         return combine(without, self._obligation([term], op)) == without
 

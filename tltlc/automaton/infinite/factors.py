@@ -13,11 +13,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
 from tltlc.automaton.infinite.component import Leaf, Local, State
 from tltlc.automaton.infinite.cycles import accepting_parts, parts, rejecting_parts
-from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.mark_conditions import Marks
 from tltlc.automaton.infinite.pairs import Piece
 from tltlc.automaton.work import Work
@@ -29,7 +29,7 @@ _Edge = tuple[State, State, Marks, int]
 """An edge of the component, and the number of the factor's edge that stands for it."""
 
 
-def factor(letters: Letters[Any], one: Local, key: Callable[[State], State], work: Work) -> Piece | None:
+def factor(letters: Diagrams[Any], one: Local, key: Callable[[State], State], work: Work) -> Piece | None:
     """Return the factor of a component by a key of its states; None if its edges cannot decide acceptance.
 
     The key after a letter must depend only on the key before it and on the letter.  Raises

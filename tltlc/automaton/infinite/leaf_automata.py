@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, Protocol
 
-from tltlc.automaton.diagrams import FALSE, TRUE
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.infinite import substituted_below
 from tltlc.automaton.infinite.mark_conditions import Kind
+from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
 
@@ -136,7 +136,7 @@ class Recurrence:
             return (), True
         left = {attempt for attempt in attempts if attempt not in (over, out)}
         combine: Callable[[int, int], int]
-        combine = self._after.diagrams.either if self.kind == "inf" else self._after.diagrams.both
+        combine = self._after.obligations.either if self.kind == "inf" else self._after.obligations.both
         # An attempt that succeeds only if another one does need not be remembered.
         needed = [
             attempt

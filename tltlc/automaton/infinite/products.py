@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of, parts
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_clauses, pair_marks
 from tltlc.automaton.work import Work
 
@@ -26,7 +26,9 @@ def conditions(pairs: int, others: int) -> tuple[list[Clause], list[Clause]]:
     return pair_clauses(pairs), pair_clauses(others, first=2 * pairs)
 
 
-def side_by_side(letters: Letters[Any], pairs: int, is_over: Callable[[Any], bool]) -> Callable[[int, int], list[Leaf]]:
+def side_by_side(
+    letters: Diagrams[Any], pairs: int, is_over: Callable[[Any], bool]
+) -> Callable[[int, int], list[Leaf]]:
     """Return a function that maps the steps of two automata to the successors in their product.
 
     Each automaton has ``pairs`` pairs.  The leaves of steps are targets with marks.  If a leaf of

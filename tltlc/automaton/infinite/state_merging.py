@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.letters import Letters
 from tltlc.automaton.infinite.pairs import Piece
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, side_by_side, telling_apart
 from tltlc.automaton.work import OutOfWork, Work
 
 
-def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece:
+def shrunk(letters: Diagrams[Any], piece: Piece, work: Work, steps: int) -> Piece:
     """Return the component without the states that another state can replace; stops after ``steps`` steps of work."""
     original = piece
     try:
@@ -38,7 +38,7 @@ def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece
     return piece
 
 
-def _without(letters: Letters[Any], piece: Piece, state: Any, other: Any) -> Piece:
+def _without(letters: Diagrams[Any], piece: Piece, state: Any, other: Any) -> Piece:
     """Return the component with ``other`` in place of ``state``, reduced to a bottom component."""
 
     def redirected(leaf: Any) -> Any:
@@ -60,7 +60,7 @@ def _without(letters: Letters[Any], piece: Piece, state: Any, other: Any) -> Pie
     )
 
 
-def _is_equal(letters: Letters[Any], one: Piece, other: Piece, work: Work) -> bool:
+def _is_equal(letters: Diagrams[Any], one: Piece, other: Piece, work: Work) -> bool:
     """Whether each state of ``one`` accepts the same runs that stay in the component as the same state of ``other``.
 
     Raises OutOfWork.

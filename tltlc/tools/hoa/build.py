@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from tltlc.automaton.diagrams import Diagrams, at_most_one
 from tltlc.automaton.finite.build import distances, verdicts
 from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.fspa import Verdict
@@ -13,7 +14,6 @@ from tltlc.automaton.infinite.assembled_components import Place, joined
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
 from tltlc.automaton.infinite.component import IMPOSSIBLE, Local, State
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.letters import Letters, at_most_one
 from tltlc.automaton.infinite.pairs import Piece, as_it_stands, with_pairs
 from tltlc.automaton.work import Work
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -68,7 +68,7 @@ def automaton_of(
         OutOfWork: the conversion to pairs takes more work than is left.
         OutOfStates: more than ``state_budget`` states are reached.
     """
-    letters: Letters[Any] = Letters(work)
+    letters: Diagrams[Any] = Diagrams(work)
     moves = _moves(hoa, Transitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
     return (_finite if is_finite(hoa) else _infinite)(hoa, moves, letters)
 
@@ -94,7 +94,7 @@ def _moves(hoa: Hoa, transitions: Transitions, state_budget: int) -> Moves:
     return moves
 
 
-def _finite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+def _finite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     def leaf(move: Move | None) -> Any:
         return (("exit", IMPOSSIBLE), NO_MARKS) if move is NOT_ALLOWED else ((move[0],), NO_MARKS)
 
@@ -107,7 +107,7 @@ def _finite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Analy
     return automaton, FiniteAnalysis(automaton, goals)
 
 
-def _infinite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+def _infinite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     acceptance = Acceptance(hoa, letters.work)
 
     def targets(number: int) -> list[int]:
@@ -137,7 +137,7 @@ def _infinite(hoa: Hoa, moves: Moves, letters: Letters[Any]) -> tuple[Rabin, Ana
     return automaton, analysis_of_rabin(automaton, letters.work)
 
 
-def _piece(letters: Letters[Any], one: Local) -> Piece:
+def _piece(letters: Diagrams[Any], one: Local) -> Piece:
     """Return a component with pairs: the pairs of the file, unless fewer are found."""
     best, unchanged = with_pairs(letters, one, letters.work), as_it_stands(letters, one)
     return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
-from tltlc.automaton.infinite.letters import Letters
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.tools.hoa.problems import DETERMINISTIC, broken
 from tltlc.tools.hoa.tree import Edge, Hoa, State, Term
@@ -28,7 +28,7 @@ class Transitions:
     allowed are ignored.  Raises TltlError, TLT0651, if an alias is wrong.
     """
 
-    def __init__(self, hoa: Hoa, atoms: Sequence[str], letters: Letters[Any], allowed: int) -> None:
+    def __init__(self, hoa: Hoa, atoms: Sequence[str], letters: Diagrams[Any], allowed: int) -> None:
         self._hoa, self._atoms = hoa, atoms
         self._letters, self._allowed = letters, allowed
         self._aliases: dict[str, int] = {}
@@ -157,7 +157,7 @@ class Transitions:
 
     def _letter(self, step: int, taken: tuple[int, ...]) -> str:
         """Return some letter on which ``step`` has the value ``taken``, as a conjunction of literals."""
-        present = self._letters.letter_with(step, taken)
+        present = self._letters.assignment_with(step, taken)
         names = [name if place in present else f"!{name}" for place, name in enumerate(self._atoms)]
         return " & ".join(names) or "true"
 
