@@ -7,6 +7,8 @@ from math import atan2, dist, pi
 from typing import TYPE_CHECKING, Final
 
 from tltl_runtime.stealth.level import Level, Point, fixed_places
+from tltlc.core.names import full_name
+from tltlc.core.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
@@ -16,6 +18,18 @@ _EYES: Final = 0.15
 
 Reader = Callable[["Game"], float]
 _Place = Callable[["Game"], Point]
+
+AXES: Final = {"position.x": 0, "position.y": 1, "position.z": 2}
+"""The axis of each coordinate of the player, by the name of its signal."""
+
+
+@record
+class LevelSignal:
+    """A signal of a level: its name, without and with arguments, and the function that reads it from a game."""
+
+    base: str
+    arguments: tuple[str, ...]
+    read: Reader
 
 
 class Signals(Mapping[str, float]):
@@ -47,7 +61,12 @@ class Signals(Mapping[str, float]):
 
 def readers(level: Level) -> dict[str, Reader]:
     """Return the functions that read the signals of a level from a game, by signal name."""
-    functions: dict[str, Reader] = {
+    return {name: signal.read for name, signal in level_signals(level).items()}
+
+
+def level_signals(level: Level) -> dict[str, LevelSignal]:
+    """Return the signals of a level, by name; an alias has the signal that it stands for."""
+    plain: dict[str, Reader] = {
         "health": lambda game: game.health,
         "stamina": lambda game: game.world.player.stamina,
         "time": lambda game: game.time,
@@ -59,20 +78,21 @@ def readers(level: Level) -> dict[str, Reader]:
         "crouching": lambda game: game.world.player.crouching,
         "grounded": lambda game: game.world.player.grounded,
     }
-    for name, place in entities(level).items():
-        functions |= _of_entity(name, place)
-    for index, switch in enumerate(level.switches):
-        functions[f"active({switch.name})"] = _active(index)
-    for index, barrier in enumerate(level.barriers):
-        functions[f"open({barrier.name})"] = _open(index)
-    for alias, signal in level.signals:
-        functions[alias] = functions[signal]
-    return functions
+    signals = [LevelSignal(name, (), read) for name, read in plain.items()]
+    for entity, place in entities(level).items():
+        signals += _of_entity(entity, place)
+    signals += [LevelSignal("active", (switch.name,), _active(row)) for row, switch in enumerate(level.switches)]
+    signals += [LevelSignal("open", (barrier.name,), _open(row)) for row, barrier in enumerate(level.barriers)]
+    by_name = {full_name(signal.base, signal.arguments): signal for signal in signals}
+    for alias, name in level.signals:
+        by_name[alias] = by_name[name]
+    return by_name
 
 
 def described(level: Level) -> str:
     """List the names of a level's signals in words, for messages."""
-    plain = [name for name in readers(level) if "(" not in name]
+    aliases = dict(level.signals)
+    plain = [name for name, signal in level_signals(level).items() if name in aliases or not signal.arguments]
     plain_names = ", ".join(f"`{name}`" for name in plain)
     entities_of = {
         "`distance(…)`, `bearing(…)`, `line_of_sight(…)`": list(entities(level)),
@@ -98,12 +118,12 @@ def entities(level: Level) -> dict[str, _Place]:
 # --- readers of single signals and positions --------------------------------------------------------
 
 
-def _of_entity(name: str, place: _Place) -> dict[str, Reader]:
-    return {
-        f"distance({name})": lambda game: dist(game.world.player.position, place(game)),
-        f"bearing({name})": lambda game: _bearing(game, place(game)),
-        f"line_of_sight({name})": lambda game: _in_sight(game, place(game)),
-    }
+def _of_entity(name: str, place: _Place) -> list[LevelSignal]:
+    return [
+        LevelSignal("distance", (name,), lambda game: dist(game.world.player.position, place(game))),
+        LevelSignal("bearing", (name,), lambda game: _bearing(game, place(game))),
+        LevelSignal("line_of_sight", (name,), lambda game: _in_sight(game, place(game))),
+    ]
 
 
 def _active(switch: int) -> Reader:

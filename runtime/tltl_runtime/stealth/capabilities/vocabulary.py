@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import dist, pi
 
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.signals import readers
+from tltl_runtime.stealth.signals import AXES, level_signals
 from tltlc.core.record import record
 from tltlc.resolve.spec import ValueType
 
@@ -21,8 +21,7 @@ class Offer:
 
 def offers(level: Level) -> dict[str, Offer]:
     """Return the signals of a level, by name, including aliases."""
-    aliases = dict(level.signals)
-    return {name: _offer(aliases.get(name, name), level) for name in readers(level)}
+    return {name: _offer(signal.base, level) for name, signal in level_signals(level).items()}
 
 
 def params(level: Level) -> dict[str, float]:
@@ -30,8 +29,7 @@ def params(level: Level) -> dict[str, float]:
     return {"level_size": dist(level.bounds.low, level.bounds.high)}
 
 
-def _offer(name: str, level: Level) -> Offer:
-    base = name.partition("(")[0]
+def _offer(base: str, level: Level) -> Offer:
     if base in ("health", "stamina"):
         return Offer("ratio", 0.0, 1.0)
     if base == "time":
@@ -40,7 +38,7 @@ def _offer(name: str, level: Level) -> Offer:
         return Offer("angle", -pi, pi)
     if base == "distance":
         return Offer("length", 0.0, params(level)["level_size"])
-    if base.startswith("position."):
-        axis = "xyz".index(base[-1])
+    if base in AXES:
+        axis = AXES[base]
         return Offer("length", level.bounds.low[axis], level.bounds.high[axis])
     return Offer("bool", 0.0, 1.0)

@@ -11,7 +11,7 @@ from gymnasium import spaces
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.observation.semantic_map import SemanticMap
 from tltl_runtime.stealth.observation.sensors import SensorChoice, chosen
-from tltl_runtime.stealth.signals import Reader, entities, readers
+from tltl_runtime.stealth.signals import AXES, LevelSignal, Reader, entities, level_signals
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
@@ -40,9 +40,12 @@ class Senses:
 
     def __init__(self, level: Level, sensors: SensorChoice | None = None) -> None:
         self.sensors = sensors = chosen(level, sensors)
-        places, signals = entities(level), readers(level)
+        places, signals, aliases = entities(level), level_signals(level), dict(level.signals)
         self._places = [places[name] for name in sensors.entities]
-        self._variables = [_scaled(name, level, signals[name]) for name in sensors.variables]
+        # The value of an alias is not scaled.
+        self._variables = [
+            signals[name].read if name in aliases else _scaled(signals[name], level) for name in sensors.variables
+        ]
         diagonal = dist(level.bounds.low, level.bounds.high)
         sizes = [diagonal] * 3 * len(self._places) + [1.0] * len(self._variables)
         self._sizes = np.array(sizes, dtype=np.float32)
@@ -95,20 +98,20 @@ class Senses:
         return keys
 
 
-def _scaled(name: str, level: Level, read: Reader) -> Reader:
+def _scaled(signal: LevelSignal, level: Level) -> Reader:
     """Scale a signal to the range of observations.
 
     The time t, which is unbounded, becomes t / (t + 60 s).
     """
-    low, high = level.bounds.low, level.bounds.high
-    if name == "time":
+    low, high, read = level.bounds.low, level.bounds.high, signal.read
+    if signal.base == "time":
         return lambda game: game.time / (game.time + _HALF_TIME_S)
-    if name.startswith("position."):
-        axis = "xyz".index(name[-1])
+    if signal.base in AXES:
+        axis = AXES[signal.base]
         return lambda game: (read(game) - low[axis]) / (high[axis] - low[axis])
-    if name.startswith("distance("):
+    if signal.base == "distance":
         diagonal = dist(low, high)
         return lambda game: read(game) / diagonal
-    if name.startswith("bearing("):
+    if signal.base == "bearing":
         return lambda game: read(game) / pi
     return read
