@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.regression.explain.stages import deed, deed_of_all, near_enough, target_of, together
+from tltl_runtime.regression.explain.stages import Subgoal, near_enough, subgoal, subgoal_of_all, target_of, together
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 
@@ -14,29 +14,29 @@ def spec(body: str, declared: str = "entity s1, s2, exit\nexclusive near(s1), ne
     return fspa
 
 
-def deeds(fspa: Fspa) -> list[str]:
+def subgoals(fspa: Fspa) -> list[str]:
     """The descriptions of the states that are not traps, by decreasing distance."""
     states = [state for state in fspa.states if state.distance is not None]
-    return [deed(fspa, state.id) for state in sorted(states, key=lambda state: -(state.distance or 0))]
+    return [subgoal(fspa, state.id).text for state in sorted(states, key=lambda state: -(state.distance or 0))]
 
 
 def test_a_sequence_has_one_stage_per_state() -> None:
     fspa = spec("reach near(s1) then near(s2) then near(exit)\n keep alive")
-    assert deeds(fspa) == ["reaches `s1`", "reaches `s2`", "reaches `exit`", "meets the spec"]
+    assert subgoals(fspa) == ["reaches `s1`", "reaches `s2`", "reaches `exit`", "meets the spec"]
 
 
 def test_goals_in_any_order_are_alternatives() -> None:
     fspa = spec("reach near(s1)\n reach near(s2)")
-    assert deed(fspa, 0) in ("reaches `s1` or `s2`", "reaches `s2` or `s1`")
+    assert subgoal(fspa, 0).text in ("reaches `s1` or `s2`", "reaches `s2` or `s1`")
 
 
 def test_states_with_one_stage_share_its_description() -> None:
     fspa = spec("reach near(s1)\n reach near(s2)\n reach near(exit)")
     two, one = ([state.id for state in fspa.states if state.distance == distance] for distance in (2, 1))
-    assert deed_of_all(fspa, one[:1], 1) == deed(fspa, one[0])
-    assert deed_of_all(fspa, two, 2) == "comes within 1 transition of acceptance"
-    assert deed_of_all(fspa, one, 1) == "meets the spec"
-    assert deed_of_all(fspa, (*two, *one), 3) == "comes within 2 transitions of acceptance"
+    assert subgoal_of_all(fspa, one[:1], 1).text == subgoal(fspa, one[0]).text
+    assert subgoal_of_all(fspa, two, 2).text == "comes within 1 transition of acceptance"
+    assert subgoal_of_all(fspa, one, 1).text == "meets the spec"
+    assert subgoal_of_all(fspa, (*two, *one), 3).text == "comes within 2 transitions of acceptance"
 
 
 def test_alternative_goals_are_all_named() -> None:
@@ -44,32 +44,32 @@ def test_alternative_goals_are_all_named() -> None:
         "reach (open_a and near(s1)) or (open_b and near(s2))",
         "entity s1, s2\nsignal open_a: bool\nsignal open_b: bool\n",
     )
-    assert deed(fspa, 0) in ("reaches `s1` or `s2`", "reaches `s2` or `s1`")
+    assert subgoal(fspa, 0).text in ("reaches `s1` or `s2`", "reaches `s2` or `s1`")
 
 
 def test_joined_stages_share_the_verb() -> None:
-    assert together(["reaches `s1`", "reaches `s2` or `s3`"]) == "reaches `s1`, then `s2` or `s3`"
-    assert together(["reaches `s1`", "makes `open` true"]) == "reaches `s1`, makes `open` true"
+    assert together([Subgoal("`s1`"), Subgoal("`s2` or `s3`", is_choice=True)]) == "reaches `s1`, then `s2` or `s3`"
+    assert together([Subgoal("`s1`"), Subgoal(other="makes `open` true")]) == "reaches `s1`, makes `open` true"
 
 
 def test_an_atom_without_a_target_is_made_true() -> None:
     fspa = spec("reach open_door\n keep alive", "signal open_door: bool\n")
-    assert deeds(fspa) == ["makes `open_door` true", "meets the spec"]
+    assert subgoals(fspa) == ["makes `open_door` true", "meets the spec"]
 
 
 def test_a_negated_goal_is_made_false() -> None:
     fspa = spec("reach not loud\n keep alive\n keep not seen", "signal loud: bool\n")
-    assert deeds(fspa) == ["makes `loud` false", "meets the spec"]
+    assert subgoals(fspa) == ["makes `loud` false", "meets the spec"]
 
 
 def test_an_invariant_is_no_stage() -> None:
     fspa = spec("reach near(s1)\n keep alive\n keep not seen", "entity s1\n")
-    assert deeds(fspa)[0] == "reaches `s1`"
+    assert subgoals(fspa)[0] == "reaches `s1`"
 
 
 def test_staying_near_an_entity_is_no_stage() -> None:
     fspa = spec("reach near(s1) then open_door\n keep near(s2, 9 m)", "entity s1, s2\nsignal open_door: bool\n")
-    assert deeds(fspa)[:2] == ["reaches `s1`", "makes `open_door` true"]
+    assert subgoals(fspa)[:2] == ["reaches `s1`", "makes `open_door` true"]
 
 
 AWAY = "entity s1\npredicate away(x: entity) = clamp(distance(x) / 5 m - 1, -1, 1)\n"
@@ -77,7 +77,7 @@ BESIDE = "entity s1\npredicate beside(x: entity) = clamp(1 - abs(distance(x) - 3
 
 
 def test_moving_away_is_not_reaching() -> None:
-    assert deeds(spec("reach near(s1) then away(s1)", AWAY))[:2] == ["reaches `s1`", "makes `away(s1)` true"]
+    assert subgoals(spec("reach near(s1) then away(s1)", AWAY))[:2] == ["reaches `s1`", "makes `away(s1)` true"]
 
 
 @pytest.mark.parametrize(

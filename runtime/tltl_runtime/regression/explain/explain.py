@@ -9,7 +9,7 @@ from typing import Final
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.path_points import places_along
-from tltl_runtime.regression.explain.stages import deed_of_all, together
+from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, together
 from tltl_runtime.stealth.level import Level, Region
 from tltl_runtime.support.number_text import counted, percent
 from tltlc.automaton.fspa import Fspa
@@ -50,7 +50,7 @@ def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[
     """
     return (
         *_stages(fspa, now, before),
-        *ends(level, fspa, now, before),
+        *(finding for _, finding in _ends(level, fspa, now, before)),
         *_lengths(now, before),
         *_regions(level, now, before),
     )
@@ -58,10 +58,10 @@ def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[
 
 def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     """Describe the completed stages in one sentence, up to the first stage whose share has changed."""
-    done: list[str] = []
+    done: list[Subgoal] = []
     for distance, states in _visited(fspa, (*now, *before)):
         passed_now, passed_before = (_passed(fspa, accounts, distance) for accounts in (now, before))
-        stage = deed_of_all(fspa, states, distance)
+        stage = subgoal_of_all(fspa, states, distance)
         if abs(len(passed_now) / len(now) - len(passed_before) / len(before)) < _ALIKE:
             if len(passed_now) / len(now) > _USUAL:
                 done.append(stage)
@@ -71,7 +71,7 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
         counts = [
             counted(len(passed), len(all_), "episodes") for passed, all_ in ((passed_now, now), (passed_before, before))
         ]
-        text = f"{first}{stage} in {counts[0]}; before: in {counts[1]}"
+        text = f"{first}{stage.text} in {counts[0]}; before: in {counts[1]}"
         yield Finding(text, failed, others=True)
         return
     if done:
@@ -97,14 +97,20 @@ def _distances(fspa: Fspa, account: Account) -> list[int]:
     return [distance for distance in distances if distance is not None] or [fspa.spec_size]
 
 
-def ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    """Describe how failed episodes end, most frequent first.  All sentences are distinct."""
+def most_frequent_end(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> str | None:
+    """Describe how most failed episodes end, without details; None if no episode failed."""
+    return next((headline for headline, _ in _ends(level, fspa, now, before)), None)
+
+
+def _ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[tuple[str, Finding]]:
+    """Describe how failed episodes end, most frequent first, in short and in full.  All sentences are distinct."""
     ends_before = [end_of(level, fspa, account) for account in before if not account.summary.success]
     for group in failures(level, fspa, now):
         matches = [group.alike(end) for end in ends_before]
         ends_before = [end for end, is_alike in zip(ends_before, matches, strict=True) if not is_alike]
-        text = f"{group.text} in {_of(len(group.accounts), now)}; before: in {_of(sum(matches), before)}{group.more}"
-        yield Finding(text, tuple(sorted(account.summary.index for account in group.accounts)))
+        headline = f"{group.text} in {_of(len(group.accounts), now)}"
+        text = f"{headline}; before: in {_of(sum(matches), before)}{group.more}"
+        yield headline, Finding(text, tuple(sorted(account.summary.index for account in group.accounts)))
 
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:

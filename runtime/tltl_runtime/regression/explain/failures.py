@@ -9,7 +9,7 @@ from typing import Final, TypeVar
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.nearest_miss import approach, remained
 from tltl_runtime.regression.explain.places import in_the_way, place_name
-from tltl_runtime.regression.explain.stages import deed
+from tltl_runtime.regression.explain.stages import Subgoal, subgoal
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.cause import Kind
 from tltlc.automaton.fspa import Fspa
@@ -32,7 +32,7 @@ class FailureEnd:
     cause: Kind
     by: tuple[str, ...]
     where: str
-    undone: str
+    undone: Subgoal
 
     @property
     def what(self) -> _What:
@@ -57,7 +57,7 @@ class Failures:
 def end_of(level: Level, fspa: Fspa, account: Account) -> FailureEnd:
     """Return how a failed episode ended."""
     by = tuple(sorted(account.by))
-    return FailureEnd(account.cause, by, place_name(level, account.place), deed(fspa, account.summary.unmet))
+    return FailureEnd(account.cause, by, place_name(level, account.place), subgoal(fspa, account.summary.unmet))
 
 
 def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[Failures]:
@@ -67,10 +67,10 @@ def failures(level: Level, fspa: Fspa, accounts: Sequence[Account]) -> Iterator[
         if not account.summary.success:
             groups.setdefault(end_of(level, fspa, account), []).append(account)
     frequent = _often(groups, len(accounts))
-    stages = Counter(replace(end, undone="") for end in groups)
+    stages = Counter(replace(end, undone=Subgoal()) for end in groups)
     for end in frequent:
         # If the same end occurs in several stages, the texts must differ.
-        stage = f" before it {end.undone}" if stages[replace(end, undone="")] > 1 else ""
+        stage = f" before it {end.undone.text}" if stages[replace(end, undone=Subgoal())] > 1 else ""
         group = groups[end]
         details = f"{approach(level, fspa, end.undone, group)}; {remained(fspa, group)}"
         yield Failures(_end_text(level, end, group) + stage, tuple(group), end.__eq__, details)
@@ -121,14 +121,15 @@ def _one_cause(
     else:
         where = "elsewhere" if apart and apart.isdisjoint(places) else "in different places"
     stage = ""
-    if len(stages) == 1 and len({end.undone for end in (*frequent, *ends)}) > 1:
-        stage = f" before it {ends[0].undone}"
+    is_one_stage = len(stages) == 1 and len({end.undone for end in (*frequent, *ends)}) > 1
+    if is_one_stage:
+        stage = f" before it {ends[0].undone.text}"
     elif places <= apart:
         stage = " at other stages"
 
     def alike(end: FailureEnd) -> bool:
         same_place = end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in apart
-        return end.what == cause and same_place and (not stage.startswith(" before") or end.undone in stages)
+        return end.what == cause and same_place and (not is_one_stage or end.undone in stages)
 
     return _end_text(level, replace(ends[0], where=where), accounts) + stage, alike
 

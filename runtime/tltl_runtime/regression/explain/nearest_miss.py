@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Sequence
 
 from tltl_runtime.regression.explain.account import Account, NearestMiss
-from tltl_runtime.regression.explain.stages import REACHES, near_enough
+from tltl_runtime.regression.explain.stages import Subgoal, near_enough
 from tltl_runtime.stealth.capabilities.capabilities import given_params
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.number_text import number
 from tltlc.automaton.fspa import Fspa
 
 
-def approach(level: Level, fspa: Fspa, undone: str, accounts: Sequence[Account]) -> str:
+def approach(level: Level, fspa: Fspa, undone: Subgoal, accounts: Sequence[Account]) -> str:
     """Describe how near most of the episodes came to the next stage, starting with a semicolon.
 
     Episodes that had reached it when something else broke the spec are counted first.
@@ -21,7 +21,7 @@ def approach(level: Level, fspa: Fspa, undone: str, accounts: Sequence[Account])
     text = ""
     if arrived := sum(account.arrived for account in accounts):
         was = "was" if arrived == 1 else "were"
-        position = f"{was} at {undone.removeprefix(REACHES)}" if undone.startswith(REACHES) else "lacked nothing else"
+        position = f"{was} at {undone.place}" if undone.place else "lacked nothing else"
         text = f"; {arrived} of them {position} when it broke"
     misses = [account.nearest for account in accounts if account.nearest and not account.arrived]
     if 2 * len(misses) <= len(accounts):

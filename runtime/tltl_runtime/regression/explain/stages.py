@@ -7,21 +7,40 @@ from typing import Final
 
 from tltl_runtime.stealth.expert.goals import distance_signals
 from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.core.record import EMPTY
+from tltlc.core.record import EMPTY, record
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Expression, Param, Signal, nodes
 from tltlc.monitor.tables import tables
 
-REACHES: Final = "reaches "
-"""The prefix of the description of a stage that is reached at an entity."""
-
-MEETS: Final = "meets the spec"
+_REACHES: Final = "reaches "
 
 _FAR: Final = 1e4
 """A distance, in metres, that is greater than any level."""
 
 _PRECISION: Final = 1e-4
 """The precision, in metres, of :func:`near_enough`."""
+
+
+@record
+class Subgoal:
+    """What leads from a state towards acceptance.
+
+    ``place`` names the entities at which it is reached, for example ```a` or `b```; it is empty if
+    something else leads on, which ``other`` describes, for example ``makes `open` true``.
+    """
+
+    place: str = ""
+    other: str = ""
+    is_choice: bool = False
+    """Whether one of several things is enough."""
+
+    @property
+    def text(self) -> str:
+        """The description: ``reaches `s1```, ``reaches `a` or `b``` or ``makes `open` true``."""
+        return f"{_REACHES}{self.place}" if self.place else self.other
+
+
+_MEETS: Final = Subgoal(other="meets the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
@@ -60,45 +79,42 @@ def _holds(
         return False
 
 
-def deed(fspa: Fspa, state: int) -> str:
-    """Describe what leads from a state towards acceptance.
-
-    For example ``reaches `s1```, ``reaches `a` or `b``` or ``makes `open` true``.
-    """
-    descriptions = [
-        words for edge in tables(fspa).improving[state] for prime in edge.guard.primes if (words := _deed(fspa, prime))
-    ]
-    distinct = list(dict.fromkeys(descriptions))
-    if distinct and all(description.startswith(REACHES) for description in distinct):
-        return REACHES + " or ".join(description.removeprefix(REACHES) for description in distinct)
-    return " or ".join(distinct) or MEETS
+def subgoal(fspa: Fspa, state: int) -> Subgoal:
+    """Return what leads from a state towards acceptance."""
+    subgoals = [_subgoal(fspa, prime) for edge in tables(fspa).improving[state] for prime in edge.guard.primes]
+    distinct = list(dict.fromkeys(subgoal for subgoal in subgoals if subgoal is not None))
+    if len(distinct) < 2:
+        return distinct[0] if distinct else _MEETS
+    if all(subgoal.place for subgoal in distinct):
+        return Subgoal(place=" or ".join(subgoal.place for subgoal in distinct), is_choice=True)
+    return Subgoal(other=" or ".join(subgoal.text for subgoal in distinct), is_choice=True)
 
 
-def _deed(fspa: Fspa, prime: Implicant) -> str:
-    """Describe what makes a prime implicant true.
+def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
+    """Return what makes a prime implicant true; None if nothing has to be done for it.
 
     Targets come first and are named alone; otherwise the atoms that must hold; otherwise the atoms
     that must not hold.  Literals that every accepting run needs all the time are left out.
     """
     literals = [(atom, holds) for atom, holds in prime if not _is_kept(fspa, atom, holds)]
     if targets := [f"`{target}`" for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
-        return f"{REACHES}{' and '.join(targets)}"
+        return Subgoal(place=" and ".join(targets))
     for truth in (True, False):
-        if wanted := [atom for atom, holds in literals if holds == truth]:
-            return f"makes {' and '.join(f'`{fspa.atoms[atom].name}`' for atom in wanted)} {str(truth).lower()}"
-    return ""
+        if wanted := [f"`{fspa.atoms[atom].name}`" for atom, holds in literals if holds == truth]:
+            return Subgoal(other=f"makes {' and '.join(wanted)} {str(truth).lower()}")
+    return None
 
 
-def deed_of_all(fspa: Fspa, states: Collection[int], distance: int) -> str:
-    """Describe what leads from these states, all at the same distance, towards acceptance.
+def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
+    """Return what leads from these states, all at the same distance, towards acceptance.
 
-    If the descriptions differ, say how near to acceptance it leads.
+    If that differs between the states, say how near to acceptance it leads.
     """
-    deeds = {deed(fspa, state) for state in states}
-    if len(deeds) == 1:
-        return deeds.pop()
+    subgoals = {subgoal(fspa, state) for state in states}
+    if len(subgoals) == 1:
+        return subgoals.pop()
     left = f"{distance - 1} transition{'s' * (distance > 2)}"
-    return f"comes within {left} of acceptance" if distance > 1 else MEETS
+    return Subgoal(other=f"comes within {left} of acceptance") if distance > 1 else _MEETS
 
 
 def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
@@ -110,12 +126,12 @@ def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
     return all((atom, truth) in prime for edge in useful_edges for prime in edge.guard.primes)
 
 
-def together(deeds: Sequence[str]) -> str:
-    """Join descriptions of successive stages: ``reaches `s1`, `s2```.
+def together(subgoals: Sequence[Subgoal]) -> str:
+    """Describe successive subgoals: ``reaches `s1`, `s2```.
 
-    If one of them contains a choice: ``reaches `s1`, then `a` or `b```.
+    If one of them is a choice: ``reaches `s1`, then `a` or `b```.
     """
-    between = ", then " if any(" or " in description for description in deeds) else ", "
-    if deeds and all(description.startswith(REACHES) for description in deeds):
-        return REACHES + between.join(description.removeprefix(REACHES) for description in deeds)
-    return between.join(deeds)
+    between = ", then " if any(subgoal.is_choice for subgoal in subgoals) else ", "
+    if subgoals and all(subgoal.place for subgoal in subgoals):
+        return _REACHES + between.join(subgoal.place for subgoal in subgoals)
+    return between.join(subgoal.text for subgoal in subgoals)

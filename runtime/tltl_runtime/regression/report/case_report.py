@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression.explain.account import Account, summaries_of
-from tltl_runtime.regression.explain.explain import Finding, ends, findings
+from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.retrain.retrained import Retrained
 from tltl_runtime.regression.suite.level_texts import level_texts
@@ -77,7 +77,7 @@ def report_on(result: JudgedCase) -> CaseReport:
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
     # If a case fails no more often than before, its failures do not explain an uncertain verdict.
     is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
-    failed = next(ends(level, setup.fspa, now, before), None) if is_worse else None
+    failed = most_frequent_end(level, setup.fspa, now, before) if is_worse else None
     return CaseReport(
         name=case.name,
         level=level.name,
@@ -106,10 +106,10 @@ def _edits(result: JudgedCase) -> Iterator[str]:
     return edits(ready.played, before.played, ready.changes, texts, before.texts)
 
 
-def _headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], failed: Finding | None) -> str:
+def _headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], failed: str | None) -> str:
     """The headline: how the case fails if its pass rate may be too low; else a changed figure; else the pass rate."""
     if failed and judgement.rate_interval[0] < thresholds.pass_rate:
-        return failed.text.partition("; ")[0]
+        return failed
     return statistics[1] if len(statistics) > 1 else statistics[0]
 
 
