@@ -81,6 +81,14 @@ def record(cls: type[R]) -> type[R]:
     return new_class  # type: ignore[no-any-return]
 
 
+class MissingFieldsError(TypeError):
+    """Raised when a record is made without fields that have no default; ``names`` are these fields."""
+
+    def __init__(self, owner: str, names: list[str]) -> None:
+        super().__init__(f"{owner} lacks {', '.join(names)}")
+        self.names = names
+
+
 def replace(value: R, /, **fields: object) -> R:
     """Return a copy of a record with some fields replaced."""
     names = type(value).__match_args__  # type: ignore[attr-defined]
@@ -126,7 +134,7 @@ def _arguments(
         values[name] = value
     missing = [name for name in names if name not in values]
     if missing:
-        raise TypeError(f"{owner} lacks {', '.join(missing)}")
+        raise MissingFieldsError(owner, missing)
     return tuple(values[name] for name in names)
 
 

@@ -49,7 +49,7 @@ _KEY: Final = "card"
 With several, their order could differ between the files of equal policies.
 """
 
-_REFUSALS: Final = Refusals("a policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
+_REFUSALS: Final = Refusals("a", "policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 

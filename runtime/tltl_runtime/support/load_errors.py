@@ -8,13 +8,14 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 @record
 class Refusals:
-    """The errors of files that contain ``what``, such as "a policy".
+    """The errors of files that contain what ``article`` and ``noun`` name, such as "a" and "policy".
 
     There is a code for a file that is something else or damaged, one for another version, and one
     for invalid content. ``again`` says how to make the file anew, such as "train the policy again".
     """
 
-    what: str
+    article: str
+    noun: str
     unreadable_code: str
     version_code: str
     broken_code: str
@@ -22,11 +23,11 @@ class Refusals:
 
     def unreadable(self, name: str, why: str) -> TltlError:
         """Return the error that the file ``name`` is something else or damaged."""
-        return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.what}: {why}")
+        return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.article} {self.noun}: {why}")
 
     def broken(self, name: str, why: str) -> TltlError:
         """Return the error that something in the file ``name`` is invalid."""
-        return self._error(self.broken_code, f"`{name}` is a broken {self.what.partition(' ')[2]}: {why}")
+        return self._error(self.broken_code, f"`{name}` is a broken {self.noun}: {why}")
 
     def check_version(self, name: str, found: object, known: int) -> None:
         """Raise TltlError if the version ``found`` in a file is not the ``known`` one."""

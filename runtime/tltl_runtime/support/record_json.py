@@ -15,6 +15,8 @@ from math import isfinite
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
+from tltlc.core.record import MissingFieldsError
+
 T = TypeVar("T")
 
 _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a number", NoneType: "null"}
@@ -116,9 +118,8 @@ def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) ->
         instance: object = kind(**values, **known)
     except ValueError as error:
         raise RecordJsonError(f"`{where}`: {error}") from None
-    except TypeError as error:
-        # The message of a record's constructor lists the missing fields that have no default.
-        missing.append(str(error).partition(" lacks ")[2])
+    except MissingFieldsError as error:
+        missing += error.names
     if missing:
         raise RecordJsonError(f"`{where}` lacks one of the keys {', '.join(missing)}")
     return instance

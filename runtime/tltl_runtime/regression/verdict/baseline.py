@@ -32,7 +32,7 @@ _ROUNDING: Final = 1e-6
 """The rounding error by which a figure may leave its range."""
 
 _REFUSALS: Final = Refusals(
-    "a baseline", "TLT0900", "TLT0901", "TLT0902", again="record it again with `tltlc baseline`"
+    "a", "baseline", "TLT0900", "TLT0901", "TLT0902", again="record it again with `tltlc baseline`"
 )
 
 

@@ -45,7 +45,7 @@ That is about half a million decisions.
 _TEXTS: Final = ("meta", "artefact")
 """The arrays that contain the bytes of a UTF-8 text."""
 
-_REFUSALS: Final = Refusals("an episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
+_REFUSALS: Final = Refusals("an", "episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
 
 
 @record
