@@ -34,10 +34,10 @@ class Samples:
             [atom.expression for atom in fspa.atoms], self._names, values
         )
 
-    def atom_values(self, signals: Mapping[str, SupportsFloat], step: int) -> tuple[float, ...]:
+    def atom_values(self, signals: Mapping[str, SupportsFloat], when: int | str) -> tuple[float, ...]:
         """Return the values of the atoms at a sample, each in [-1, 1].
 
-        ``step`` is the number of the sample, from 1, for messages.
+        ``when``, the number of the sample from 1 or a phrase for it, is for messages.
 
         Raises:
             MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
@@ -45,26 +45,26 @@ class Samples:
         """
         missing = [name for name in self._names if name not in signals]
         if missing:
-            raise _error("TLT0611", step, f"no value for {listed(missing)}")
-        sample = [self._number(signal, signals[signal.name], step) for signal in self._fspa.signals]
-        values = [self._value(index, sample, step) for index in range(len(self._atoms))]
-        return tuple(self._in_range(index, value, step) for index, value in enumerate(values))
+            raise _error("TLT0611", when, f"no value for {listed(missing)}")
+        sample = [self._number(signal, signals[signal.name], when) for signal in self._fspa.signals]
+        values = [self._value(index, sample, when) for index in range(len(self._atoms))]
+        return tuple(self._in_range(index, value, when) for index, value in enumerate(values))
 
-    def _number(self, signal: Signal, given: SupportsFloat, step: int) -> float:
+    def _number(self, signal: Signal, given: SupportsFloat, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range."""
-        value = number(signal, given, step)
+        value = number(signal, given, when)
         low, high = signal.low, signal.high
         if signal.type == "bool":
             if value not in (0.0, 1.0):
-                raise _error("TLT0612", step, f"the signal `{signal.name}` is {shown(value)}, not true or false")
+                raise _error("TLT0612", when, f"the signal `{signal.name}` is {shown(value)}, not true or false")
             return value
         nearest = low if low is not None and value < low else high if high is not None and value > high else value
         if nearest != value:
             text = f"the signal `{signal.name}` is {shown(value)}, outside {range_text(low, high)}"
-            self._notice("TLT0615", signal.name, step, f"{text}: it counts as {shown(nearest)}")
+            self._notice("TLT0615", signal.name, when, f"{text}: it counts as {shown(nearest)}")
         return nearest
 
-    def _value(self, index: int, sample: Sequence[float], step: int) -> float:
+    def _value(self, index: int, sample: Sequence[float], when: int | str) -> float:
         try:
             return self._atoms[index](sample)
         except ZeroDivisionError:
@@ -73,24 +73,24 @@ class Samples:
             problem = "is too large to compute"
         except ValueError:
             problem = "takes a root or power that does not exist"
-        raise _error("TLT0613", step, f"the atom `{self._fspa.atoms[index].name}` {problem}")
+        raise _error("TLT0613", when, f"the atom `{self._fspa.atoms[index].name}` {problem}")
 
-    def _in_range(self, index: int, value: float, step: int) -> float:
+    def _in_range(self, index: int, value: float, when: int | str) -> float:
         if -1.0 <= value <= 1.0:
             return value
         name = self._fspa.atoms[index].name
         if not isfinite(value):
-            raise _error("TLT0613", step, f"the atom `{name}` is too large to compute")
+            raise _error("TLT0613", when, f"the atom `{name}` is too large to compute")
         nearest = 1.0 if value > 0.0 else -1.0
         if abs(value - nearest) > ROUNDING:
             text = f"the atom `{name}` is {shown(value)}, outside [-1, 1]"
-            self._notice("TLT0616", name, step, f"{text}: it counts as {shown(nearest)}")
+            self._notice("TLT0616", name, when, f"{text}: it counts as {shown(nearest)}")
         return nearest
 
-    def _notice(self, code: str, name: str, step: int, text: str) -> None:
+    def _notice(self, code: str, name: str, when: int | str, text: str) -> None:
         if (code, name) not in self._noticed:
             self._noticed.add((code, name))
-            self._notices.append(Diagnostic(code, f"step {step}: {text}", (), WAYS_OUT[code], "warning"))
+            self._notices.append(Diagnostic(code, f"{_location(when)}: {text}", (), WAYS_OUT[code], "warning"))
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
@@ -185,5 +185,8 @@ WAYS_OUT: Final = {
 
 
 def _error(code: str, when: int | str, text: str) -> MonitorError:
-    location = when if isinstance(when, str) else f"step {when}"
-    return MonitorError([Diagnostic(code, f"{location}: {text}", help=WAYS_OUT[code])])
+    return MonitorError([Diagnostic(code, f"{_location(when)}: {text}", help=WAYS_OUT[code])])
+
+
+def _location(when: int | str) -> str:
+    return when if isinstance(when, str) else f"step {when}"

@@ -155,11 +155,11 @@ class BatchSamples:
     def _atom_error(self, row: int, indices: Sequence[int], columns: Tensor) -> MonitorError:
         """Return the error of an atom; the scalar monitor finds the reason at the sample of the first environment."""
         sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
-        title = f"the atom `{self._fspa.atoms[row].name}` is too large to compute"
         try:
-            Samples(self._fspa, self._params, []).atom_values(sample, 1)
+            Samples(self._fspa, self._params, []).atom_values(sample, _environments(indices))
         except MonitorError as error:
-            title = error.diagnostics[0].title.removeprefix("step 1: ")
+            return error
+        title = f"the atom `{self._fspa.atoms[row].name}` is too large to compute"
         return _error("TLT0613", f"{_environments(indices)}: {title}")
 
 
