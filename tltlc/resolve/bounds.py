@@ -37,7 +37,7 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
         raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
     subject = f"the bound of `{source.slice(expr.op_span)}`"
     if 2 * high + (high - low + 1) * env.context.tree_size(operand) > 2 * LARGEST_EXPANSION:
-        raise too_large(subject, source, bound.span)
+        raise too_large(subject, source, bound.span, is_bound=True)
     env.context.bounds.append(Bound(high, source, bound.span))
     result = operand
     join, step = (and_, weak_next) if expr.op == "G" else (or_, weak_next if expr.op == "N" else next_)
@@ -45,7 +45,7 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
         result = join(operand, step(result))
     for _ in range(low):
         result = step(result)
-    return env.context.checked_size(result, subject, source, bound.span)
+    return env.context.checked_size(result, subject, source, bound.span, is_bound=True)
 
 
 def _unbounded(op: str, steps: int, operand: Formula) -> Formula:

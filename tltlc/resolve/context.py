@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
-from typing import Any
+from typing import Any, Final
 
 from tltlc.core.names import full_name
 from tltlc.core.record import record
@@ -198,26 +198,28 @@ class Context:
                 stack.pop()
         return self._sizes[formula]
 
-    def checked_size(self, formula: Formula, subject: str, source: SourceFile, span: Span) -> Formula:
+    def checked_size(
+        self, formula: Formula, subject: str, source: SourceFile, span: Span, *, is_bound: bool = False
+    ) -> Formula:
         """Return the formula; raise ResolutionError if an expansion has made it too large."""
         if self.tree_size(formula) > LARGEST_EXPANSION:
-            raise too_large(subject, source, span)
+            raise too_large(subject, source, span, is_bound=is_bound)
         return formula
 
 
-def too_large(subject: str, source: SourceFile, span: Span) -> ResolutionError:
+_SMALLER_BOUND: Final = "choose a smaller bound or a slower clock, or let a signal count the time"
+_FEWER_USES: Final = "it multiplies with each use inside another: say the same with fewer of them"
+
+
+def too_large(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
     """Return the problem of an expansion past the limit.
 
     ``subject`` names the bound, let, quantifier or parameter.
     """
-    if subject.startswith("the bound"):
-        advice = "choose a smaller bound or a slower clock, or let a signal count the time"
-    else:
-        advice = "it multiplies with each use inside another: say the same with fewer of them"
     return problem(
         "TLT0315",
         f"{subject} expands to more than {LARGEST_EXPANSION:,} parts",
         source,
         span,
-        advice=advice,
+        advice=_SMALLER_BOUND if is_bound else _FEWER_USES,
     )
