@@ -73,7 +73,10 @@ def test_near_is_in_range_for_an_unbounded_far() -> None:
 def test_near_with_far_below_close_divides_by_zero_and_jumps() -> None:
     wrong, jump = check(near(Const(3.0), FAR))
     assert wrong == Finding(
-        "range_wrong", "with distance(s1) = 3, far = 3 the value divides by zero", {"distance(s1)": 3.0, "far": 3.0}
+        "range_wrong",
+        "with distance(s1) = 3, far = 3 the value divides by zero",
+        {"distance(s1)": 3.0, "far": 3.0},
+        is_undefined=True,
     )
     assert jump.kind == "discontinuous"
     assert jump.message == "with distance(s1) = 3, far = 2 the value jumps from 0 to -1"

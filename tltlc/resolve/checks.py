@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 N = TypeVar("N", SignalNode, ParamNode)
 
-_UNDEFINED_ENDINGS = ("divides by zero", "takes a root or power that no real number has")
 
 _CONTINUITY = ("discontinuous", "continuity_unproved", "continuity_unchecked")
 _NEVER_NEGATIVE = ("length", "time", "speed")
@@ -106,7 +105,7 @@ def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) ->
     code, severity, title, advice = _CASES[finding.kind]
     if negative:
         code, severity, title, advice = "TLT0401", "warning", *_NEGATIVE
-    if not negative and finding.message.endswith(_UNDEFINED_ENDINGS):
+    if not negative and finding.is_undefined:
         title, advice = _UNDEFINED
     labels: tuple[Label, ...] = (Label(instance.source, instance.span, finding.message),)
     if instance.use and instance.use.source is not instance.source:

@@ -50,12 +50,13 @@ class Finding:
     """A property of a predicate that is wrong or could not be proved.
 
     ``witness`` gives the value of each signal and param at the point in ``message``. It is empty if
-    the kind ends in ``unproved`` or ``unchecked``.
+    the kind ends in ``unproved`` or ``unchecked``. ``is_undefined``: the predicate has no value there.
     """
 
     kind: FindingKind
     message: str
     witness: Mapping[str, float] = _NO_POINT
+    is_undefined: bool = False
 
 
 def check_predicate(
@@ -167,7 +168,7 @@ def _wrong(predicate: Predicate) -> Finding | None:
         return None
     values = _by_name(witness.point)
     problem = witness.reason if witness.value is None else f"is {_number(witness.value)}"
-    return Finding("range_wrong", f"{_where(values)}the value {problem}", values)
+    return Finding("range_wrong", f"{_where(values)}the value {problem}", values, witness.is_undefined)
 
 
 def _check_continuity(predicate: Predicate) -> Finding | None:

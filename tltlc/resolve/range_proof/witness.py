@@ -30,6 +30,8 @@ class Witness:
     point: Point
     value: float | None
     reason: str = ""
+    is_undefined: bool = False
+    """Whether the expression divides by zero there, or takes a root or power that no real number has."""
 
 
 def value_at(expression: Expression, point: Point) -> Witness:
@@ -40,11 +42,11 @@ def value_at(expression: Expression, point: Point) -> Witness:
     try:
         value = evaluate(expression, signals, params)
     except ZeroDivisionError:
-        return Witness(point, None, "divides by zero")
+        return Witness(point, None, "divides by zero", is_undefined=True)
     except OverflowError:
         return Witness(point, None, "is too large to compute")
     except ValueError:
-        return Witness(point, None, "takes a root or power that no real number has")
+        return Witness(point, None, "takes a root or power that no real number has", is_undefined=True)
     return Witness(point, value) if isfinite(value) else Witness(point, None, "is too large to compute")
 
 
