@@ -25,13 +25,16 @@ def title(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
     return f"\n{mark}\n".join("\n".join(lines) for lines in about if lines)
 
 
-def described(name: str, field: Signal | Param) -> str:
-    """Return the comment on a field called ``name``: its name in the spec if different, its text, its values."""
+def described(name: str, field: Signal | Param, escape: Callable[[str], str] = str) -> str:
+    """Return the comment on a field called ``name``: its name in the spec if different, its text, its values.
+
+    ``escape`` replaces signs that mean something in a comment; it is not applied to the values.
+    """
     # A documented bool needs no "True or false."
     values = "" if field.doc and field.type == "bool" else kind(field)
     doc = f"{field.doc}." if values and field.doc[-1:].isalnum() else field.doc
-    text = f"{doc} {values}".strip()
-    return text if field.name == name else f"{field.name}: {text}"
+    text = f"{escape(doc)} {values}".strip()
+    return text if field.name == name else f"{escape(field.name)}: {text}"
 
 
 def kind(field: Signal | Param) -> str:

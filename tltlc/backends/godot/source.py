@@ -160,9 +160,7 @@ class _Source:
         lines: list[str] = []
         for name, type_, value, declared in fields:
             # Godot 4 shows `##` comments as documentation. An opening bracket would begin a tag, except before numbers.
-            description = pieces.described(name, declared)
-            values = pieces.kind(declared) if description.endswith(pieces.kind(declared)) else ""
-            description = description.removesuffix(values).replace("[", "[lb]") + values
+            description = pieces.described(name, declared, lambda text: text.replace("[", "[lb]"))
             remarks = [f"#{line}" for line in self._printer.comment(description)]
             field = f"var {name}: {type_} = {value}"
             # A short comment goes on the line of its field.

@@ -153,9 +153,9 @@ class Declarations:
     def _flat_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:
         """Return an item of a block on one line, or None if it is too long."""
         if isinstance(item, tree.TestExpect):
-            return self._expectation(item)
+            return f"expect {self._expectation(item)}"
         if isinstance(item, tree.TestStep):
-            head, values = self._step(item), [*item.atoms]
+            head, values = f"step{self._repetitions(item)}", [*item.atoms]
         elif isinstance(item.value, tuple):
             return f"{item.kind} {', '.join(part.name for part in item.value)}"
         else:
@@ -168,11 +168,11 @@ class Declarations:
         if isinstance(item, tree.TestExpect):
             page.put("expect")
             page.comments(item.span.end, indent)
-            page.put(self._expectation(item).removeprefix("expect"))
+            page.put(f" {self._expectation(item)}")
         elif isinstance(item, tree.TestStep):
             page.put("step")
             page.comments(item.atoms[0].span.start, indent)
-            page.put(self._step(item).removeprefix("step") + " ")
+            page.put(f"{self._repetitions(item)} ")
             self._expressions.put_list([Item("", atom, atom.span) for atom in item.atoms], indent)
         elif isinstance(item.value, tuple):
             page.put(f"{item.kind} ")
@@ -180,24 +180,24 @@ class Declarations:
         else:
             page.put(item.kind)
             page.comments(item.value.span.start, indent)
-            page.put(_keyword(item).removeprefix(item.kind) + " ")
+            page.put(" at " if item.kind == "judge" else " ")
             self._expressions.put_behind_word(item.value, indent)
 
-    def _step(self, item: tree.TestStep) -> str:
-        """Return ``step`` with its number of repetitions, if the source has one."""
+    def _repetitions(self, item: tree.TestStep) -> str:
+        """Return the number of repetitions of a step, such as `` 3x``; empty if the source has none."""
         head = self._without_comments(Span(item.span.start, item.atoms[0].span.start))
         times = re.search("[0-9]+", head)
-        return f"step {times[0]}x" if times else "step"
+        return f" {times[0]}x" if times else ""
 
     def _expectation(self, item: tree.TestExpect) -> str:
         if item.kind == "state":
-            return f'expect state "{item.value}"'
+            return f'state "{item.value}"'
         if item.kind == "verdict":
-            return f"expect {item.value}"
+            return str(item.value)
         amount = _AMOUNT.search(self._without_comments(item.span))
         assert amount is not None
         unit = f" {amount[3]}" if amount[3] else ""
-        return f"expect progress{self._flat.infix(item.comparison or '>=')}{amount[2]}{unit}"
+        return f"progress{self._flat.infix(item.comparison or '>=')}{amount[2]}{unit}"
 
     def _without_comments(self, span: Span) -> str:
         return re.sub("//[^\n]*", "", self._source.slice(span))
