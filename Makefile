@@ -78,6 +78,7 @@ generate: $(VENV)/.installed-dev
 	$(BIN)/tltlc render docs/images/new/first_level.tltl --notation english -o docs/images/leave_with_key.svg
 	rm -rf docs/images/new
 	$(BIN)/python docs/images/frames.py docs/images
+	$(BIN)/python -m docs_site.storeys docs/images
 
 # Build the documentation as a site, with warnings as errors: site/index.html, which needs no server.
 docs: $(VENV)/.installed-dev
