@@ -1,0 +1,54 @@
+"""Policies, baselines and recordings of an older version are read, and mean the same, today."""
+
+from __future__ import annotations
+
+import json
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.regression.verdict.baseline import read_baseline, write_baseline
+from tltl_runtime.stealth.recordings.cause import cause
+from tltl_runtime.stealth.recordings.check import check, resimulate
+from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.stealth.recordings.outcome import outcome
+
+OLD = Path(__file__).parents[1] / "old_files"
+EXPECTED: dict[str, Any] = json.loads((OLD / "expected.json").read_text(encoding="utf-8"))
+
+
+def observation(shape: tuple[int, ...]) -> NDArray[Any]:
+    """The observation of which the old version computed the logits."""
+    if len(shape) == 3:
+        return (np.arange(prod(shape)).reshape(shape) % 2).astype(np.uint8)
+    return np.linspace(-1, 1, prod(shape), dtype=np.float32).reshape(shape)
+
+
+def test_an_old_policy_computes_the_same_logits() -> None:
+    policy = read_policy(OLD / "navigation.safetensors")
+    logits = policy.logits({key: observation(shape) for key, shape in policy.card.shapes})
+    assert logits.tolist() == pytest.approx(EXPECTED["policy_logits"], abs=1e-3)
+
+
+def test_an_old_baseline_is_read_whole(tmp_path: Path) -> None:
+    references = read_baseline(OLD / "room.baseline.json")
+    assert [[account.success for account in reference.accounts] for reference in references] == [
+        [False, True, True, True],
+        [True],
+    ]
+    write_baseline(tmp_path / "again.json", references)
+    assert (tmp_path / "again.json").read_bytes() == (OLD / "room.baseline.json").read_bytes()
+
+
+def test_an_old_recording_is_judged_and_played_alike() -> None:
+    episode = read_episode(OLD / "navigation.episode.npz")
+    result, expected = outcome(episode), dict(EXPECTED["episode"])
+    assert cause(episode).kind == expected.pop("cause")
+    assert {name: getattr(result, name) for name in expected} == expected | {"opened": tuple(expected["opened"])}
+    assert check(episode) == ()
+    assert resimulate(episode) is None
