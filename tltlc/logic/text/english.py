@@ -59,6 +59,22 @@ def clause_text(formula: Formula, *, endless: bool = False) -> str:
     return _clause(formula, "now", _How(_DEEPEST, endless))[0]
 
 
+def invariant_text(invariant: Formula, *, endless: bool = False) -> str:
+    """Return a ``G`` as a clause for a list of what must hold throughout: ``keep alive`` for ``G alive``."""
+    (body,) = invariant.args
+    return imperative(body, "keep", "avoid") if _is_condition(body) else clause_text(invariant, endless=endless)
+
+
+def recurring_text(recurring: Formula) -> str:
+    """Return a ``G F`` as a clause for a list of what recurs: ``reach near(exit)`` for ``G F near(exit)``."""
+    (body,) = recurring.args
+    reach = _without_negation(body)
+    if reach.op != "F":
+        return clause_text(recurring, endless=True)
+    (goal,) = reach.args
+    return f"reach {object_phrase(goal)}" if is_state(goal) else _last(body, _How(_DEEPEST, True))
+
+
 def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
     """Return the goals of an ``F``, each with its link to the previous goal.
 
@@ -198,11 +214,11 @@ def _goal(body: Formula, how: _How) -> str:
 
 def _throughout(body: Formula, how: _How) -> _Clause:
     """Return the clause of ``G``: what to keep, what to avoid, or what to do whenever something holds."""
-    if body.op == "and" and not all(part.op == "atom" for part in body.args):
+    if _has_parts(body):
         return _together([_throughout(part, how) for part in _parts_throughout(body)])
     if body.op == "implies" and is_state(body):
         return f"whenever {phrase(body.args[0])}, {_last(body.args[1], how)}", _CLAUSE
-    if is_state(body):
+    if _is_condition(body):
         return imperative(body, "keep", "avoid") + " throughout", _of_state(body)
     if how.endless and _without_negation(body).op == "F":
         (goal,) = _without_negation(body).args
@@ -213,6 +229,16 @@ def _throughout(body: Formula, how: _How) -> _Clause:
     if left is not None and right is not None:
         return f"whenever {phrase(left)}, {_last(right, how)}", _CLAUSE
     return f"at every step, {_last(body, how)}", _CLAUSE
+
+
+def _has_parts(body: Formula) -> bool:
+    """Whether the parts of what must hold throughout are listed one by one."""
+    return body.op == "and" and not all(part.op == "atom" for part in body.args)
+
+
+def _is_condition(body: Formula) -> bool:
+    """Whether what must hold throughout is to be kept or avoided as a whole."""
+    return is_state(body) and body.op != "implies" and not _has_parts(body)
 
 
 def _parts_throughout(body: Formula) -> list[Formula]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tltlc.core.record import record
 from tltlc.logic.bounded import bounded, with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula, always
-from tltlc.logic.text.english import clause_text, goal_texts, without_constants
+from tltlc.logic.text.english import clause_text, goal_texts, invariant_text, recurring_text, without_constants
 from tltlc.logic.text.phrases import is_state
 
 
@@ -52,11 +52,9 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
             linked = goal_texts(part, endless=endless)
             goals.append(tuple(Goal(text, link not in ("", "then")) for link, text in linked))
         elif part.op == "G" and endless and _core(part.args[0]).op == "F":
-            clause = clause_text(part, endless=endless)
-            recurring.append(clause.removesuffix(" again and again").removeprefix("again and again, "))
+            recurring.append(recurring_text(part))
         elif part.op == "G":
-            clause = clause_text(part, endless=endless)
-            throughout.append(clause.removesuffix(" throughout") if is_state(part.args[0]) else clause)
+            throughout.append(invariant_text(part, endless=endless))
         else:
             others.append(clause_text(part, endless=endless))
     return Outline(tuple(goals), tuple(throughout), tuple(recurring), tuple(others))
