@@ -239,7 +239,7 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
     if kind != "keep":
         is_clear = is_clear and place.tokens[begin].type not in _UNARY
     is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(place, begin, at)
-    parts = _Parts(operand(place, begin, at), time, before)
+    parts = _Parts(operand(place, begin, at), time.text, before, time)
     return _rewrite_error(place, at, (start, stop), form, parts if is_clear else None)
 
 
@@ -296,26 +296,45 @@ def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
         form = forms[""]
         is_clear = is_clear and _is_clear_time(place, at, forms)
         is_clear = is_clear and not has(place, first, stop, {*TEMPORAL, "AND", "OR"})
-    parts = _Parts(operand(place, second, stop), time, before)
+    parts = _Parts(operand(place, second, stop), time.text, before, time)
     return _rewrite_error(place, at, (start, stop), form, parts if is_clear else None)
 
 
 @record
+class _Time:
+    """A time as the text gives it, with a unit of the language."""
+
+    number: str
+    unit: str
+
+    @property
+    def text(self) -> str:
+        return f"{self.number} {self.unit}"
+
+    @property
+    def steps(self) -> int | None:
+        """The number of steps; None if the unit is another one."""
+        return int(self.number) if self.unit in ("step", "steps") and self.number.isdecimal() else None
+
+
+@record
 class _Parts:
-    """The parts of the text: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``."""
+    """The parts of the text: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``.
+
+    ``time`` is given if ``b`` is a time.
+    """
 
     a: str
     b: str
     c: str = ""
+    time: _Time | None = None
 
     def put_in(self, form: str) -> str:
         """Return the form with the parts filled in; empty if the form needs a time in steps and there is none."""
-        number, _, unit = self.b.partition(" ")
-        is_steps = unit in ("step", "steps") and number.isdecimal()
-        less = f"{int(number) - 1} steps" if is_steps else ""
-        if "{less}" in form and not less:
-            return ""
-        return form.format(a=self.a, b=self.b, c=self.c, end=number if is_steps else self.b, less=less)
+        if self.time is None or self.time.steps is None:
+            return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
+        less = f"{self.time.steps - 1} steps"
+        return form.format(a=self.a, b=self.b, c=self.c, end=self.time.number, less=less)
 
 
 def _rewrite_error(place: Place, at: int, part: tuple[int, int], form: str, parts: _Parts | None) -> Diagnostic:
@@ -330,7 +349,8 @@ def _rewrite_error(place: Place, at: int, part: tuple[int, int], form: str, part
     is_timed = form in _TIMED
     if _is_clause(form):
         start = 0
-    text = parts.put_in(form) if parts and parts.a and parts.b and not (is_timed and _is_zero(parts.b)) else ""
+    is_zero = is_timed and parts is not None and parts.time is not None and _is_zero(parts.time)
+    text = parts.put_in(form) if parts and parts.a and parts.b and not is_zero else ""
     if word.text == "before" and form == _SEQUENCE[""]:
         # `b` may be a later goal, or something that must not happen before `a`.
         text = ""
@@ -347,7 +367,8 @@ def _rewrite_error(place: Place, at: int, part: tuple[int, int], form: str, part
 def _general_help(place: Place, at: int, form: str) -> str:
     """Return a help that describes a form, with letters for its parts."""
     word, is_timed, is_prefix = place.tokens[at].text, form in _TIMED, at == 0 or at < place.stop.index
-    parts = _Parts("a", "20 steps" if is_timed else "b", "c")
+    time = _Time("20", "steps") if is_timed else None
+    parts = _Parts("a", time.text if time else "b", "c", time)
     infix = "followed by" if word == "followed" else word
     english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"
     if form == _CONDITION[""] and not _is_of_every_step(place, at):
@@ -423,8 +444,8 @@ def _is_clause(form: str) -> bool:
     return form.split()[0] in CLAUSES
 
 
-def _is_zero(time: str) -> bool:
-    return not float(time.split()[0])
+def _is_zero(time: _Time) -> bool:
+    return not float(time.number)
 
 
 def _kind(place: Place) -> str:
@@ -432,12 +453,12 @@ def _kind(place: Place) -> str:
     return place.tokens[0].text if place.start == "clause" and not place.open_brackets else ""
 
 
-def _time(place: Place, at: int) -> tuple[str, int, bool]:
+def _time(place: Place, at: int) -> tuple[_Time, int, bool]:
     """Return a number with its unit in the language's form, the index after it, and whether the unit is certain."""
     unit = place.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
     is_clear = bool(known) or not declares_clock(place.source)
-    return f"{place.tokens[at].text} {known or 'steps'}", at + 1 + bool(known), is_clear
+    return _Time(place.tokens[at].text, known or "steps"), at + 1 + bool(known), is_clear
 
 
 _SEPARATORS: Final = ("then", ",", ":")
