@@ -10,9 +10,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build
+from tltlc.automaton.verdict_warnings import verdict_warnings
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.grammar.allow_index import unsilenced
 from tltlc.grammar.parser import parse
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
@@ -25,12 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tltlc.automaton.fspa import Fspa
-    from tltlc.logic.formula import Formula
     from tltlc.resolve.spec import Program, Spec
-
-_NO_ATOM = "write a signal, a predicate or a comparison in place of `true` or `false`"
-_MOST_LABELS = 4
-"""The most parts of a contradiction that get a label."""
 
 
 @record
@@ -97,7 +93,7 @@ def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[
             fspa = build(spec, state_budget=options.state_budget)
     except TltlError as error:
         return None, error.diagnostics
-    return fspa, _verdict_warnings(spec, fspa)
+    return fspa, verdict_warnings(spec, fspa)
 
 
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
@@ -194,57 +190,3 @@ def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
     params, errors = overridden({param.name: param for param in fspa.params}, values)
     stop_at_errors(errors)
     return replace(fspa, params=tuple(params.values()))
-
-
-def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
-    """Return a warning if the initial state already decides the spec."""
-    verdict = fspa.states[0].verdict
-    if verdict == "violated":
-        return (_unsatisfiable(spec),)
-    if verdict == "satisfied":
-        title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
-        suggestion = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
-        suggestion = suggestion if spec.formula.atoms() else _NO_ATOM
-        return (Diagnostic("TLT0411", title, (label,), suggestion, severity="warning"),)
-    return ()
-
-
-def _recurs(formula: Formula) -> bool:
-    """Whether the formula is ``G F p``. A finite trace satisfies it if p holds at its last sample."""
-    return formula.op == "G" and formula.args[0].op == "F"
-
-
-def _unsatisfiable(spec: Spec) -> Diagnostic:
-    """Return the warning that no trace satisfies a spec; its labels mark the parts that contradict."""
-    from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
-
-    is_infinite = spec.semantics == "infinite"
-    decision = unsatisfiable
-    if is_infinite:
-        from tltlc.automaton.infinite import contradiction as over_infinite_traces
-
-        decision = over_infinite_traces.unsatisfiable
-    parts = contradiction(spec, decision)
-    excluded = bool(spec.exclusive) and not decision(parts, replace(spec, exclusive=()))
-    title = f"no trace satisfies `{spec.name}`"
-    if len(parts) == 1:
-        message, suggestion = "this cannot be met", "weaken it"
-        (part,) = parts
-        if not part.formula.atoms():
-            suggestion = _NO_ATOM
-        elif excluded:
-            suggestion = "weaken it: atoms that are `exclusive` never hold together"
-        elif part.formula.op == "G" and not is_infinite:
-            once = replace(part, formula=part.formula.args[0])
-            if not decision([once], spec):
-                suggestion = (
-                    "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
-                )
-    else:
-        message, suggestion = "together with the others", "these contradict each other: weaken one of them"
-        if not is_infinite and any(_recurs(part.formula) for part in parts):
-            suggestion += "; where play has no end and one comes again and again, say `semantics infinite`"
-        elif excluded:
-            suggestion += "; atoms that are `exclusive` never hold together"
-    labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])
-    return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), suggestion, severity="warning")

@@ -1,0 +1,71 @@
+"""Warn about a spec that every trace satisfies, or none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa
+    from tltlc.logic.formula import Formula
+    from tltlc.resolve.spec import Spec
+
+_NO_ATOM: Final = "write a signal, a predicate or a comparison in place of `true` or `false`"
+_MOST_LABELS: Final = 4
+"""The most parts of a contradiction that get a label."""
+
+
+def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
+    """Return a warning if the initial state already decides the spec."""
+    verdict = fspa.states[0].verdict
+    if verdict == "violated":
+        return (_unsatisfiable(spec),)
+    if verdict == "satisfied":
+        title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
+        suggestion = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
+        suggestion = suggestion if spec.formula.atoms() else _NO_ATOM
+        return (Diagnostic("TLT0411", title, (label,), suggestion, severity="warning"),)
+    return ()
+
+
+def _recurs(formula: Formula) -> bool:
+    """Whether the formula is ``G F p``. A finite trace satisfies it if p holds at its last sample."""
+    return formula.op == "G" and formula.args[0].op == "F"
+
+
+def _unsatisfiable(spec: Spec) -> Diagnostic:
+    """Return the warning that no trace satisfies a spec; its labels mark the parts that contradict."""
+    from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
+
+    is_infinite = spec.semantics == "infinite"
+    decision = unsatisfiable
+    if is_infinite:
+        from tltlc.automaton.infinite import contradiction as over_infinite_traces
+
+        decision = over_infinite_traces.unsatisfiable
+    parts = contradiction(spec, decision)
+    excluded = bool(spec.exclusive) and not decision(parts, replace(spec, exclusive=()))
+    title = f"no trace satisfies `{spec.name}`"
+    if len(parts) == 1:
+        message, suggestion = "this cannot be met", "weaken it"
+        (part,) = parts
+        if not part.formula.atoms():
+            suggestion = _NO_ATOM
+        elif excluded:
+            suggestion = "weaken it: atoms that are `exclusive` never hold together"
+        elif part.formula.op == "G" and not is_infinite:
+            once = replace(part, formula=part.formula.args[0])
+            if not decision([once], spec):
+                suggestion = (
+                    "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
+                )
+    else:
+        message, suggestion = "together with the others", "these contradict each other: weaken one of them"
+        if not is_infinite and any(_recurs(part.formula) for part in parts):
+            suggestion += "; where play has no end and one comes again and again, say `semantics infinite`"
+        elif excluded:
+            suggestion += "; atoms that are `exclusive` never hold together"
+    labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])
+    return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), suggestion, severity="warning")
