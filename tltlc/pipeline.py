@@ -1,12 +1,13 @@
 """Compile source text to automata: parse, resolve, build, in this order.
 
-A stage runs to its end and reports all its diagnostics. The next stage starts only if there are
-no errors.
+A :class:`Session` runs the stages for one text. A stage runs to its end and reports all its
+diagnostics. To get automata, the next stage starts only if there are no errors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build
@@ -19,13 +20,14 @@ from tltlc.grammar.parser import parse
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.io.resources import bounded
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolution
+from tltlc.resolve.program import Resolution, resolution
 
 if TYPE_CHECKING:
     import os
     from pathlib import Path
 
     from tltlc.automaton.fspa import Fspa
+    from tltlc.grammar.tree import Module
     from tltlc.resolve.spec import Program, Spec
 
 
@@ -57,29 +59,112 @@ class Compiled:
     diagnostics: tuple[Diagnostic, ...]
 
 
-@bounded()
+class Session:
+    """One source text with the results of each stage of the compiler.
+
+    A stage runs when its result is first needed, and only once. ``module``, ``syntax_errors``,
+    ``resolution`` and ``source_diagnostics`` never raise an error because of the text: what is wrong
+    is reported and left out. All others require a text without errors up to their stage. Without
+    ``proofs``, the session skips the proofs that predicates stay in their ranges, which take longer
+    than everything else.
+
+    >>> session = Session(SourceFile("hide.tltl", "signal seen: bool  spec hide = G !seen"))
+    >>> [spec.name for spec in session.specs], [len(fspa.states) for fspa in session.automata]
+    (['hide'], [2])
+    """
+
+    def __init__(self, source: SourceFile, options: CompileOptions | None = None, *, proofs: bool = True) -> None:
+        self.source = source
+        self.options = options or CompileOptions()
+        self._proofs = proofs
+
+    @property
+    def module(self) -> Module:
+        """The declarations that can be read."""
+        return self._parsed[0]
+
+    @property
+    def syntax_errors(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of the parser."""
+        return self._parsed[1]
+
+    @cached_property
+    def resolution(self) -> Resolution:
+        """The names, specs and tests of the declarations that can be read. Reads the imported files."""
+        options = self.options
+        return resolution(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs))
+
+    @property
+    def source_diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of parsing and resolution, including those that comments silence."""
+        return self.syntax_errors + self.resolution.diagnostics
+
+    @cached_property
+    def program(self) -> Program:
+        """The specs and tests.
+
+        Errors: :class:`TltlError` with the diagnostics of parsing, or of parsing and resolution.
+        """
+        stop_at_errors(self.syntax_errors)
+        stop_at_errors(self._unsilenced(self.source_diagnostics))
+        return self.resolution.program
+
+    @cached_property
+    def specs(self) -> tuple[Spec, ...]:
+        """The specs that the options name, or all of them, in order.
+
+        Errors: as for :attr:`program`; TLT0720 if the options name a spec that does not exist.
+        """
+        return pick_specs(self.program.specs, self.options.specs, self.source.name)
+
+    @cached_property
+    def reported(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of all stages, including those that comments silence. Errors: as for :attr:`specs`."""
+        # This raises the errors of a stage before the next stage runs.
+        built = self._built
+        return self.source_diagnostics + tuple(diagnostic for _, warnings in built for diagnostic in warnings)
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of all stages that no comment silences. Errors: as for :attr:`specs`."""
+        return self._unsilenced(self.reported)
+
+    @property
+    def automata(self) -> tuple[Fspa, ...]:
+        """The automata of :attr:`specs`, in their order.
+
+        Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed;
+        TLT0720 if the options name a spec that does not exist.
+        """
+        stop_at_errors(self.diagnostics)
+        return tuple(fspa for fspa, _ in self._built if fspa is not None)
+
+    @bounded()
+    def compiled(self) -> Compiled:
+        """Return the result of all stages. Errors: as for :attr:`automata`."""
+        automata = self.automata
+        return Compiled(self.program, automata, self.diagnostics)
+
+    @cached_property
+    def _parsed(self) -> tuple[Module, tuple[Diagnostic, ...]]:
+        return parse(self.source)
+
+    @cached_property
+    def _built(self) -> tuple[tuple[Fspa | None, tuple[Diagnostic, ...]], ...]:
+        """The automaton of each spec with its warnings, or None with the errors."""
+        return tuple(build_spec(spec, self.options) for spec in self.specs)
+
+    def _unsilenced(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+        return unsilenced((loaded.module for loaded in self.resolution.modules), diagnostics)
+
+
 def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:
     """Compile all specs of a source text, or the specs that the options name.
 
     Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed; TLT0720
     if the options name a spec that does not exist.
     """
-    options = options or CompileOptions()
-    module, diagnostics = parse(source)
-    stop_at_errors(diagnostics)
-    resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
-    program, modules = resolved.program, [loaded.module for loaded in resolved.modules]
-    diagnostics += resolved.diagnostics
-    stop_at_errors(unsilenced(modules, diagnostics))
-    automata: list[Fspa] = []
-    for spec in pick_specs(program.specs, options.specs, source.name):
-        fspa, spec_diagnostics = build_spec(spec, options)
-        diagnostics += spec_diagnostics
-        if fspa is not None:
-            automata.append(fspa)
-    diagnostics = unsilenced(modules, diagnostics)
-    stop_at_errors(diagnostics)
-    return Compiled(program, tuple(automata), diagnostics)
+    return Session(source, options).compiled()
 
 
 def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
