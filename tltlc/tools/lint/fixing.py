@@ -5,16 +5,15 @@ from __future__ import annotations
 from bisect import bisect, insort
 from collections.abc import Container, Iterable, Mapping, Sequence
 
-from tltlc.core.record import EMPTY, record
+from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.allow_comments import spoken_of
-from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.rule import Finding
-from tltlc.tools.lint.run import lint
+from tltlc.tools.lint.run import findings, view_of
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
 _MOST_ROUNDS = 100
@@ -47,36 +46,39 @@ def fix(
 
     Errors: the same as :func:`tltlc.tools.lint.run.lint`.
     """
-    findings = lint(source, options, elsewhere, levels)
+
+    def linted(text: SourceFile) -> tuple[Module, tuple[Finding, ...]]:
+        view = replace(view_of(text, options or CompileOptions()), elsewhere=elsewhere)
+        return view.module, findings(view, levels)
+
+    module, left = linted(source)
     fixed: list[Diagnostic] = []
     for _ in range(_MOST_ROUNDS):
-        edited, applied = _applied(source, findings)
+        edited, applied = _applied(module, left)
         if not applied:
             break
         try:
-            remaining = lint(edited, options, elsewhere, levels)
+            module, left = linted(edited)
         except TltlError:
             # These fixes break the file, so discard them and keep the text before them.
             break
-        source, findings = edited, remaining
         fixed += applied
-    return Fixed(source, tuple(fixed), findings)
+    return Fixed(module.source, tuple(fixed), left)
 
 
-def _applied(source: SourceFile, findings: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
+def _applied(module: Module, left: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
     """Apply all fixes that do not overlap and do not change what comments apply to.
 
     Returns the new text and the diagnostics that were fixed.
     """
-    fixable = _without_overlaps([finding for finding in findings if finding.fix])
+    fixable = _without_overlaps([finding for finding in left if finding.fix])
     if not fixable:
-        return source, []
-    module, _ = parse(source)
+        return module.source, []
     if spoken_of(module):
         applied, edits = _keeping_scopes(module, fixable)
     else:
         applied, edits = fixable, _edits(fixable)
-    return after(source, edits), [finding.diagnostic for finding in applied]
+    return after(module.source, edits), [finding.diagnostic for finding in applied]
 
 
 def _without_overlaps(findings: Iterable[Finding]) -> list[Finding]:

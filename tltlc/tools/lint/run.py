@@ -7,13 +7,9 @@ from typing import Final
 
 from tltlc.core.record import EMPTY, replace
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
-from tltlc.grammar.allow_index import unsilenced
-from tltlc.grammar.parser import parse
+from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
-from tltlc.pipeline import CompileOptions, build_spec
-from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolution
+from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint.allow import silenced
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.rule import Finding, Rule
@@ -74,24 +70,17 @@ def levelled(all_findings: Iterable[Finding], levels: Mapping[str, str]) -> tupl
 
 
 def view_of(source: SourceFile, options: CompileOptions) -> View:
-    """Parse, resolve and compile a file. The errors are the same as in :func:`lint`."""
-    module, diagnostics = parse(source)
-    stop_at_errors(diagnostics)
-    resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
-    diagnostics += resolved.diagnostics
-    modules = [loaded.module for loaded in resolved.modules]
-    stop_at_errors(unsilenced(modules, diagnostics))
+    """Compile all specs of a file. The errors are the same as in :func:`lint`."""
+    session = Session(source, replace(options, specs=()))
+    automata, module, resolved = session.automata, session.module, session.resolution
     declared = {
         declaration.name: declaration for declaration in module.declarations if isinstance(declaration, SpecDecl)
     }
-    specs: list[SpecView] = []
-    for spec in resolved.program.specs:
-        fspa, remarks = build_spec(spec, options)
-        diagnostics += remarks
-        if fspa is not None:
-            specs.append(SpecView(declared[spec.name], spec, fspa, resolved.env))
-    stop_at_errors(unsilenced(modules, diagnostics))
-    return View(module, resolved.env, resolved.modules, tuple(specs), diagnostics, program=resolved.program)
+    specs = tuple(
+        SpecView(declared[spec.name], spec, fspa, resolved.env)
+        for spec, fspa in zip(session.specs, automata, strict=True)
+    )
+    return View(module, resolved.env, resolved.modules, specs, session.reported, program=session.program)
 
 
 def _at(finding: Finding, severity: str) -> Finding:
