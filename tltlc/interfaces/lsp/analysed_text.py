@@ -11,14 +11,13 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.allow_index import unsilenced
 from tltlc.grammar.lexer import Token, Tokens, tokenize
-from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.interfaces.lsp.follow_up_errors import unread
 from tltlc.interfaces.lsp.names import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import path_of
 from tltlc.io.files import Stamp, noted, stamp, unsaved
-from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import Resolution, resolution
+from tltlc.pipeline import CompileOptions, Session
+from tltlc.resolve.program import Resolution
 from tltlc.resolve.scope import Scope
 from tltlc.tools.lint.rule import Finding
 from tltlc.tools.lint.run import levelled
@@ -42,25 +41,24 @@ class Document:
         self.project = project
         self.texts = dict(texts)
         self._notes = dict(notes)
-
-    @cached_property
-    def _parsed(self) -> tuple[Module, tuple[Diagnostic, ...]]:
-        return parse(self.source)
+        # The proof that predicates stay in their ranges takes too long.
+        self._session = Session(source, CompileOptions(library_dirs=project.libraries), proofs=False)
 
     @property
     def module(self) -> Module:
         """The declarations that could be parsed."""
-        return self._parsed[0]
+        return self._session.module
+
+    @property
+    def syntax_errors(self) -> tuple[Diagnostic, ...]:
+        """The syntax errors of the text."""
+        return self._session.syntax_errors
 
     @cached_property
     def resolution(self) -> Resolution:
-        """The meaning of the names.
-
-        It skips the proof that predicates stay in their ranges, which takes too long.
-        """
-        options = ResolveOptions(library_dirs=self.project.libraries, proofs=False)
+        """The meaning of the names."""
         with unsaved(self.texts), noted() as notes:
-            result = resolution(self.module, options)
+            result = self._session.resolution
         self._notes.update(notes)
         return result
 
@@ -79,7 +77,7 @@ class Document:
     @property
     def is_broken(self) -> bool:
         """Whether the text has a syntax error."""
-        return bool(self._parsed[1])
+        return bool(self.syntax_errors)
 
     @cached_property
     def said(self) -> tuple[Diagnostic, ...]:
@@ -88,7 +86,7 @@ class Document:
             # Report only errors in names, and only those that the unread parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
             missing = unread(self.module, self.tokens)
-            return (*self._parsed[1], *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
+            return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
         resolved = self.resolution
         remaining = unsilenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
         kept = levelled(map(Finding, remaining), self.project.lint)
@@ -98,7 +96,7 @@ class Document:
     def is_clean(self) -> bool:
         """Whether there are no errors so far, so automata can be built."""
         return not any(
-            diagnostic.severity == "error" for diagnostic in (*self._parsed[1], *self.resolution.diagnostics)
+            diagnostic.severity == "error" for diagnostic in (*self.syntax_errors, *self.resolution.diagnostics)
         )
 
     @cached_property

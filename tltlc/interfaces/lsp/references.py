@@ -10,7 +10,6 @@ from typing import Final
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
-from tltlc.grammar.parser import parse
 from tltlc.grammar.tables import load
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.edits import applied
@@ -192,8 +191,8 @@ def _before(edits: list[Edit]) -> Callable[[int], int]:
 
 
 def _errors(document: Document) -> int:
-    _, syntax = parse(document.source)
-    return sum(diagnostic.severity == "error" for diagnostic in (*syntax, *document.resolution.diagnostics))
+    diagnostics = (*document.syntax_errors, *document.resolution.diagnostics)
+    return sum(diagnostic.severity == "error" for diagnostic in diagnostics)
 
 
 def _elsewhere(symbol: Symbol, name: str) -> TltlError:
