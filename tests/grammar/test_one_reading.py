@@ -400,7 +400,8 @@ def offered(clause: str) -> list[str]:
         diagnostics = errors(source)
         if not diagnostics:
             valid.append(source.text)
-        queue += (after(source, offer.fix.edits).text for offer in of_errors(diagnostics, source, errors))
+        offers = of_errors(diagnostics, source, lambda text: (parse(text)[1], errors(text)))
+        queue += (after(source, offer.fix.edits).text for offer in offers)
     return valid
 
 

@@ -10,21 +10,20 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
-from tltlc.pipeline import CompileOptions
-from tltlc.resolve.program import resolve
+from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint.fixes import Offer, of_errors, of_findings
 from tltlc.tools.lint.run import findings, lint, view_of
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
 
-def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    module, syntax_errors = parse(source)
-    return (*syntax_errors, *resolve(module)[1])
+def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnostic]]:
+    session = Session(source)
+    return session.syntax_errors, session.source_diagnostics
 
 
 def offers(text: str) -> list[Offer]:
     source = SourceFile("x.tltl", text)
-    return list(of_errors(errors(source), source, errors))
+    return list(of_errors(errors(source)[1], source, errors))
 
 
 @pytest.mark.parametrize(
@@ -51,9 +50,9 @@ def test_fixes_of_errors_are_offered(text: str, expected: dict[str, str]) -> Non
 def test_a_fix_that_leaves_as_many_errors_is_not_offered() -> None:
     # The errors stay the same after every edit, so no fix helps.
     source = SourceFile("x.tltl", "spec x = F alive")
-    diagnostics = errors(source)
+    _, diagnostics = errors(source)
     assert diagnostics[0].fixes
-    assert list(of_errors(diagnostics, source, lambda _: diagnostics)) == []
+    assert list(of_errors(diagnostics, source, lambda _: ((), diagnostics))) == []
 
 
 def test_a_fix_is_titled_by_what_it_does() -> None:

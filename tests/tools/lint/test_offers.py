@@ -185,7 +185,7 @@ def all_fixes(source: SourceFile) -> Iterator[tuple[Diagnostic, Fix]]:
 
 
 def offers(source: SourceFile) -> list[Offer]:
-    return list(of_errors(errors(source), source, errors))
+    return list(of_errors(errors(source), source, lambda text: (parse(text)[1], errors(text))))
 
 
 def in_spec(clause: str) -> SourceFile:

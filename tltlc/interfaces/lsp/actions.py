@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from lsprotocol import types
 
@@ -26,10 +26,11 @@ def actions(
     """Return the fixes for diagnostics that touch a span, as quick-fix actions."""
     uri = uri_of(document.source.name)
 
-    def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-        if source == document.source:
-            return document.said
-        return Document(source, document.project, {**document.texts, source.name: source.text}).said
+    def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnostic]]:
+        edited = document
+        if source != document.source:
+            edited = Document(source, document.project, {**document.texts, source.name: source.text})
+        return edited.syntax_errors, edited.said
 
     near = [finding for finding in findings if _touches(finding.diagnostic, document, span)]
     diagnostics = [diagnostic for diagnostic in document.said if _touches(diagnostic, document, span)]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.parser import parse
-from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
+from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint import fixes
 from tltlc.tools.lint.fixes import Offer
 
@@ -26,9 +24,8 @@ def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: 
     if len(source.text) > _LONGEST:
         return []
 
-    def errors(text: SourceFile) -> tuple[Diagnostic, ...]:
-        module, syntax = parse(text)
-        _, resolution = resolve(module, ResolveOptions(library_dirs=libraries, proofs=False))
-        return (*syntax, *resolution)
+    def errors(text: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnostic]]:
+        session = Session(text, CompileOptions(library_dirs=libraries), proofs=False)
+        return session.syntax_errors, session.source_diagnostics
 
     return list(fixes.of_errors(diagnostics, source, errors))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Final
 
@@ -11,7 +11,6 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix
 from tltlc.grammar.allow_comments import spoken_of
-from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
 from tltlc.tools.lint.rule import Finding
@@ -20,8 +19,8 @@ from tltlc.tools.lint.scopes import after, keeping_scopes
 _MOST: Final = 8
 """Only the fixes of this many errors are tried."""
 
-Errors = Callable[[SourceFile], Iterable[Diagnostic]]
-"""Returns the errors in a text."""
+Errors = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]]]
+"""Returns the syntax errors in a text, and all diagnostics of its syntax and names."""
 
 
 @record
@@ -73,7 +72,8 @@ def _is_in(source: SourceFile, diagnostic: Diagnostic) -> bool:
 
 def _count_errors(source: SourceFile, errors: Errors) -> tuple[int, Counter[str]]:
     """Return the number of syntax errors, and a count of all errors by code."""
-    return len(parse(source)[1]), Counter(error.code for error in errors(source) if error.severity == "error")
+    syntax_errors, diagnostics = errors(source)
+    return len(syntax_errors), Counter(error.code for error in diagnostics if error.severity == "error")
 
 
 def _is_fewer(now: tuple[int, Counter[str]], before: tuple[int, Counter[str]]) -> bool:
