@@ -10,12 +10,9 @@ from typing import Final
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.grammar.parser import parse
 from tltlc.io.files import unsaved
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import CompileOptions
-from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.importers import used_elsewhere, words
 from tltlc.tools.lint.neighbours import neighbours
@@ -70,17 +67,16 @@ class Analysis:
 
 def analyse(request: Request) -> Analysis:
     """Compile, lint and test a text."""
-    options = CompileOptions(library_dirs=request.libraries)
     with unsaved(request.texts):
         try:
-            view = view_of(request.source, options)
+            view = view_of(request.source, CompileOptions(library_dirs=request.libraries))
         except TltlError as error:
             return Analysis(levelled(map(Finding, error.diagnostics), request.levels))
         if _seems_unused(view):
             # Reading the neighbouring files is slow, so do it only if their uses matter.
             view = replace(view, elsewhere=_elsewhere(request))
         file_findings = findings(view, request.levels)
-        return _with_tests(view, file_findings, options)
+        return _with_tests(view, file_findings)
 
 
 def _seems_unused(view: View) -> bool:
@@ -102,10 +98,8 @@ def _elsewhere(request: Request) -> Container[str]:
     return used_elsewhere(name, [words(path, text) for path, text in neighbour_texts.items()])
 
 
-def _with_tests(view: View, file_findings: tuple[Finding, ...], options: CompileOptions) -> Analysis:
-    module, _ = parse(view.source)
-    program, _ = resolve(module, ResolveOptions(library_dirs=options.library_dirs, proofs=False))
-    results = run_tests(program, (compiled.fspa for compiled in view.specs))
+def _with_tests(view: View, file_findings: tuple[Finding, ...]) -> Analysis:
+    results = run_tests(view.program, (compiled.fspa for compiled in view.specs))
     figures = []
     for compiled in view.specs:
         passed = [result.passed for result in results if result.test.spec == compiled.spec.name]
