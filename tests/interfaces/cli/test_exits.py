@@ -117,7 +117,7 @@ def test_a_bug_exits_with_70_without_a_traceback(tltlc, inside: Path, monkeypatc
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("secret")
 
-    monkeypatch.setattr("tltlc.pipeline.compile_source", broken)
+    monkeypatch.setattr("tltlc.pipeline.Session.compiled", broken)
     outcome = tltlc("check", "hide.tltl")
     assert outcome.status == 70
     assert outcome.err.startswith("error: a bug in tltlc stopped this command (reference ")

@@ -19,18 +19,24 @@ from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, read, split
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.core.source import SourceFile
+    from tltlc.pipeline import Session
     from tltlc.resolve.spec import Program
 
 
 @record
 class Input:
-    """A compiled argument: its automata in order, and its program unless it is an artefact."""
+    """A compiled argument: its automata in order, and the session of its source unless it is an artefact."""
 
     name: str
     automata: tuple[Fspa, ...]
-    program: Program | None
+    session: Session | None
     project: Project
     diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def program(self) -> Program | None:
+        """The specs and tests of a source; None for an artefact."""
+        return self.session.program if self.session else None
 
     def one(self) -> Fspa:
         """Return the only automaton; raise TLT0721 if there are several or none."""
@@ -70,13 +76,14 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
         raise TltlError([_hoa_diagnostic(source)])
     if is_artefact:
         return _artefact(source, settings, wanted, project)
-    from tltlc.pipeline import compile_source
+    from tltlc.pipeline import Session
 
+    session = Session(source, compile_settings(settings, project, wanted))
     with project.levelling():
-        compiled = compile_source(source, compile_settings(settings, project, wanted))
+        compiled = session.compiled()
     diagnostics = project.levelled(compiled.diagnostics)
     stop_at_errors(diagnostics)
-    return Input(source.name, compiled.automata, compiled.program, project, diagnostics)
+    return Input(source.name, compiled.automata, session, project, diagnostics)
 
 
 def check_text(source: SourceFile) -> None:

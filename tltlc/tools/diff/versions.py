@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Label
@@ -12,6 +10,7 @@ from tltlc.tools.diff.breaking import Version
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
+    from tltlc.pipeline import Session
     from tltlc.resolve.spec import Program
 
 
@@ -29,14 +28,9 @@ def of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
     return Version(automata, {fspa.name: place for fspa in automata})
 
 
-def of_library(path: str, library_dirs: tuple[Path, ...], params: Mapping[str, str]) -> Version:
+def of_library(session: Session) -> Version:
     """Return the version of a source that compiles and has no specs."""
-    from tltlc.grammar.parser import parse
-    from tltlc.resolve.options import ResolveOptions
-    from tltlc.resolve.program import resolution
     from tltlc.tools.diff.library import offers
     from tltlc.tools.diff.rules import rules
 
-    module, _ = parse(read_source(path))
-    resolved = resolution(module, ResolveOptions(library_dirs=library_dirs, params=params))
-    return Version(offers=offers(resolved.env), rules=rules(module, resolved.program))
+    return Version(offers=offers(session.resolution.env), rules=rules(session.module, session.program))

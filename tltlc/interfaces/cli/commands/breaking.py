@@ -122,8 +122,8 @@ def _version(path: str, settings: Settings) -> Version:
     from tltlc.tools.diff.versions import of_artefact, of_library, of_specs
 
     opened = open_input(path, settings)
-    if opened.program is None:
+    if opened.session is None:
         return of_artefact(path, opened.automata)
-    if opened.program.specs:
-        return of_specs(opened.program, opened.automata)
-    return of_library(path, (*settings.libraries, *opened.project.libraries), settings.params)
+    if opened.session.program.specs:
+        return of_specs(opened.session.program, opened.automata)
+    return of_library(opened.session)

@@ -93,7 +93,8 @@ def command(
                 report.add(error.diagnostics)
                 continue
             report.add(opened.diagnostics)
-            inputs.append(opened)
+            if levels:
+                inputs.append(opened)
             if spec in specs and not opened.diagnostics:
                 report.say(f"{opened.name}: {counted(len(opened.automata), 'spec')}, nothing to report")
         if len(paths) > 1 or not set(paths).issubset(specs):
