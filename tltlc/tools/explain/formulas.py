@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterator
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.core.source import SourceFile
-from tltlc.grammar.parser import parse
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula, atom, rebuild
 from tltlc.logic.text.printer import operand_text
-from tltlc.resolve.program import resolve
+from tltlc.pipeline import Session
 
 
 def formula_of(fspa: Fspa) -> Formula | None:
@@ -24,12 +23,12 @@ def formula_of(fspa: Fspa) -> Formula | None:
     if stand_ins:
         text = _any_of(stand_ins).sub(lambda match: stand_ins[match[0]], text)
     signals = "".join(f"signal {stand_in}: bool\n" for stand_in in stand_ins.values())
-    module, diagnostics = parse(SourceFile(fspa.name, f"{signals}spec explained = {text}\n"))
-    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
+    session = Session(SourceFile(fspa.name, f"{signals}spec explained = {text}\n"))
+    if any(diagnostic.severity == "error" for diagnostic in session.syntax_errors):
         return None
-    program, _ = resolve(module)
+    specs = session.resolution.program.specs
     names = {stand_in: name for name, stand_in in stand_ins.items()}
-    return _renamed(program.specs[0].formula, names) if program.specs else None
+    return _renamed(specs[0].formula, names) if specs else None
 
 
 def _any_of(names: dict[str, str]) -> re.Pattern[str]:
