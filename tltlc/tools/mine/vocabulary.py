@@ -21,10 +21,11 @@ from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.monitor.samples import listed
+from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log
-from tltlc.resolve.program import resolve, resolve_atoms
+from tltlc.resolve.program import resolve_atoms
 from tltlc.resolve.scope import Binding, build_scopes
 from tltlc.resolve.spec import Vocabulary
 from tltlc.tools.mine.column_diagnostics import some
@@ -62,13 +63,13 @@ def of_library(library: SourceFile, columns: Collection[str], options: ResolveOp
     Raises:
         TltlError: the library has an error; TLT0760, none of its atoms can be read.
     """
-    module = _parsed(library)
-    names = _visible(module, options)
+    session = Session(library, CompileOptions(library_dirs=options.library_dirs, params=options.params))
+    stop_at_errors(session.syntax_errors)
+    names = _visible(session.module, options)
     missing = tuple(name for name in _entities(columns) if name not in names and _declares(f"entity {name}\n"))
     own = [name for name, binding in names.items() if binding.kind == "entity"]
-    program, problems = resolve(module, options)
-    stop_at_errors(problems)
-    used = [atom.name for spec in program.specs for atom in spec.atoms]
+    stop_at_errors(session.resolution.diagnostics)
+    used = [atom.name for spec in session.resolution.program.specs for atom in spec.atoms]
 
     extended = _with_entities(library, missing)
     plain = _parsed(extended)
