@@ -51,10 +51,9 @@ def _ours(reference: Reference) -> Record:
             record |= line
     builds = [line for line in lines if "states" in line]
     if builds:
-        record["states"], record["edges"] = builds[0]["states"], builds[0]["edges"]
+        record["states"] = builds[0]["states"]
         record["build_ms"] = median([line["cpu_ms"] for line in builds])
         record["build_mb"] = max(line["peak_mb"] for line in builds)
-        record["build_runs"] = len(builds)
     if "minimal_ms" not in record and "minimal_failed" not in record:
         record["minimal_failed"] = _why(made.timed_out, OUR_TIMEOUT_S)
     elif not builds and "minimal_ms" in record and "build_failed" not in record:
@@ -70,7 +69,7 @@ def _mona(formula: Formula, timeout_s: float) -> Record:
         if states is None:
             return {"mona_failed": _why(made.timed_out, timeout_s)}
         times.append(made.cpu_ms)
-    return {"mona_ms": median(times), "mona_runs": len(times), "mona_states": states}
+    return {"mona_ms": median(times), "mona_states": states}
 
 
 def _failures(store: Store, family: str) -> int:

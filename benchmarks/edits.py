@@ -13,7 +13,6 @@ import json
 import shutil
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -153,7 +152,6 @@ def judged(suite: Suite, case: Case) -> Record:
     """The verdict of ``tltlc regress`` on a case, and what it rests upon."""
     from tltl_runtime.regression.verdict.run import regress
 
-    began = time.process_time()
     reference = _reference(suite, case)
     (done,) = regress(suite, [case], (reference,), suite.path.parent / "run", 1, lambda *_: None)
     now, before = done.report.figures, done.report.baseline
@@ -167,8 +165,6 @@ def judged(suite: Suite, case: Case) -> Record:
         "same": sum(_played(new) == _played(old) for new, old in pairs),
         "now": _rates(now),
         "before": _rates(before),
-        "reasons": list(done.report.reasons),
-        "cpu_s": round(time.process_time() - began, 1),
         "source": source_digest(*SOURCES),
     }
 

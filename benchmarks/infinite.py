@@ -30,6 +30,8 @@ PEERS: Final[Mapping[str, str]] = {
     "owl_states": "Owl, deterministic Rabin",
     "rabinizer31_states": "Rabinizer 3.1, Rabin on transitions",
 }
+COLUMNS: Final = ("states", "without", "ms")
+"""What a record holds for each formula of its corpus, in the order of the table."""
 _TRIAL: Final = 4448
 """States on Owl's corpus that a trial of this construction needed."""
 _MEDIAN_MS: Final = 10.0
@@ -39,34 +41,58 @@ _SLOWEST_S: Final = 10.0
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Make the automata of the formulas whose records are not of this code."""
     code = {"source": source_digest("tltlc")}
-    measure_missing(store, SECTION, CORPORA, lambda name: {**_measured(name), **code}, say, done="rows", like=code)
+    measure_missing(store, SECTION, CORPORA, lambda name: {**_measured(name), **code}, say, done="ms", like=code)
 
 
 def _measured(corpus: str) -> Record:
+    measured = [_automaton_figures(row["formula"]) for row in _table_rows(corpus)]
+    return {column: [figures[column] for figures in measured] for column in COLUMNS}
+
+
+def _table_rows(corpus: str) -> list[dict[str, str]]:
+    """The rows of a corpus in the table of the peers' states."""
     with TABLE.open(encoding="utf-8", newline="") as file:
-        wanted = [row for row in csv.DictReader(file, delimiter="\t") if row["corpus"] == corpus]
-    return {"rows": [_made(row) for row in wanted]}
+        return [row for row in csv.DictReader(file, delimiter="\t") if row["corpus"] == corpus]
 
 
-def _made(row: Mapping[str, str]) -> dict[str, Any]:
-    formula = read_formula(row["formula"])
+def _automaton_figures(text: str) -> dict[str, Any]:
+    """The states of the automaton of a formula, all and without traps, and the CPU time in milliseconds."""
+    formula = read_formula(text)
     with recursion_room():
         begun = time.process_time()
         automaton = rabin(formula)
         spent = time.process_time() - begun
     analysis = analysis_of_rabin(automaton, Work(DEFAULT_WORK))
     traps = sum(analysis.verdict(state) == "violated" for state in range(len(automaton.steps)))
-    peers = {name: int(row[name]) for name in (*PEERS, "rabinizer31_wall_ms") if row[name]}
     # Of an automaton that has no other state the trap counts.
     without = max(1, len(automaton.steps) - traps)
-    return {"formula": row["formula"], "states": len(automaton.steps), "without": without, "ms": 1e3 * spent, **peers}
+    return {"states": len(automaton.steps), "without": without, "ms": round(1e3 * spent, 3)}
+
+
+def _rows(corpus: str, record: Record) -> list[dict[str, Any]]:
+    """For each formula of a corpus our figures and those of the peers that were asked.
+
+    Raises:
+        ValueError: the table has other formulas than those that were measured.
+    """
+    if any(column not in record for column in COLUMNS):
+        return []
+    measured = zip(*(record[column] for column in COLUMNS), strict=True)
+    return [
+        {
+            **dict(zip(COLUMNS, figures, strict=True)),
+            **{name: int(row[name]) for name in (*PEERS, "rabinizer31_wall_ms") if row[name]},
+        }
+        for figures, row in zip(measured, _table_rows(corpus), strict=True)
+    ]
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
     """Rows of the table of goals, once both corpora were measured."""
-    if any("rows" not in records.get(name, {}) for name in CORPORA):
+    rows = {name: _rows(name, records.get(name, {})) for name in CORPORA}
+    if not all(rows.values()):
         return
-    totals = {name: _totals(name, records[name]["rows"]) for name in CORPORA}
+    totals = {name: _totals(name, rows[name]) for name in CORPORA}
     less = all(ours < theirs for peers in totals.values() for ours, theirs, *_ in peers.values())
     said = "; ".join(
         f"{ours} against {theirs} ({PEERS[peer].partition(',')[0]})"
@@ -74,9 +100,9 @@ def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
         for peer, (ours, theirs, *_) in peers.items()
     )
     yield "over infinite traces fewer states in all than Spot, Owl and Rabinizer", said, met_or_missed(less)
-    ours = sum(row["without"] for row in records["owl"]["rows"])
+    ours = sum(row["without"] for row in rows["owl"])
     yield f"no more than {_TRIAL} states on Owl's corpus", str(ours), met_or_missed(ours <= _TRIAL)
-    times = [row["ms"] for name in CORPORA for row in records[name]["rows"]]
+    times = [row["ms"] for name in CORPORA for row in rows[name]]
     said = f"median {median(times):.1f} ms, slowest {max(times) / 1e3:.1f} s"
     met = median(times) < _MEDIAN_MS and max(times) < 1e3 * _SLOWEST_S
     yield (
@@ -91,7 +117,7 @@ def section(records: Mapping[str, Record]) -> str:
     body = []
     times = []
     for name, what in CORPORA.items():
-        rows = records.get(name, {}).get("rows", [])
+        rows = _rows(name, records.get(name, {}))
         for peer, (ours, theirs, smaller, equal, larger) in _totals(name, rows).items():
             body.append((what, len(rows), ours, PEERS[peer], theirs, f"{smaller} / {equal} / {larger}"))
         if rows:

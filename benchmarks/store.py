@@ -1,10 +1,10 @@
-"""The results, kept in a JSON file that is written after each measurement, so that a run can be resumed."""
+"""The results in a JSON file with a line for each record, written after each measurement so that a run can resume."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +36,19 @@ class Store:
         """Keep a record and write the file, whole or not at all."""
         self._content.setdefault(section, {})[key] = record
         partial = self._path.with_suffix(".partial")
-        partial.write_text(json.dumps(self._content, indent=1) + "\n", encoding="utf-8")
+        partial.write_text(_text(self._content), encoding="utf-8")
         partial.replace(self._path)
+
+
+def _text(content: Mapping[str, Mapping[str, Record]]) -> str:
+    """The content as JSON, each record on a line of its own."""
+    sections = (
+        f"{json.dumps(name)}: {{\n"
+        + ",\n".join(f" {json.dumps(key)}: {json.dumps(record)}" for key, record in records.items())
+        + "\n}"
+        for name, records in content.items()
+    )
+    return "{\n" + ",\n".join(sections) + "\n}\n"
 
 
 def measure_missing(
