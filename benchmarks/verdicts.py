@@ -139,7 +139,7 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | Non
 
 def rule() -> str:
     """Twelve hexadecimal digits that stand for the rule: figures of another one are measured again."""
-    return source_digest(*(f"runtime/tltl_runtime/regression/{name}.py" for name in ("verdict", "confidence")))
+    return source_digest(*(f"runtime/tltl_runtime/regression/verdict/{name}.py" for name in ("verdict", "confidence")))
 
 
 def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
