@@ -7,8 +7,9 @@ from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
+from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import Markup, as_script, element, joined, prose, short
+from tltl_runtime.regression.report.page.markup import as_script, element, joined, prose, short
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(),

@@ -8,7 +8,9 @@ from collections.abc import Collection, Iterator, Sequence, Set
 from typing import Final
 from xml.etree import ElementTree
 
-from tltl_runtime.regression.report.page.markup import Markup, element, short
+from markupsafe import Markup
+
+from tltl_runtime.regression.report.page.markup import element, short
 from tltl_runtime.regression.report.page.traffic import Traffic
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Options, emit

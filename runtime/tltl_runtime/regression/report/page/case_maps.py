@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from markupsafe import Markup
+
 from tltl_runtime.regression.report.page.contents import ReportedCase
 from tltl_runtime.regression.report.page.level_map import level_map, map_key
-from tltl_runtime.regression.report.page.markup import Markup, element
+from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.stealth.level import Level
 from tltlc.core.record import replace
 

@@ -6,6 +6,8 @@ import base64
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
+from markupsafe import Markup
+
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.automaton import Drawn, counts_table, picture
@@ -13,7 +15,7 @@ from tltl_runtime.regression.report.page.case_maps import case_maps
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
 from tltl_runtime.regression.report.page.episode_links import episode_links
-from tltl_runtime.regression.report.page.markup import Markup, element, joined, prose
+from tltl_runtime.regression.report.page.markup import element, joined, prose
 from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.summary import NOT_RUN, badge
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic

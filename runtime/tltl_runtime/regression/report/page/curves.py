@@ -7,8 +7,10 @@ from itertools import pairwise
 from math import ceil
 from typing import Final
 
+from markupsafe import Markup
+
 from tltl_runtime.regression.explain.account import Account
-from tltl_runtime.regression.report.page.markup import Markup, element, short
+from tltl_runtime.regression.report.page.markup import element, short
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.support.number_text import percent
 

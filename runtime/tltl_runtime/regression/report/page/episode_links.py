@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from markupsafe import Markup
+
 from tltl_runtime.regression.explain.explain import Finding
-from tltl_runtime.regression.report.page.markup import Markup, element
+from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.regression.suite.slugs import episode_link
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.world.player import DECISION

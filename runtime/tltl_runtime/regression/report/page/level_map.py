@@ -10,8 +10,10 @@ from itertools import pairwise
 from math import cos, pi, sin
 from typing import Any, Final
 
+from markupsafe import Markup
+
 from tltl_runtime.regression.report.page.map_names import Name, is_spoken_of, names
-from tltl_runtime.regression.report.page.markup import Markup, element
+from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.regression.report.page.plan import Plan
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Box, Level, Mover

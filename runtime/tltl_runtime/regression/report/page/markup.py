@@ -8,15 +8,11 @@ from collections.abc import Iterable
 from html import escape
 from typing import Any, Final
 
+from markupsafe import Markup
+
 _VOID: Final = frozenset({"br", "hr", "img", "input", "link", "meta"})
 _CODE: Final = re.compile(r"`([^`]+)`")
 _SCRIPT: Final = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028", "\u2029": "\\u2029"}
-
-
-class Markup(str):
-    """Text that is HTML and needs no escaping."""
-
-    __slots__ = ()
 
 
 def element(name: str, /, *inside: object, **attributes: object) -> Markup:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from tltl_runtime.regression.report.page.markup import Markup, element, joined
+from markupsafe import Markup
+
+from tltl_runtime.regression.report.page.markup import element, joined
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.automaton.fspa import Fspa
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from markupsafe import Markup
+
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import NotRun, SuiteReport
-from tltl_runtime.regression.report.page.markup import Markup, element, joined, prose, short
+from tltl_runtime.regression.report.page.markup import element, joined, prose, short
 from tltl_runtime.regression.retrain.retrained import OUTCOMES
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.support.number_text import percent
