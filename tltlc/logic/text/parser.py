@@ -1,0 +1,171 @@
+"""Parse formulas in the ASCII notation, for artefacts: :func:`tltlc.logic.text.printer.ascii_text` reads back.
+
+The grammar of the language reads many more notations, and needs declarations.  This parser needs
+only the names of the atoms.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Final
+
+from tltlc.logic import formula as build
+from tltlc.logic.formula import Formula
+
+MOST_EXPANDED: Final = 2_000_000
+"""The most operands of all formulas to which one parser expands bounds."""
+
+_TOKEN: Final = re.compile(
+    r"(?P<op><->|->|[!&|()]|[XNFGUWRM](?![\w.\[]))|(?P<bound>[FG])\[0,(?P<steps>[0-9]{1,7})\]"
+    r"|(?P<constant>true|false)(?![\w.])"
+)
+_BLANK: Final = re.compile(r"[ \t\r\n]*")
+_PLAIN_NAME: Final = re.compile(r"[^\W\d][\w.]*(?:\([^()]*\))?(?![\w.])")
+
+_UNARY: Final[Mapping[str, Callable[[Formula], Formula]]] = {
+    "!": build.not_,
+    "X": build.next_,
+    "N": build.weak_next,
+    "F": build.eventually,
+    "G": build.always,
+}
+_NARY: Final = {"&": build.and_, "|": build.or_}
+_BINARY: Final[Mapping[str, Callable[[Formula, Formula], Formula]]] = {
+    "U": build.until,
+    "W": build.weak_until,
+    "R": build.release,
+    "M": build.strong_release,
+    "->": build.implies,
+    "<->": build.iff,
+}
+_STRENGTH: Final = {"(": 0, "<->": 1, "->": 2, "|": 3, "&": 4, "U": 5, "W": 5, "R": 5, "M": 5}
+_PREFIX: Final = 6
+"""The strength of the operators before an operand."""
+
+_Operator = str | tuple[str, int]
+"""An operator or an open bracket; ``F`` or ``G`` with a bound in steps."""
+
+
+class _NoFormulaError(Exception):
+    """Raised inside the parser for a text that is no formula."""
+
+
+class FormulaParser:
+    """Parses formulas over atoms of the given names; texts that share a bound share its expansion."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        known = [name for name in dict.fromkeys(names) if name]
+        self._atoms = {name: build.atom(name) for name in known}
+        plain = {name for name in known if _PLAIN_NAME.fullmatch(name)}
+        # A name that begins another one, as `a` begins `a > 0`, must not match before the longer name is tried.
+        beginnings = {match.group() for name in set(known) - plain if (match := _PLAIN_NAME.match(name))}
+        self._plain = plain - beginnings
+        others = sorted(set(known) - self._plain, key=len, reverse=True)
+        self._others = re.compile(rf"(?:{'|'.join(map(re.escape, others))})(?![\w.])") if others else None
+        self._expansions: dict[tuple[str, Formula], list[Formula]] = {}
+        self._left = MOST_EXPANDED
+        self._parsed: dict[str, Formula | None] = {}
+
+    def formula(self, text: str) -> Formula | None:
+        """Return the formula, or None if the text is no formula over the names.
+
+        Takes linear time and no recursion.
+        """
+        if text not in self._parsed:
+            try:
+                self._parsed[text] = self._formula(text)
+            except _NoFormulaError:
+                self._parsed[text] = None
+        return self._parsed[text]
+
+    def _formula(self, text: str) -> Formula:
+        operands: list[Formula] = []
+        operators: list[_Operator] = []
+        position, wants_operand = _after_blanks(text, 0), True
+        while position < len(text):
+            atom = self._name(text, position) if wants_operand else ""
+            if atom:
+                operands.append(self._atoms[atom])
+                position, wants_operand = _after_blanks(text, position + len(atom)), False
+                continue
+            match = _TOKEN.match(text, position)
+            if match is None:
+                raise _NoFormulaError
+            position = _after_blanks(text, match.end())
+            operator, constant = match["op"], match["constant"]
+            if match["bound"] or constant or operator == "(" or operator in _UNARY:
+                if not wants_operand:
+                    raise _NoFormulaError
+                if constant:
+                    operands.append(build.TRUE if constant == "true" else build.FALSE)
+                    wants_operand = False
+                else:
+                    operators.append(operator or (match["bound"], int(match["steps"])))
+                continue
+            if wants_operand:
+                raise _NoFormulaError
+            if operator == ")":
+                self._apply(operands, operators, 1)
+                if not operators:
+                    raise _NoFormulaError
+                operators.pop()
+                continue
+            # `<->` groups to the left, all other operators between two operands to the right.
+            self._apply(operands, operators, _STRENGTH[operator] + (operator != "<->"))
+            operators.append(operator)
+            wants_operand = True
+        if wants_operand:
+            raise _NoFormulaError
+        self._apply(operands, operators, 1)
+        if operators:
+            raise _NoFormulaError
+        return operands[0]
+
+    def _name(self, text: str, position: int) -> str:
+        """Return the longest name of an atom that begins at ``position``, or an empty text."""
+        match = _PLAIN_NAME.match(text, position)
+        if match is not None and match.group() in self._plain:
+            return match.group()
+        match = self._others.match(text, position) if self._others else None
+        return match.group() if match else ""
+
+    def _apply(self, operands: list[Formula], operators: list[_Operator], least: int) -> None:
+        """Apply the operators on the stack that bind at least as tightly as ``least``, up to an open bracket."""
+        while operators and _strength(operators[-1]) >= least:
+            operator = operators.pop()
+            if isinstance(operator, tuple):
+                operands.append(self._bounded(*operator, operands.pop()))
+            elif operator in _UNARY:
+                operands.append(_UNARY[operator](operands.pop()))
+            elif operator in _BINARY:
+                right = operands.pop()
+                operands.append(_BINARY[operator](operands.pop(), right))
+            else:
+                count = 2
+                while operators and operators[-1] == operator:
+                    operators.pop()
+                    count += 1
+                operands[-count:] = [_NARY[operator](*operands[-count:])]
+
+    def _bounded(self, op: str, steps: int, body: Formula) -> Formula:
+        """Return ``F[0,steps] body`` or ``G[0,steps] body`` as nexts."""
+        expansions = self._expansions.setdefault((op, body), [body])
+        while len(expansions) <= steps:
+            self._left -= 1 + len(body.args)
+            if self._left < 0:
+                raise _NoFormulaError
+            inner = expansions[-1]
+            expansions.append(
+                build.or_(body, build.next_(inner)) if op == "F" else build.and_(body, build.weak_next(inner))
+            )
+        return expansions[steps]
+
+
+def _strength(operator: _Operator) -> int:
+    return _STRENGTH.get(operator, _PREFIX) if isinstance(operator, str) else _PREFIX
+
+
+def _after_blanks(text: str, position: int) -> int:
+    match = _BLANK.match(text, position)
+    return match.end() if match else position
