@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text
+from tltlc.automaton.fspa import Edge, Fspa, Guard, State
 from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.logic.formula import FALSE, always, and_, atom, eventually, then
 from tltlc.resolve import spec
 
 
@@ -13,15 +14,10 @@ def cover_and_hide() -> Fspa:
     States: 0 the whole formula, 1 the first button pressed, 2 the trap, 3 both pressed, 4 the goal.
     """
     a, b, c, p = "near(s1)", "near(s2)", "near(exit)", "alive"
-    whole = Text(
-        f"F ({a} & X F ({b} & X F {c})) & G {p}",
-        f"◇({a} ∧ ○◇({b} ∧ ○◇{c})) ∧ □{p}",
-        f"Eventually {a}, then {b}, then {c}; and always {p}.",
-    )
-    second = Text(f"F ({b} & X F {c}) & G {p}", f"◇({b} ∧ ○◇{c}) ∧ □{p}", f"Eventually {b}, then {c}; and always {p}.")
-    third = Text(f"F {c} & G {p}", f"◇{c} ∧ □{p}", f"Eventually {c}; and always {p}.")
-    goal = Text(f"G {p}", f"□{p}", f"Always {p}.")
-    trap = Text("false", "⊥", "Never.")
+    goal = always(atom(p))
+    third = and_(eventually(atom(c)), goal)
+    second = and_(then(atom(b), atom(c)), goal)
+    whole = and_(then(atom(a), then(atom(b), atom(c))), goal)
     dead = Guard(f"!{p}", (((3, False),),))
     safe = Guard(p, (((3, True),),))
     return Fspa(
@@ -47,7 +43,7 @@ def cover_and_hide() -> Fspa:
         states=(
             State(0, whole, False, "pending", 3),
             State(1, second, False, "pending", 2),
-            State(2, trap, False, "violated", None),
+            State(2, FALSE, False, "violated", None),
             State(3, third, False, "pending", 1),
             State(4, goal, True, "holding", 0),
         ),

@@ -6,7 +6,7 @@
 ...     signal health in [0, 1]
 ...     spec escape = F exit_reached & G health > 0
 ... ''')
->>> [state.label.ascii for state in fspa.states]
+>>> [str(state.label) for state in fspa.states]
 ['F exit_reached & G(health > 0)', 'G(health > 0)', 'false']
 
 Importing this package loads nothing else. Each public name below is loaded on first use.

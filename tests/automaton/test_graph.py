@@ -25,7 +25,7 @@ def test_parallel_edges_become_one() -> None:
 def test_networkx_finds_the_same_distances_and_traps(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
     graph = to_networkx(fspa)
-    assert [graph.nodes[state.id]["label"] for state in fspa.states] == [state.label.ascii for state in fspa.states]
+    assert [graph.nodes[state.id]["label"] for state in fspa.states] == [str(state.label) for state in fspa.states]
     assert {(u, v): d["primes"] for u, v, d in graph.edges(data=True)} == {
         (edge.source, edge.target): edge.guard.primes for edge in fspa.edges
     }

@@ -11,6 +11,7 @@ from tltlc.automaton.fspa import Fspa, Guard, Text
 from tltlc.automaton.infinite.build import build_infinite
 from tltlc.core.record import replace
 from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.logic.text.parser import FormulaParser
 from tltlc.resolve import spec
 
 HOSTILE = (
@@ -109,7 +110,9 @@ def hostile_automata(draw: st.DrawFn) -> Fspa:
     """The Cover and Hide automaton with hostile texts in every place that a spec or an artefact can fill."""
     fspa = cover_and_hide()
     names = draw(st.lists(hostile_texts.filter(bool), min_size=4, max_size=4, unique=True))
-    text = st.builds(Text, hostile_texts, hostile_texts, hostile_texts)
+    parser = FormulaParser(names)
+    no_formulas = hostile_texts.filter(lambda text: parser.formula(text) is None)
+    text = st.builds(Text, no_formulas, hostile_texts, hostile_texts)
     states = tuple(replace(state, label=draw(text)) for state in fspa.states)
     edges = tuple(replace(edge, guard=Guard(draw(st.sampled_from(names)), edge.guard.primes)) for edge in fspa.edges)
     signal = draw(hostile_texts.filter(lambda name: bool(name) and name != "health"))

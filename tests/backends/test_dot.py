@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
-from tltlc.automaton.fspa import Fspa, Guard, Pair, Text
+from tltlc.automaton.fspa import Fspa, Guard, Notation, Pair, Text
+from tltlc.automaton.text import label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
 from tltlc.backends.drawing.folding import marked
@@ -46,7 +47,8 @@ def test_the_picture_matches_the_figure_of_the_paper() -> None:
     for state in fspa.states:
         node = drawn.get_node(str(state.id))
         distance = "∞" if state.distance is None else str(state.distance)
-        assert words_of(node.attr["label"]).split() == [*distance.split(), *state.label.unicode.split()]
+        label = label_text(fspa, state.id, "unicode")
+        assert words_of(node.attr["label"]).split() == [*distance.split(), *label.split()]
         assert node.attr["color"] == LINES[state.verdict]
         assert node.attr["fillcolor"] == FILLS[state.verdict]
         assert (node.attr["peripheries"] or "") == ("2" if state.accepting else "")
@@ -63,10 +65,10 @@ def test_the_picture_matches_the_figure_of_the_paper() -> None:
     [
         ("unicode", "◇near(exit) ∧ □alive", "¬near(exit) ∧ alive"),
         ("ascii", "F near(exit) & G alive", "!near(exit) & alive"),
-        ("english", "Eventually near(exit); and always alive.", "not near(exit) and alive"),
+        ("english", "Reach near(exit), and keep alive throughout.", "not near(exit) and alive"),
     ],
 )
-def test_notations(notation: backends.Notation, label: str, guard: str) -> None:
+def test_notations(notation: Notation, label: str, guard: str) -> None:
     drawn = parsed(emitted(cover_and_hide(), Options(notation=notation)))
     assert drawn.get_node("3").attr["tooltip"].endswith(": " + label)
     assert drawn.get_edge("3", "3").attr["tooltip"] == guard
@@ -96,7 +98,7 @@ def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
     for state in fspa.states:
         attributes = drawn.get_node(str(state.id)).attr
         shown = words_of(attributes["label"]).split()[1:]
-        assert shown == visible(" ".join(wrapped(state.label.unicode, 30))).split()
+        assert shown == visible(" ".join(wrapped(label_text(fspa, state.id, "unicode"), 30))).split()
         assert attributes["color"] == LINES[state.verdict]
 
 

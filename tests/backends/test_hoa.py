@@ -49,7 +49,7 @@ def check(fspa: Fspa) -> Hoa:
     assert all(visible(line) == line for line in text.split("\n"))
     assert parsed.starts == [0]
     assert parsed.atoms == [atom.name for atom in fspa.atoms]
-    assert [parsed.states[state.id].name for state in fspa.states] == [state.label.ascii for state in fspa.states]
+    assert [parsed.states[state.id].name for state in fspa.states] == [str(state.label) for state in fspa.states]
     assert parsed.count == len(parsed.states) == len(fspa.states)
     assert parsed.strings["name:"] == [fspa.name]
     assert parsed.strings["tool:"] == ["tltlc", __version__]

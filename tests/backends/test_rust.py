@@ -21,7 +21,7 @@ from tests.tools.conformance.runner import Outcome
 from tests.tools.conformance.runners.rust import RUNNERS, STRICT
 from tests.waiting import HANG_S
 from tltlc.automaton.finite.build import build, spec_from_formula
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import emit
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const, Op, Signal
@@ -179,7 +179,7 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
     fspa = replace(
         fspa,
         doc=text,
-        formula=replace(fspa.formula, ascii=text),
+        formula=Text(text, text, text),
         signals=tuple(replace(signal, doc=text) for signal in fspa.signals),
     )
     written(fspa, tmp_path)

@@ -48,7 +48,7 @@ def test_obligations_are_in_the_label_and_bounds_can_be_broken() -> None:
 
 def test_two_states_may_have_one_label_and_two_edges_their_states() -> None:
     fspa = compiled("G F a & G F b")
-    assert [state.label.ascii for state in fspa.states] == ["G F a & G F b"] * 2
+    assert [str(state.label) for state in fspa.states] == ["G F a & G F b"] * 2
     ends = [(edge.source, edge.target) for edge in compiled("G F a").edges]
     assert ends == [(0, 0), (0, 0)]
 

@@ -44,7 +44,7 @@ def code(cell: str) -> list[str]:
 
 def formula(text: str) -> str:
     (fspa,) = tltlc.compile_text(f"{SIGNALS} spec s = {text}")
-    return fspa.formula.ascii
+    return str(fspa.formula)
 
 
 def test_every_word_and_sign_is_documented() -> None:
@@ -150,7 +150,7 @@ def test_order_of_operators(short: str, long: str) -> None:
 @pytest.mark.parametrize("clause, meaning", rows("Specifications"), ids=lambda text: text)
 def test_clauses_have_the_documented_meaning(clause: str, meaning: str) -> None:
     (fspa,) = tltlc.compile_text(f"{SIGNALS} spec s {{ {clause.strip('`')} }}")
-    assert fspa.formula.ascii == formula(meaning.strip("`"))
+    assert str(fspa.formula) == formula(meaning.strip("`"))
 
 
 @pytest.mark.parametrize("row", rows("Bounds"), ids=lambda row: "".join(row[:2]))

@@ -111,7 +111,7 @@ def test_health_of_zero_counts_as_death() -> None:
 
 def test_the_fields_of_a_step() -> None:
     step = Monitor(cover_and_hide()).step({**FAR, "distance(s1)": 10.5, "health": 0.875})
-    assert step.label == cover_and_hide().states[0].label.ascii
+    assert step.label == str(cover_and_hide().states[0].label)
     assert (step.state, step.verdict, step.accepting, step.done) == (0, "pending", False, False)
     assert (step.robustness, step.limiting) == (0.75, "near(s1)")
 

@@ -24,7 +24,7 @@ from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
 from tltlc.automaton.finite.build import build, spec_from_formula
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import emit
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const, Expression, Op, Signal
@@ -263,7 +263,7 @@ def test_hostile_texts_execute_nothing(tmp_path: Path, monkeypatch: pytest.Monke
         f"'+{attack}+'",
     ):
         fspa = cover_and_hide()
-        label = replace(fspa.states[0].label, ascii=text)
+        label = Text(text, text, text)
         fspa = replace(
             fspa,
             doc=text,

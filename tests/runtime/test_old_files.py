@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tltl_runtime.stealth.recordings.outcome import outcome
 
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.regression.verdict.baseline import read_baseline, write_baseline
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.check import check, resimulate
 from tltl_runtime.stealth.recordings.file import read_episode
-from tltl_runtime.stealth.recordings.outcome import outcome
 
 OLD = Path(__file__).parents[1] / "old_files"
 EXPECTED: dict[str, Any] = json.loads((OLD / "expected.json").read_text(encoding="utf-8"))

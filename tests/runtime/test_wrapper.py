@@ -180,7 +180,7 @@ def test_after_a_reset() -> None:
     assert observation["progress"].tolist() == [0]
     assert info["host"] == "reset"
     assert (info["verdict"], info["state"], info["success"], info["atoms"]) == ("pending", 0, False, {})
-    assert info["label"] == cover_and_hide().formula.ascii
+    assert info["label"] == str(cover_and_hide().formula)
 
 
 def test_a_violation_terminates_and_costs_the_unspent_steps() -> None:

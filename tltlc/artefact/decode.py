@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State, Text
 from tltlc.core.names import split_name
 from tltlc.expression.json import from_json
+from tltlc.logic.formula import Formula
+from tltlc.logic.text.parser import FormulaParser
 from tltlc.resolve.spec import Atom, Param, Signal
 
 
@@ -14,10 +17,11 @@ def decode(document: dict[str, Any]) -> Fspa:
     """Return the automaton; whole numbers may be written as ``3.0``, and unknown fields are ignored."""
     spec = document["spec"]
     limit = spec["limit_steps"]
+    label = _label_reader(document["atoms"])
     return Fspa(
         name=spec["name"],
         doc=spec["doc"],
-        formula=_text(spec["formula"]),
+        formula=label(spec["formula"]),
         level=spec["level"],
         limit_steps=None if limit is None else int(limit),
         judge=spec["judge"],
@@ -28,7 +32,7 @@ def decode(document: dict[str, Any]) -> Fspa:
         params=tuple(_param(param) for param in document["params"]),
         atoms=tuple(_atom(atom) for atom in document["atoms"]),
         exclusive=tuple(tuple(int(atom) for atom in group) for group in document["exclusive"]),
-        states=tuple(_state(state) for state in document["states"]),
+        states=tuple(_state(state, label) for state in document["states"]),
         edges=tuple(_edge(edge) for edge in document["edges"]),
         spec_size=int(document["spec_size"]),
         acceptance=tuple(_pair(pair) for pair in document.get("acceptance", {"pairs": ()})["pairs"]),
@@ -40,8 +44,14 @@ def _pair(pair: dict[str, Any]) -> Pair:
     return Pair(fin, inf)
 
 
-def _text(text: dict[str, str]) -> Text:
-    return Text(text["ascii"], text["unicode"], text["english"])
+def _label_reader(atoms: Iterable[dict[str, Any]]) -> Callable[[dict[str, str]], Formula | Text]:
+    """Return a function that parses the ASCII text of a formula; a text that is none stays text."""
+    parser = FormulaParser(atom["name"] for atom in atoms)
+
+    def read(text: dict[str, str]) -> Formula | Text:
+        return parser.formula(text["ascii"]) or Text(text["ascii"], text["unicode"], text["english"])
+
+    return read
 
 
 def _number(value: float | None) -> float | None:
@@ -65,11 +75,11 @@ def _atom(atom: dict[str, Any]) -> Atom:
     return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments)
 
 
-def _state(state: dict[str, Any]) -> State:
+def _state(state: dict[str, Any], label: Callable[[dict[str, str]], Formula | Text]) -> State:
     distance = state["distance"]
     return State(
         int(state["id"]),
-        _text(state["label"]),
+        label(state["label"]),
         state["accepting"],
         state["verdict"],
         None if distance is None else int(distance),

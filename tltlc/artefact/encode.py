@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from tltlc.automaton.fspa import Edge, Fspa, State, Text
+from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, State
+from tltlc.automaton.text import formula_text, label_text
 from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Param, Signal
 
@@ -21,7 +22,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "spec": {
             "name": fspa.name,
             "doc": fspa.doc,
-            "formula": _text(fspa.formula),
+            "formula": _formula(fspa),
             "limit_steps": fspa.limit_steps,
             "judge": fspa.judge,
             "level": fspa.level,
@@ -33,7 +34,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "params": [_param(param) for param in fspa.params],
         "atoms": [{"name": atom.name, "expression": to_json(atom.expression), **_doc(atom.doc)} for atom in fspa.atoms],
         "exclusive": [list(group) for group in fspa.exclusive],
-        "states": [_state(state) for state in fspa.states],
+        "states": [_state(fspa, state) for state in fspa.states],
         "initial": 0,
         "edges": _edges(fspa.edges),
         "spec_size": fspa.spec_size,
@@ -47,8 +48,12 @@ def _acceptance(fspa: Fspa) -> dict[str, Any]:
     return {"acceptance": {"pairs": [{"fin": list(pair.fin), "inf": list(pair.inf)} for pair in fspa.acceptance]}}
 
 
-def _text(text: Text) -> dict[str, str]:
-    return {"ascii": text.ascii, "unicode": text.unicode, "english": text.english}
+def _formula(fspa: Fspa) -> dict[str, str]:
+    return {notation: formula_text(fspa, notation) for notation in NOTATIONS}
+
+
+def _label(fspa: Fspa, state: int) -> dict[str, str]:
+    return {notation: label_text(fspa, state, notation) for notation in NOTATIONS}
 
 
 def _doc(doc: str) -> dict[str, str]:
@@ -64,10 +69,10 @@ def _param(param: Param) -> dict[str, Any]:
     return {**document, "range": [param.low, param.high], **_doc(param.doc)}
 
 
-def _state(state: State) -> dict[str, Any]:
+def _state(fspa: Fspa, state: State) -> dict[str, Any]:
     return {
         "id": state.id,
-        "label": _text(state.label),
+        "label": _label(fspa, state.id),
         "accepting": state.accepting,
         "verdict": state.verdict,
         "distance": state.distance,

@@ -6,9 +6,10 @@ automaton that was written.
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Final, Literal
 
 from tltlc.core.record import record
+from tltlc.logic.formula import FlatNodes, Formula, flattened, unflattened
 from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
@@ -18,27 +19,36 @@ Mark = tuple[int, Literal["fin", "inf"]]
 """A pair, as an index into ``Fspa.acceptance``, and one of its two sets."""
 
 
+Notation = Literal["unicode", "ascii", "english"]
+"""The notation of formulas in texts and pictures; :mod:`tltlc.automaton.text` prints them."""
+NOTATIONS: Final[tuple[Notation, ...]] = ("ascii", "unicode", "english")
+
+
 @record
 class Text:
-    """A formula in three notations."""
+    """The name that another tool gives to a formula or a state, in three notations: no formula of the language."""
 
     ascii: str
     unicode: str
     english: str
+
+    def __str__(self) -> str:
+        return self.ascii
 
 
 @record
 class State:
     """A state of the automaton.
 
-    ``label`` is the formula that remains to be satisfied.  ``accepting`` is true if a trace that
-    ends here is accepted (over infinite traces: if the state lies on an accepted cycle).
+    ``label`` is the formula that remains to be satisfied; ``str(label)`` is its ASCII notation.  In
+    an automaton of another tool, it may be a name.  ``accepting`` is true if a trace that ends here
+    is accepted (over infinite traces: if the state lies on an accepted cycle).
     ``verdict`` is the verdict of a trace that ends here.  ``distance`` is the least number of
     transitions to an accepting state, None for traps.
     """
 
     id: int
-    label: Text
+    label: Formula | Text
     accepting: bool
     verdict: Verdict
     distance: int | None
@@ -95,7 +105,7 @@ class Fspa:
 
     name: str
     doc: str
-    formula: Text
+    formula: Formula | Text
     level: str | None
     limit_steps: int | None
     judge: Judge
@@ -124,3 +134,22 @@ class Fspa:
             for edge in dict.fromkeys(pair.inf):
                 marks[edge].append((number, "inf"))
         return tuple(map(tuple, marks))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # The formulas share one table of nodes: the labels of states that count down have most nodes in common.
+        labels = (self.formula, *(state.label for state in self.states))
+        nodes, indices = flattened(label for label in labels if isinstance(label, Formula))
+        index = iter(indices)
+        table = [next(index) if isinstance(label, Formula) else label for label in labels]
+        states = [(state.id, state.accepting, state.verdict, state.distance) for state in self.states]
+        fields = {name: getattr(self, name) for name in type(self).__match_args__}
+        return _unpickled, (nodes, table, {**fields, "formula": None, "states": states})
+
+
+def _unpickled(nodes: FlatNodes, table: list[int | Text], fields: dict[str, Any]) -> Fspa:
+    """Return a pickled automaton; ``table`` has its formula and its labels: texts, or indices into the nodes."""
+    formulas = unflattened(nodes)
+    formula, *labels = (entry if isinstance(entry, Text) else formulas[entry] for entry in table)
+    rows = zip(labels, fields["states"], strict=True)
+    states = tuple(State(number, label, *rest) for label, (number, *rest) in rows)
+    return Fspa(**{**fields, "formula": formula, "states": states})

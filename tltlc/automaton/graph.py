@@ -32,7 +32,7 @@ def to_networkx(fspa: Fspa) -> networkx.DiGraph:
     for state in fspa.states:
         graph.add_node(
             state.id,
-            label=state.label.ascii,
+            label=str(state.label),
             accepting=state.accepting,
             verdict=state.verdict,
             distance=state.distance,

@@ -10,16 +10,14 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable
 from types import ModuleType
-from typing import Literal, Union
+from typing import Union
 
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Notation
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Files = dict[str, Union[str, bytes]]
 """File names (without folders) and their contents."""
-
-Notation = Literal["unicode", "ascii", "english"]
 
 DEFAULT_TARGETS = ("json", "dot", "python")
 

@@ -178,7 +178,7 @@ class _Source:
             "param_fields": self._fields([(name, "double", param) for param, name in params]),
             "signal_names": _list([_string(signal.name) for signal in fspa.signals], '""'),
             "atom_names": _list([_string(atom.name) for atom in fspa.atoms], '""'),
-            "labels": _list([_string(state.label.ascii) for state in fspa.states], '""'),
+            "labels": _list([_string(str(state.label)) for state in fspa.states], '""'),
             "signal_defaults": _C.block(
                 [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
                 or ["sample.none = false;"]
@@ -364,7 +364,7 @@ class _Source:
         lines.append("switch (monitor->state) {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             # The case needs braces because it may contain declarations.
-            lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
             lines.append(f"{_INDENT}case {state.id}: {{")
             values = [line for index in self._program.computed_in(state.id) for line in self._value(index)]
             lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(state.id), *values)]

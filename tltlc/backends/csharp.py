@@ -143,7 +143,7 @@ class _Source:
         lines: list[str] = []
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
             values = (f"Verdict.{state.verdict.capitalize()}", pieces.boolean(state.accepting), pieces.boolean(ends))
-            lines.append(f"new Place({_string(state.label.ascii)}, {', '.join(values)}),")
+            lines.append(f"new Place({_string(str(state.label))}, {', '.join(values)}),")
         return lines
 
     def _give(self) -> list[str]:
@@ -229,7 +229,7 @@ class _Source:
         lines += ["switch (_state)", "{"]
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             # The case needs braces because it may contain declarations.
-            lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
             lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
             lines += [f"{_INDENT * 2}{line}" for line in self._bools(state.id)]
             lines += self._printer.lines((*self._values_only_in(state.id), *statements), depth=2)

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from tltlc.automaton.fspa import Fspa, State, Verdict
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import Drawing, span, whole
 from tltlc.backends.drawing.html_like import BACKED, LEFT, escaped, plain, table
 from tltlc.backends.drawing.picture_content import notes, on_distances
-from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
+from tltlc.backends.drawing.texts import arrows, visible, wrapped
 
 if TYPE_CHECKING:
     from graphviz import Digraph
@@ -98,9 +99,8 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
     for state in drawing.states:
         run = drawing.folded.get(state.id, (state,))
-        _draw_state(
-            drawn, run, span(*(label(end.label, options.notation) for end in (run[0], run[-1]))), detail != "sketch"
-        )
+        text = span(*(label_text(fspa, end.id, options.notation) for end in (run[0], run[-1])))
+        _draw_state(drawn, run, text, detail != "sketch")
     drawn.edge("start", "0")
     for (source, target), guards in arrows(fspa, drawing.edges, options.notation).items():
         _draw_arrow(drawn, fspa.states[source], fspa.states[target], guards, detail == "full")

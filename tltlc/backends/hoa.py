@@ -60,7 +60,7 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
     infinite = fspa.semantics == "infinite"
     yield from _rabin(len(fspa.acceptance)) if infinite else ("acc-name: Buchi", "Acceptance: 1 Inf(0)")
     marks = "trans-acc" if infinite else "state-acc"
-    yield f"tltlc-formula: {_string(fspa.formula.ascii)}"
+    yield f"tltlc-formula: {_string(str(fspa.formula))}"
     yield f"tltlc-judge: {fspa.judge}"
     if fspa.limit_steps is not None:
         yield f"tltlc-limit: {fspa.limit_steps}"
@@ -90,7 +90,7 @@ def _body(fspa: Fspa) -> Iterator[str]:
         sets = f" {{{' '.join(map(str, sorted(pair_marks(marks))))}}}" if marks else ""
         leaving[edge.source].append(f"[{labels.label(edge.guard)}] {edge.target}{sets}")
     for state in fspa.states:
-        yield f"State: {state.id} {_string(state.label.ascii)}{' {0}' if finite and state.accepting else ''}"
+        yield f"State: {state.id} {_string(str(state.label))}{' {0}' if finite and state.accepting else ''}"
         yield from leaving[state.id]
 
 

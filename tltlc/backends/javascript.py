@@ -165,7 +165,7 @@ class _Source:
         rows: list[str] = []
         for state, ends in zip(self._fspa.states, map(pieces.boolean, self._program.ends), strict=True):
             values = f'verdict: "{state.verdict}", accepting: {pieces.boolean(state.accepting)}, ends: {ends}'
-            rows.append(f"{{ label: {_string(state.label.ascii)}, {values} }}")
+            rows.append(f"{{ label: {_string(str(state.label))}, {values} }}")
         return rows
 
     # --- the step function ------------------------------------------------------------------------
@@ -239,7 +239,7 @@ class _Source:
         lines.append("switch (this.state) {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             # The case needs braces because it may contain declarations.
-            lines += [f"  {line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
             lines.append(f"  case {state.id}: {{")
             lines += [f"    {line}" for line in self._values(state.id)]
             lines += self._moves.lines(shallow(statements, self._names), depth=2)

@@ -207,7 +207,7 @@ class _Source:
         rows: list[str] = []
         for state, ends in zip(self._fspa.states, map(pieces.boolean, self._program.ends), strict=True):
             values = f'verdict = "{state.verdict}", accepting = {pieces.boolean(state.accepting)}, ends = {ends}'
-            rows.append(f"[{state.id}] = {{ label = {_string(state.label.ascii)}, {values} }},")
+            rows.append(f"[{state.id}] = {{ label = {_string(str(state.label))}, {values} }},")
         return rows
 
     # --- the functions of states ------------------------------------------------------------------
@@ -239,7 +239,7 @@ class _Source:
         """Return a function for each state."""
         lines: list[str] = []
         for state in [] if self._few_states else self._fspa.states:
-            lines += ["", *self._printer.comment(state.label.ascii)]
+            lines += ["", *self._printer.comment(str(state.label))]
             lines += [f"MOVES[{state.id}] = function({self._parameters()})", f"  local {self._returned()}"]
             lines += [*self._branch(state.id), f"  return {self._returned()}", "end"]
         return lines
@@ -333,7 +333,7 @@ class _Source:
         lines = ["local state = self.state", f"local {self._returned()}"]
         for state in self._fspa.states:
             lines.append(f"{'elseif' if state.id else 'if'} state == {state.id} then")
-            lines += [f"  {line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
             lines += self._branch(state.id)
         return [*lines, "end"]
 

@@ -10,10 +10,11 @@ import re
 from collections.abc import Sequence
 
 from tltlc.automaton.fspa import Fspa, State
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import span
 from tltlc.backends.drawing.picture_content import notes, on_distances, shown
-from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
+from tltlc.backends.drawing.texts import arrows, visible, wrapped
 
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
 
@@ -38,7 +39,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
     """
     drawing = shown(fspa)
     lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escaped(fspa.name)}"]
-    lines += [_state(drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
+    lines += [_state(fspa, drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
     lines.append("    [*] --> s0")
     for (source, target), guards in arrows(fspa, drawing.edges, options.notation).items():
         lines.append(f"    s{source} --> s{target}: {_lines([*(f'{guard};' for guard in guards[:-1]), guards[-1]])}")
@@ -51,12 +52,12 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {f"{fspa.name}.mmd": "\n".join([*lines, ""])}
 
 
-def _state(run: tuple[State, ...], options: Options) -> str:
+def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
     """Return a state, or the inner states of a run as one."""
     ends = run[0], run[-1]
     distance = span(*("∞" if state.distance is None else str(state.distance) for state in ends))
     heading = [f"{len(run)} more like these:"] if len(run) > 1 else []
-    texts = [*heading, span(*(label(state.label, options.notation) for state in ends)), f"[{distance}]"]
+    texts = [*heading, span(*(label_text(fspa, state.id, options.notation) for state in ends)), f"[{distance}]"]
     return f'    state "{_lines(texts)}" as s{run[0].id}'
 
 

@@ -148,7 +148,7 @@ class _Source:
             body = "\n\n\n".join(self._function(state.id) for state in fspa.states)
         pieces = {
             "title": in_docstring(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
-            "about": in_docstring("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula.ascii}")))),
+            "about": in_docstring("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula}")))),
             "file": self._file,
             "step": step,
             "signals": _tuple([_signal(signal) for signal in fspa.signals]),
@@ -173,7 +173,7 @@ class _Source:
 
     def _state(self, state: int) -> str:
         fspa_state, ends = self._fspa.states[state], self._program.ends[state]
-        return f"({literal(fspa_state.label.ascii)}, {literal(fspa_state.verdict)}, {fspa_state.accepting}, {ends})"
+        return f"({literal(str(fspa_state.label))}, {literal(fspa_state.verdict)}, {fspa_state.accepting}, {ends})"
 
     @property
     def _result(self) -> str:
@@ -183,7 +183,7 @@ class _Source:
     def _function(self, state: int) -> str:
         """Return the function of a state."""
         lines = call(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
-        lines += self._printer.lines([Comment(self._fspa.states[state].label.ascii)], depth=1)
+        lines += self._printer.lines([Comment(str(self._fspa.states[state].label))], depth=1)
         body = shallow(self._program.states[state], self._names)
         match body:
             case (If(cases, otherwise),):

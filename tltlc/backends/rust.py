@@ -138,7 +138,7 @@ class _Source:
         """Return the first comment: the name of the spec, its documentation and its formula."""
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-        formula = ["```text", *remark(fspa.formula.ascii.replace("```", "'''")), "```"]
+        formula = ["```text", *remark(str(fspa.formula).replace("```", "'''")), "```"]
         about = [_markdown(title), _markdown(fspa.doc), formula]
         parts = ["\n".join(f"//! {line}" for line in lines) for lines in about if lines]
         return ["\n//!\n".join(parts)]
@@ -156,7 +156,7 @@ class _Source:
         lines: list[str] = []
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
             values = (f"Verdict::{state.verdict.capitalize()}", pieces.boolean(state.accepting), pieces.boolean(ends))
-            lines.append(f"place({_string(state.label.ascii)}, {', '.join(values)}),")
+            lines.append(f"place({_string(str(state.label))}, {', '.join(values)}),")
         return lines
 
     def _give(self) -> list[str]:
@@ -237,7 +237,7 @@ class _Source:
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines.append("match self.state {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
             lines += [f"{_INDENT}{state.id} => {{", *self._values_only_in(state.id)]
             lines += [*self._printer.lines(statements, depth=2), f"{_INDENT}}}"]
         return [*lines, f"{_INDENT}_ => {{}}", "}"]

@@ -27,7 +27,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.files import is_dir, is_file, may_be_file, may_read, outside, read_source
 
 if TYPE_CHECKING:
-    from tltlc.backends import Notation
+    from tltlc.automaton.fspa import Notation
 
 FILE_NAME: Final = "tltl.toml"
 NOTATIONS: Final = ("unicode", "ascii", "english")

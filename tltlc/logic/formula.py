@@ -39,8 +39,21 @@ class Formula:
 
         return ascii_text(self)
 
+    @property
+    def ascii(self) -> str:
+        """The formula in letters and ASCII symbols, as :func:`~tltlc.logic.text.printer.ascii_text` prints it."""
+        return str(self)
+
+    @property
+    def unicode(self) -> str:
+        """The formula in symbols, as :func:`~tltlc.logic.text.printer.unicode_text` prints it."""
+        from tltlc.logic.text.printer import unicode_text
+
+        return unicode_text(self)
+
     def __reduce__(self) -> tuple[object, ...]:
-        return (_intern, (self.op, self.args, self.name))
+        # Flat, since pickling nested operands recurses, and bounds nest deep.
+        return _last_of, (flattened([self])[0],)
 
     def walk(self) -> Iterator[Formula]:
         """Yield every distinct subformula, this one first, left before right, without recursion."""
@@ -189,6 +202,35 @@ def then(left: Formula, right: Formula) -> Formula:
     """
     rest = right if right.op == "F" else eventually(right)
     return eventually(and_(left, next_(rest)))
+
+
+FlatNodes = list[tuple[Op, tuple[int, ...], str]]
+"""Nodes as operator, indices of the operands, which come before them, and name."""
+
+
+def flattened(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
+    """Return the distinct nodes of formulas as plain data, and the index of each formula."""
+    nodes: FlatNodes = []
+    index: dict[Formula, int] = {}
+    places = []
+    for formula in formulas:
+        for node in formula.bottom_up(known=index):
+            index[node] = len(nodes)
+            nodes.append((node.op, tuple(index[argument] for argument in node.args), node.name))
+        places.append(index[formula])
+    return nodes, places
+
+
+def unflattened(nodes: FlatNodes) -> list[Formula]:
+    """Return the formulas of all nodes, in order."""
+    formulas: list[Formula] = []
+    for op, args, name in nodes:
+        formulas.append(_intern(op, tuple(formulas[argument] for argument in args), name))
+    return formulas
+
+
+def _last_of(nodes: FlatNodes) -> Formula:
+    return unflattened(nodes)[-1]
 
 
 def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, SupportsFloat
 
-from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton, reward_options
 from tltlc.monitor.guards import bounding_atom, holds, robustness
@@ -58,6 +58,7 @@ class Monitor:
         self._samples = Samples(fspa, params, self.notices)
         self._tables = tables(fspa)
         self._options = reward_options(reward)
+        self._labels: dict[int, str] = {}
         self._names = tuple(atom.name for atom in fspa.atoms)
         self.reset()
 
@@ -112,7 +113,7 @@ class Monitor:
             self.done, self.success = outcome.done, outcome.success
         return Step(
             state=target.id,
-            label=target.label.ascii,
+            label=self._label(target),
             verdict=target.verdict,
             accepting=target.accepting,
             done=self.done,
@@ -122,6 +123,13 @@ class Monitor:
             robustness=robustness(edge_taken.guard, values) + 0.0,
             limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
         )
+
+    def _label(self, state: State) -> str:
+        """Return the label of a state in ASCII notation; each is printed once."""
+        label = self._labels.get(state.id)
+        if label is None:
+            label = self._labels[state.id] = str(state.label)
+        return label
 
     def _reward(self, source: int, target: int, values: Sequence[float], outcome: RewardStep) -> float:
         if self._options.mode == "progress":

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from operator import ge, gt, le, lt
 from typing import Final
 
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import NOTATIONS, Fspa
+from tltlc.automaton.text import label_text
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.monitor.monitor import Monitor, Step
@@ -76,9 +77,9 @@ def _unmet(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
         if not _compares(step.progress, expect):
             return _failure(expect, f"the progress is {shown(step.progress)}", _remains(step, fspa))
     else:
-        label = fspa.states[step.state].label
-        if _squeezed(str(expect.value)) not in map(_squeezed, (label.ascii, label.unicode, label.english)):
-            return _failure(expect, f"the state is `{label.ascii}`", "`tltlc render` shows every state with its label")
+        texts = [label_text(fspa, step.state, notation) for notation in NOTATIONS]
+        if _squeezed(str(expect.value)) not in map(_squeezed, texts):
+            return _failure(expect, f"the state is `{step.label}`", "`tltlc render` shows every state with its label")
     return None
 
 
@@ -95,7 +96,7 @@ def _squeezed(label: str) -> str:
 
 
 def _remains(step: Step, fspa: Fspa) -> str | None:
-    return None if step.label in ("true", "false") else f"what remains: {fspa.states[step.state].label.english}"
+    return None if step.label in ("true", "false") else f"what remains: {label_text(fspa, step.state)}"
 
 
 def _failure(expect: Expect, remark: str, help: str | None = None) -> Diagnostic:  # noqa: A002

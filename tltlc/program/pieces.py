@@ -20,7 +20,7 @@ def title(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
     ``comment`` turns a text into comment lines.
     """
     about = [comment(f"Monitor of the specification `{fspa.name}`, written by tltlc."), comment(fspa.doc)]
-    about.append([line.replace(" ", "     ", 1) for line in comment(fspa.formula.ascii)])
+    about.append([line.replace(" ", "     ", 1) for line in comment(str(fspa.formula))])
     mark = about[0][0].split()[0]
     return f"\n{mark}\n".join("\n".join(lines) for lines in about if lines)
 

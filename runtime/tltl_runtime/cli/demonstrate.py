@@ -18,7 +18,7 @@ from tltlc.interfaces.cli.report import Report
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.recordings.summary import Notation
+    from tltlc.automaton.fspa import Notation
 
 
 @click.command(

@@ -18,8 +18,8 @@ from tltlc.interfaces.cli.report import Report
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.recordings.summary import Notation
     from tltl_runtime.stealth.rendering.film import View
+    from tltlc.automaton.fspa import Notation
 
 _VIEWS: Final = ("third_person", "top_down", "overview", "plan")
 _ENDINGS: Final = (".png", *FILMS, ".csv")

@@ -9,6 +9,7 @@ import numpy as np
 
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary, settled_end
+from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
@@ -52,7 +53,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
         seconds=steps * env.get_wrapper_attr("tltl_clock_s"),
         state=info["state"],
         unmet=info["unmet"],
-        label=fspa.states[info["unmet"]].label.english,
+        label=label_text(fspa, info["unmet"]),
     )
 
 

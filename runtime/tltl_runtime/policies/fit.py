@@ -12,6 +12,7 @@ from tltl_runtime.stealth.signals import readers
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.number_text import listed
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _MOST: Final = 3
@@ -98,7 +99,7 @@ def _states(before: Fspa, after: Fspa) -> Iterator[str]:
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)
         primes = [[(edge.target, edge.guard.primes) for edge in fspa.edges_from(new.id)] for fspa in (before, after)]
         if not judged or primes[0] != primes[1]:
-            yield f"the state {new.id} (`{new.label.english}`) is another one"
+            yield f"the state {new.id} (`{label_text(after, new.id)}`) is another one"
     if before.exclusive != after.exclusive:
         yield "other atoms are exclusive"
 

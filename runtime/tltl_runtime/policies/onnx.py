@@ -19,6 +19,7 @@ from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.snapshot import BRANCHES, CHOICES
+from tltlc.automaton.text import label_text
 from tltlc.core.record import replace
 
 SUFFIX: Final = ".onnx"
@@ -72,7 +73,9 @@ def _texts(card: Card) -> dict[str, str]:
     texts = {
         "inputs": _inputs(card),
         "actions": [{"name": name, "choices": choices} for name, choices in names],
-        "states": [{"label": state.label.ascii, "english": state.label.english} for state in card.fspa.states],
+        "states": [
+            {"label": str(state.label), "english": label_text(card.fspa, state.id)} for state in card.fspa.states
+        ],
         # The record of the training stays in the policy file: an engine has no use for it.
         "card": card_json(replace(card, training={})),
     }

@@ -9,6 +9,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.support.number_text import column, share
 from tltl_runtime.support.record_json import to_json
+from tltlc.automaton.text import formula_text, label_text
 
 _ENDS: Final[Mapping[str, str]] = {
     "met": "the spec was met",
@@ -27,10 +28,10 @@ def summary(policy: Policy) -> dict[str, Any]:
         "level_hash": card.level_hash,
         "spec": card.fspa.name,
         "spec_hash": spec_hash(card.fspa),
-        "formula": card.fspa.formula.ascii,
-        "english": card.fspa.formula.english,
+        "formula": str(card.fspa.formula),
+        "english": formula_text(card.fspa),
         "params": dict(card.params),
-        "states": [state.label.english for state in card.fspa.states],
+        "states": [label_text(card.fspa, state.id) for state in card.fspa.states],
         "observation": dict(card.shapes),
         "sensors": to_json(card.sensors),
         "branches": card.branches,

@@ -118,7 +118,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "verdict": start.verdict,
             "state": 0,
             "unmet": 0,
-            "label": start.label.ascii,
+            "label": str(start.label),
             "progress": 0.0,
             "success": False,
             "limiting": None,

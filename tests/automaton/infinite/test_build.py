@@ -28,12 +28,12 @@ GROUPS = st.sampled_from([(), (("a", "b"),)])
 
 
 def labels(fspa: Fspa) -> list[str]:
-    return [state.label.ascii for state in fspa.states]
+    return [str(state.label) for state in fspa.states]
 
 
 def judged(fspa: Fspa) -> list[tuple[str, str, int | None, bool]]:
     def row(state: State) -> tuple[str, str, int | None, bool]:
-        return state.label.ascii, state.verdict, state.distance, state.accepting
+        return str(state.label), state.verdict, state.distance, state.accepting
 
     return list(map(row, fspa.states))
 
@@ -76,7 +76,7 @@ def test_a_state_accepts_the_lassos_on_which_its_label_holds(
 ) -> None:
     fspa = compiled(formula, *groups)
     for state in fspa.states:
-        label = read_formula(state.label.ascii)
+        label = read_formula(str(state.label))
         for prefix, cycle in lassos(fspa, 2):
             expected = holds_on_lasso(label, named(fspa, prefix), named(fspa, cycle))
             assert accepts(fspa, prefix, cycle, state.id) == expected, (state, prefix, cycle)

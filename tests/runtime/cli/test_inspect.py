@@ -21,6 +21,7 @@ from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.training.run.metrics import METRICS, measurements
 from tltl_runtime.training.run.run import POLICY, write_run
 from tltl_runtime.training.run.train import train
+from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace
 
 TRAINING = {
@@ -78,8 +79,8 @@ def test_the_json_summary_next_to_an_invalid_file(tltlc, file: Path, policy: Pol
     )
     assert record["branches"] == [3, 3, 2, 2, 2]
     assert (record["formula"], record["english"]) == (
-        policy.card.fspa.formula.ascii,
-        policy.card.fspa.formula.english,
+        str(policy.card.fspa.formula),
+        formula_text(policy.card.fspa),
     )
     assert record["observation"]["automaton"] == [len(record["states"])]
 

@@ -25,11 +25,12 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
-from tltl_runtime.stealth.recordings.summary import Notation, judged_with
+from tltl_runtime.stealth.recordings.summary import judged_with
 from tltl_runtime.stealth.rendering.camera import VIEWS
 from tltl_runtime.stealth.rendering.film import STRIP, frames
 from tltl_runtime.stealth.rendering.film_file import write_gif
 from tltl_runtime.stealth.rendering.plan import draw_episode, state_colour
+from tltlc.automaton.fspa import Notation
 from tltlc.core.record import replace
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace

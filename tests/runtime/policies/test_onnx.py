@@ -15,6 +15,7 @@ from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.onnx import to_onnx
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policies
+from tltlc.automaton.text import label_text
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import read_artefact
 
@@ -78,8 +79,11 @@ def test_the_metadata_describe_inputs_and_outputs(policy: Policy, model: bytes) 
     assert list(inputs) == list(shapes)
     assert inputs["entities"][:4] == ["s1.x", "s1.y", "s1.z", "s2.x"]
     assert [len(action["choices"]) for action in actions] == list(policy.card.branches)
-    label = policy.card.fspa.states[-1].label
-    assert json.loads(texts["states"])[-1] == {"label": label.ascii, "english": label.english}
+    state = policy.card.fspa.states[-1]
+    assert json.loads(texts["states"])[-1] == {
+        "label": str(state.label),
+        "english": label_text(policy.card.fspa, state.id),
+    }
     fspa = read_artefact(SourceFile("card", json.dumps(json.loads(texts["card"])["artefact"])))
     assert fspa == policy.card.fspa
     assert texts["spec_hash"] == spec_hash(fspa)

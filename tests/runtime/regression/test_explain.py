@@ -13,6 +13,7 @@ from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.core.record import replace
 
 SPEC = """import spatial
@@ -226,7 +227,7 @@ def test_the_state_of_failure_is_described_with_what_remained(level: Level, fspa
     # Each stage has its own sentence with its own state.
     ends = [text for text in sentences(level, fspa, now) if "where this remained" in text]
     assert [text.rpartition("; ")[2].partition(",")[0] for text in ends] == [f"in state {first}", f"in state {other}"]
-    assert ends[0].endswith(f"where this remained: {fspa.states[first].label.english}")
+    assert ends[0].endswith(f"where this remained: {label_text(fspa, first)}")
 
 
 ANY_ORDER = SPEC.replace("near(s1) then near(s2) then near(exit)", "near(s1)  reach near(s2)  reach near(exit)")

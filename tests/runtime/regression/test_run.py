@@ -33,6 +33,7 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.stealth.recordings.versions import versions
+from tltlc.automaton.fspa import Text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
@@ -145,7 +146,7 @@ def test_names_in_reasons_are_part_of_the_cache_key(game: Path) -> None:
     fspa = ready_case.setup.fspa
     for renamed_fspa in (
         replace(fspa, atoms=tuple(replace(atom, base=f"{atom.name}_2", arguments=()) for atom in fspa.atoms)),
-        replace(fspa, states=tuple(replace(state, label=replace(state.label, english="go")) for state in fspa.states)),
+        replace(fspa, states=tuple(replace(state, label=Text("go on", "go on", "go")) for state in fspa.states)),
     ):
         assert spec_hash(renamed_fspa) == spec_hash(fspa)
         renamed = replace(ready_case, setup=replace(ready_case.setup, fspa=renamed_fspa))

@@ -165,7 +165,7 @@ def test_the_corpus_has_every_operator_of_expressions() -> None:
 
 
 def test_the_corpus_has_every_operator_of_formulas() -> None:
-    labels = " ".join(fspa.formula.ascii for fspa in automata())
+    labels = " ".join(str(fspa.formula) for fspa in automata())
     for operator in ("F", "G", "X", "N", " U ", " W ", " R ", " M ", "!", " & ", " | ", " -> ", " <-> "):
         assert operator in labels, operator
 

@@ -19,14 +19,15 @@ from tests.logic.strategies import formulas
 from tltlc.automaton.compare import Letter
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.core.source import SourceFile
 from tltlc.io.files import read_source
 from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces, robustness_of_state
-from tltlc.logic.text.printer import ascii_text
 from tltlc.monitor.guards import holds
-from tltlc.pipeline import compile_source
+from tltlc.pipeline import compile_source, read_artefact
 from tltlc.tools.explain.explanation import explain
-from tltlc.tools.explain.formulas import formula_of, guard_reader
+from tltlc.tools.explain.formulas import guard_reader
 from tltlc.tools.explain.sections import Table, document
 from tltlc.tools.explain.text import text
 from tltlc.tools.explain.values import values
@@ -46,9 +47,7 @@ FORMULAS = formulas(atoms=("a", "b", "c"), max_leaves=5)
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_texts_of_the_examples_match_the_golden_files(path: Path) -> None:
     compiled = compile_source(read_source(path))
-    explanation = "\n".join(
-        text(explain(fspa, spec.formula)) for fspa, spec in zip(compiled.automata, compiled.program.specs, strict=True)
-    )
+    explanation = "\n".join(text(explain(fspa)) for fspa in compiled.automata)
     golden = GOLDEN / f"{path.stem}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
         golden.write_text(explanation, encoding="utf-8")
@@ -62,28 +61,24 @@ def test_no_golden_file_is_left_over() -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_an_artefact_is_explained_like_its_source(path: Path) -> None:
-    compiled = compile_source(read_source(path))
-    for fspa, spec in zip(compiled.automata, compiled.program.specs, strict=True):
-        assert explain(fspa) == explain(fspa, spec.formula)
+    for fspa in compile_source(read_source(path)).automata:
+        assert explain(decoded(fspa)) == explain(fspa)
 
 
-@settings(max_examples=150, deadline=None)
-@given(FORMULAS)
-def test_a_formula_is_read_back_from_its_text(formula: Formula) -> None:
-    fspa = build(spec_from_formula(formula))
-    parsed = formula_of(fspa)
-    assert parsed is not None
-    assert ascii_text(parsed) == ascii_text(formula)
+def decoded(fspa: Fspa) -> Fspa:
+    """Write the automaton as an artefact, and read it."""
+    artefact = emit("json", fspa)[f"{fspa.name}.fspa.json"]
+    assert isinstance(artefact, str)
+    return read_artefact(SourceFile("x.fspa.json", artefact))
 
 
 def test_names_within_names_are_parsed() -> None:
     text_ = "signal x in [-9, 9]  signal y in [0, 9]  signal x1: bool  signal F1.x: bool\n"
     text_ += "spec s = F x > 1 & G(x + y > 1 -> x > 1.5) & (!x1 U F1.x) & F -x > 1"
     (fspa,) = compiler.compile_text(text_)
-    parsed = formula_of(fspa)
-    assert parsed is not None
-    assert ascii_text(parsed) == fspa.formula.ascii
-    assert set(parsed.atoms()) == {atom.name for atom in fspa.atoms}
+    assert isinstance(fspa.formula, Formula)
+    assert decoded(fspa).formula is fspa.formula
+    assert set(fspa.formula.atoms()) == {atom.name for atom in fspa.atoms}
 
 
 @settings(max_examples=100, deadline=None)
@@ -103,7 +98,7 @@ def test_guards_are_read_back_from_their_texts(formula: Formula) -> None:
 @given(FORMULAS)
 def test_the_explanation_matches_the_automaton(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
-    explanation = explain(fspa, formula)
+    explanation = explain(fspa)
     verdicts = {state.verdict for state in fspa.states}
     assert [(state.id, state.verdict, state.distance) for state in explanation.states] == [
         (state.id, state.verdict, state.distance) for state in fspa.states
@@ -238,8 +233,8 @@ def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str
 
     def explained() -> None:
         compilation = compile_source(source)
-        for fspa, spec in zip(compilation.automata, compilation.program.specs, strict=True):
-            text(explain(fspa, spec.formula))
+        for fspa in compilation.automata:
+            text(explain(fspa))
 
     explained()  # Warm up: read the libraries.
     assert calls(explained) < 3 * calls(compiled)

@@ -19,6 +19,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.files import read_source
+from tltlc.logic.formula import Formula
 from tltlc.tools.hoa.load import ImportOptions, load
 
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.tltl"))
@@ -83,8 +84,8 @@ def test_an_infinite_automaton_survives_export_and_import(fspa: Fspa) -> None:
 
 
 def ascii_alone(fspa: Fspa) -> Fspa:
-    def plain(text: Text) -> Text:
-        return Text(text.ascii, "", "")
+    def plain(label: Formula | Text) -> Text:
+        return Text(str(label), "", "")
 
     states = tuple(replace(state, label=plain(state.label)) for state in fspa.states)
     return replace(fspa, formula=plain(fspa.formula), states=states)
@@ -218,7 +219,7 @@ def test_named_acceptances_bound_the_number_of_states(condition: Condition, sets
 def test_copies_of_a_state_are_numbered() -> None:
     text = """HOA: v1 Start: 0 AP: 2 "p0" "p1" Acceptance: 2 Inf(0)&Inf(1)
     --BODY-- State: 0 "both" [0&!1] 0 {0} [!0&1] 0 {1} [!0&!1] 0 [0&1] 0 {0 1} --END--"""
-    assert [state.label.ascii for state in imported(text).states] == ["both (1 of 2)", "both (2 of 2)"]
+    assert [str(state.label) for state in imported(text).states] == ["both (1 of 2)", "both (2 of 2)"]
 
 
 @pytest.mark.parametrize("name", ["a=b", "x==1", "", "X", "q > 2", "p0 p1"])

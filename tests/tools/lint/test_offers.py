@@ -228,7 +228,7 @@ def test_fixes_of_a_clause_produce_the_corrections(clause: str, meant: list[str]
 
 def formula(source: SourceFile) -> str:
     (fspa,) = tltlc.compile_text(source.text)
-    return fspa.formula.ascii
+    return str(fspa.formula)
 
 
 def test_every_fix_of_the_table_is_offered() -> None:

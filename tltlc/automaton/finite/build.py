@@ -16,7 +16,7 @@ from tltlc.automaton.finite.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooL
 from tltlc.automaton.finite.machine import Machine, OutOfStates
 from tltlc.automaton.finite.order import better_order, reordered, restored
 from tltlc.automaton.finite.successors import Successors
-from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
+from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.judge import default_judge, judge_of
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
@@ -25,13 +25,10 @@ from tltlc.expression.tree import Signal as SignalValue
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
+from tltlc.logic.text.printer import ascii_text
 from tltlc.resolve.spec import Atom, Signal, Spec
 
 DEFAULT_STATE_BUDGET = 50_000
-
-_LONGEST_IN_ENGLISH = 2_000
-"""Formulas with more characters get no English sentence: it would be too long to read."""
 
 
 def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
@@ -111,7 +108,7 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
     return Fspa(
         name=spec.name,
         doc=spec.doc,
-        formula=text_of(spec.formula),
+        formula=spec.formula,
         level=spec.level,
         limit_steps=spec.limit_steps,
         judge=spec.judge or (judge_of(spec.parts) if spec.parts else default_judge(spec.formula)),
@@ -231,12 +228,12 @@ def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Tra
     return tuple(sorted(edges, key=lambda edge: (edge.source, edge.target)))
 
 
-# --- texts ----------------------------------------------------------------------------------------
+# --- labels ---------------------------------------------------------------------------------------
 
 
 def _labels(
     source: Formula, successors: Successors, minimal: Machine, order: Sequence[int], allowed: int
-) -> dict[int, Text]:
+) -> dict[int, Formula]:
     """Return the label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
 
     Raises :class:`LabelsTooLong` if all labels together have more nodes than the row "label nodes"
@@ -254,9 +251,8 @@ def _labels(
         left -= labels.size(formulas[state])
         if left < 0:
             raise LabelsTooLong
-    texts = {state: text_of(formula) for state, formula in formulas.items()}
     value = diagrams.value
-    return {leaf: _at_the_end(texts[value[leaf][0]], value[leaf][1] == 1) for leaf in order}
+    return {leaf: formulas[value[leaf][0]] for leaf in order}
 
 
 def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formula]:
@@ -285,26 +281,6 @@ def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
     for node in formula.bottom_up(known=restored):
         restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
     return restored[formula]
-
-
-def text_of(formula: Formula) -> Text:
-    """Return a formula in the three notations."""
-    plain = ascii_text(formula)
-    english = english_text(formula) if len(plain) <= _LONGEST_IN_ENGLISH else f"Satisfy {plain}."
-    return Text(plain, unicode_text(formula), english)
-
-
-def _at_the_end(label: Text, accepting: bool) -> Text:
-    """Return the label of a state, with its own sentence if acceptance depends on whether the trace ends here.
-
-    ``X`` leaves a state with label ``true`` that rejects; ``N`` leaves one with label ``false``
-    that accepts.
-    """
-    if label.ascii == "true" and not accepting:
-        return Text(label.ascii, label.unicode, "The trace must go on for one more step.")
-    if label.ascii == "false" and accepting:
-        return Text(label.ascii, label.unicode, "The trace must end here.")
-    return label
 
 
 # --- specs without a file -------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from tltlc.automaton.infinite.automaton import Rabin
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.core.record import record
 from tltlc.io.limits import WORK
+from tltlc.logic.formula import Formula
 
 
 class Analysis(Protocol):
@@ -40,12 +41,12 @@ def assembled(
     analysis: Analysis,
     atoms: Sequence[str],
     exclusive: Sequence[Sequence[int]],
-    text: Callable[[int], Text],
+    label: Callable[[int], Formula | Text],
     first: Sequence[int] | None = None,
 ) -> Parts:
     """Return states, edges and pairs, with the states in the order of an artefact.
 
-    ``text`` returns the label of a state, given its number in the automaton.  ``first``, if given,
+    ``label`` returns the label of a state, given its number in the automaton.  ``first``, if given,
     lists all states in the order that breaks ties.
 
     Raises :class:`~tltlc.automaton.guards.TooManyPrimes`,
@@ -56,7 +57,7 @@ def assembled(
     order = breadth_first(0, targets, distance)
     number = {state: place for place, state in enumerate(order)}
     states = tuple(
-        State(number[state], text(state), state in analysis.goals, analysis.verdict(state), distance[state])
+        State(number[state], label(state), state in analysis.goals, analysis.verdict(state), distance[state])
         for state in order
     )
     edges, pairs = _edges(automaton, order, number, atoms, exclusive)

@@ -5,14 +5,15 @@ from __future__ import annotations
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
-from tltlc.automaton.fspa import Fspa, Text
+from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.analysis import analysis_of_rabin
 from tltlc.automaton.infinite.assembly import assembled
 from tltlc.automaton.infinite.blowup import blow_up
 from tltlc.automaton.infinite.construct import rabin
-from tltlc.automaton.infinite.readback import Writer, text_of
+from tltlc.automaton.infinite.readback import Writer
 from tltlc.automaton.work import STEPS_PER_STATE, OutOfWork, Work
+from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
 
 
@@ -37,14 +38,14 @@ def _build(spec: Spec, work: int) -> Fspa:
     analysis = analysis_of_rabin(automaton, Work(work))
     writer = Writer(spec.formula)
 
-    def text(state: int) -> Text:
-        return text_of(writer.formula(automaton.labels[state]) if state else spec.formula)
+    def label(state: int) -> Formula:
+        return writer.formula(automaton.labels[state]) if state else spec.formula
 
-    parts = assembled(automaton, analysis, names, spec.exclusive, text)
+    parts = assembled(automaton, analysis, names, spec.exclusive, label)
     return Fspa(
         name=spec.name,
         doc=spec.doc,
-        formula=text_of(spec.formula),
+        formula=spec.formula,
         level=spec.level,
         limit_steps=spec.limit_steps,
         judge=spec.judge or analysis.default_judge(),

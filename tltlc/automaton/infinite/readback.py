@@ -4,25 +4,13 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.automaton.fspa import Text
 from tltlc.automaton.infinite.factoring import Factoring
 from tltlc.automaton.infinite.infinite import infinite_form, readable
 from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
-from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
+from tltlc.logic.text.printer import ascii_text
 
 _MOST_PARTS: Final = 300
 """A spec with more subformulas keeps the labels of the construction: they are too long to read."""
-
-_LONGEST_IN_ENGLISH: Final = 2_000
-"""Formulas with more characters get no English sentence: it would be too long to read."""
-
-
-def text_of(formula: Formula) -> Text:
-    """Return a formula over infinite traces in the three notations."""
-    plain = ascii_text(formula)
-    if len(plain) > _LONGEST_IN_ENGLISH:
-        return Text(plain, unicode_text(formula), f"Satisfy {plain}.")
-    return Text(plain, unicode_text(formula), english_text(without_constants(formula), endless=True))
 
 
 def without_constants(formula: Formula) -> Formula:

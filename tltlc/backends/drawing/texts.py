@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
-from tltlc.automaton.fspa import Edge, Fspa, Text
-from tltlc.backends import Notation
+from tltlc.automaton.fspa import Edge, Fspa, Notation
 
 _OPERATORS: dict[Notation, dict[str, str]] = {
     "unicode": {"!": "¬", "&": "∧", "|": "∨", "->": "⇒", "<->": "⇔", "true": "⊤", "false": "⊥"},
@@ -28,11 +27,6 @@ _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/"
 # A line end that splits a bound from its operand (`F[0,3] p`), the arguments of an atom (`near(a, b)`), or the mark of
 # a pair (`[inf 0]`).
 _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
-
-
-def label(text: Text, notation: Notation) -> str:
-    """Return a formula in the given notation."""
-    return {"unicode": text.unicode, "ascii": text.ascii, "english": text.english}[notation]
 
 
 class Guards:

@@ -120,7 +120,7 @@ class _Source:
             "signals": self._strings(signal.name for signal in fspa.signals),
             "fields": self._strings(self._signals),
             "atoms": self._strings(atom.name for atom in fspa.atoms),
-            "labels": self._strings(state.label.ascii for state in fspa.states),
+            "labels": self._strings(str(state.label) for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
             "first_accepting": pieces.boolean(first.accepting),
@@ -249,7 +249,7 @@ class _Source:
         lines = ["var reached: float = 0.0"] if self._fspa.judge == "goal" else []
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             lines.append(self._printer.head(f"state == {state.id}", first=state.id == 0))
-            lines += [f"\t{line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"\t{line}" for line in self._printer.comment(str(state.label))]
             lines += [f"\t{line}" for line in (*self._bools(state.id), *self._values(state.id))]
             lines += self._printer.lines(statements, depth=1)
         return lines

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from tltlc.automaton.fspa import Fspa, Text
-from tltlc.backends import Notation
+from tltlc.automaton.fspa import NOTATIONS, Fspa, Notation
+from tltlc.automaton.text import formula_text, label_text
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, TltlError
 from tltlc.diagnostics.shortening import shortened
@@ -75,7 +75,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     ]
     if compiled.specs:
         shown = next((spec_view for spec_view in compiled.specs if spec_view.spec.name == spec), compiled.specs[0])
-        page["spec"] = _spec(shown.fspa, explain(shown.fspa, shown.spec.formula), letters, notation)
+        page["spec"] = _spec(shown.fspa, explain(shown.fspa), letters, notation)
     return page
 
 
@@ -91,7 +91,7 @@ def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter]
     return {
         "name": fspa.name,
         "doc": fspa.doc,
-        "formula": _texts(fspa.formula),
+        "formula": {name: formula_text(fspa, name) for name in NOTATIONS},
         "explanation": explanation,
         "failures": list(failure_texts(source_explanation)),
         "atoms": [{"name": atom.name, "doc": atom.doc} for atom in fspa.atoms],
@@ -100,7 +100,7 @@ def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter]
         "states": [
             {
                 "id": state.id,
-                "label": _texts(state.label),
+                "label": {name: label_text(fspa, state.id, name) for name in NOTATIONS},
                 "accepting": state.accepting,
                 "verdict": state.verdict,
                 "distance": state.distance,
@@ -114,10 +114,6 @@ def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter]
         "idle": idle(fspa),
         **shortest(fspa),
     }
-
-
-def _texts(text: Text) -> dict[str, str]:
-    return {"ascii": text.ascii, "unicode": text.unicode, "english": text.english}
 
 
 def diagnostic(message: Diagnostic, source: SourceFile | None = None, offers: Iterable[Offer] = ()) -> dict[str, Any]:

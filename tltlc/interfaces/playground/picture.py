@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from html import escape
 from typing import Final
 
-from tltlc.automaton.fspa import Fspa, State
-from tltlc.backends import Notation
+from tltlc.automaton.fspa import Fspa, Notation, State
+from tltlc.automaton.text import label_text
 from tltlc.backends.drawing.folding import Drawing, span
 from tltlc.backends.drawing.picture_content import notes, shown
-from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
+from tltlc.backends.drawing.texts import arrows, visible, wrapped
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Point, bent, drawn
 from tltlc.interfaces.playground.layout import Box, Size, layout
@@ -59,7 +59,7 @@ class _Picture:
         self.titles = arrows(fspa, drawing.edges, "english")
         self.lines = {ends: self._lines(ends) for ends in self.guards}
         self.runs = {state.id: drawing.folded.get(state.id, (state,)) for state in drawing.states}
-        self.labels = {state: _label_lines(run, notation) for state, run in self.runs.items()}
+        self.labels = {state: _label_lines(fspa, run, notation) for state, run in self.runs.items()}
         self.boxes = {state: self._box(state) for state in self.runs}
         sizes = {ends: _size(lines) for ends, lines in self.lines.items()}
         self.placed = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
@@ -106,7 +106,7 @@ class _Picture:
         number = span(str(run[0].id), str(run[-1].id))
         distance = span(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
         classes = f"state {state.verdict}{' accepting' if state.accepting else ''}{' folded' if len(run) > 1 else ''}"
-        title = _escaped(f"State {number}, {state.verdict}: {run[0].label.english}")
+        title = _escaped(f"State {number}, {state.verdict}: {label_text(self.fspa, run[0].id)}")
         frame = _rectangle("frame", left, top, right, bottom, 9)
         frame += _rectangle("ring", left + 4, top + 4, right - 4, bottom - 4, 6) if state.accepting else ""
         lines = self.labels[state.id]
@@ -157,8 +157,8 @@ def _trap(drawing: Drawing) -> int | None:
     return next((state for state in traps if state), None)
 
 
-def _label_lines(run: Sequence[State], notation: Notation) -> list[str]:
-    first, last = (label(end.label, notation) for end in (run[0], run[-1]))
+def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[str]:
+    first, last = (label_text(fspa, end.id, notation) for end in (run[0], run[-1]))
     if len(run) == 1:
         return _shortened([first], _LABEL)
     return [f"{len(run)} more like these", *_shortened([span(first, last)], _LABEL)]

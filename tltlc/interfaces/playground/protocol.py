@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from typing import Any, Final, get_args
 
-from tltlc.backends import Notation
+from tltlc.automaton.fspa import Notation
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.interfaces.playground.page_config import start

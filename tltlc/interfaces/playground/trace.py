@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, Union
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
@@ -49,7 +50,7 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
             {
                 "from": before,
                 "state": step.state,
-                "label": fspa.states[step.state].label.english,
+                "label": label_text(fspa, step.state),
                 "verdict": step.verdict,
                 "accepting": step.accepting,
                 "done": step.done,

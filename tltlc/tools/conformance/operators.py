@@ -48,7 +48,7 @@ def _case(number: int, shape: _Shape) -> Case:
     lucky = dict.fromkeys("abc", (-0.5, 0.25, 0.5, 1.0, 1.0))
     zeros = dict.fromkeys("abc", (0.0, -0.0))
     traces = (lively(fspa, draw, 24, pools), lively(fspa, draw, 30, lucky), drawn(fspa, draw, 14, zeros))
-    return Case(fspa, f"The formula {fspa.formula.ascii}.", traces)
+    return Case(fspa, f"The formula {fspa.formula}.", traces)
 
 
 CASES: Final[Makers] = {shape[0]: partial(_case, number, shape) for number, shape in enumerate(_SHAPES)}

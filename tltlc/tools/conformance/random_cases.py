@@ -32,7 +32,7 @@ def _of_formula(name: str, seed: int, infinite: bool) -> Case:
     fspa = _automaton(name, draw, infinite)
     pools = {signal.name: _VALUES for signal in fspa.signals}
     traces = tuple(lively(fspa, draw, 20 + 10 * number, pools) for number in range(2))
-    return Case(fspa, f"A random formula: {fspa.formula.ascii}.", traces)
+    return Case(fspa, f"A random formula: {fspa.formula}.", traces)
 
 
 def _of_predicates(name: str, seed: int) -> Case:
@@ -41,7 +41,7 @@ def _of_predicates(name: str, seed: int) -> Case:
     expressions = {atom: predicate(draw) for atom in _ATOMS}
     fspa = _automaton(name, draw, False, expressions)
     traces = (lively(fspa, draw, 30), drawn(fspa, draw, 12, refused=True))
-    return Case(fspa, f"Random predicates under {fspa.formula.ascii}.", traces)
+    return Case(fspa, f"Random predicates under {fspa.formula}.", traces)
 
 
 def _automaton(name: str, draw: Draw, infinite: bool, expressions: Mapping[str, Expression] = EMPTY) -> Fspa:

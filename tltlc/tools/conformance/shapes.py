@@ -45,7 +45,7 @@ def _decided(name: str, formula: f.Formula, limit: int | None) -> Case:
     fspa = automaton(name, f.and_(formula, f.or_(f.atom("a"), f.not_(f.atom("a")))), limit=limit)
     rows: list[list[object]] = [[0.5], [-0.5], [0], [1]]
     traces = (table([s.name for s in fspa.signals] or ["a"], rows),)
-    return Case(fspa, f"Decided before anything happens: {fspa.formula.ascii}.", traces)
+    return Case(fspa, f"Decided before anything happens: {fspa.formula}.", traces)
 
 
 def _one_step() -> Case:

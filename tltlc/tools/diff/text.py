@@ -7,6 +7,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
 from tltlc.automaton.compare import Literals, Trace
+from tltlc.automaton.text import label_text
 from tltlc.io.spec_file import STDIN, STDIN_NAME
 from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
@@ -15,7 +16,7 @@ from tltlc.tools.diff.phrases import listed, sample_text, type_text, unrelated, 
 from tltlc.tools.diff.traces import block, step_lines, told
 
 if TYPE_CHECKING:
-    from tltlc.automaton.fspa import State
+    from tltlc.automaton.fspa import Fspa, State
     from tltlc.tools.diff.pairs import FileDiff, Pair
     from tltlc.tools.diff.relation import Group, Relation
 
@@ -131,9 +132,9 @@ def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
     if trace.cycle:
         lines.append(f"    {'then ' if trace.prefix else ''}again and again:")
         lines += [f"      {line}" for line in step_lines(pair, trace.cycle)]
-    states = {"A": outcome.a, "B": outcome.b}
+    states = {"A": (pair.a, outcome.a), "B": (pair.b, outcome.b)}
     after = "after one round" if trace.cycle else "after these" if len(trace.prefix) > 1 else "after it"
-    lines += [f"    {after}, {side} is {_state(states[side])}" for side in (by, other)]
+    lines += [f"    {after}, {side} is {_state(*states[side])}" for side in (by, other)]
     yield "\n".join(lines)
     test = block(pair, outcome, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
     if test is not None:
@@ -141,10 +142,10 @@ def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
         yield f"  as a test of {side}:\n\n{_indented(lines_of_test)}"
 
 
-def _state(state: State) -> str:
+def _state(fspa: Fspa, state: State) -> str:
     if state.verdict in ("satisfied", "violated"):
         return state.verdict
-    return f"{state.verdict}; what remains: {state.label.english}"
+    return f"{state.verdict}; what remains: {label_text(fspa, state.id)}"
 
 
 def _indented(text: str) -> str:

@@ -8,13 +8,14 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import formula_text, label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import folded
 from tltlc.core.record import record
 from tltlc.logic.formula import TRUE, Formula, rebuild
 from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
-from tltlc.tools.explain.formulas import formula_of, guard_reader, literals
+from tltlc.tools.explain.formulas import guard_reader, literals
 from tltlc.tools.explain.judgement import ending
 from tltlc.tools.explain.next_steps import leading_on
 from tltlc.tools.witness.traces import Witness, accepting, rejecting
@@ -84,8 +85,8 @@ class Way:
 class Explanation:
     """A spec in words. The fields are those of the JSON of ``tltlc explain --format json``.
 
-    ``outline`` is None if the formula cannot be read. ``exclusive`` lists atoms of which at most
-    one holds at a time. ``counting`` lists runs of states, each leading to the next, that differ
+    ``outline`` is None if another tool gave the automaton a name and no formula. ``exclusive`` lists
+    atoms of which at most one holds at a time. ``counting`` lists runs of states, each leading to the next, that differ
     only in a count. ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for
     this spec.
 
@@ -113,24 +114,20 @@ class Explanation:
     fail: Way | None
 
 
-def explain(fspa: Fspa, formula: Formula | None = None) -> Explanation:
-    """Return the explanation of an automaton.
-
-    ``formula`` is the formula of its spec. If it is missing, it is parsed from the automaton's
-    text.
-    """
-    formula = formula or formula_of(fspa)
+def explain(fspa: Fspa) -> Explanation:
+    """Return the explanation of an automaton."""
+    formula = fspa.formula
     guards = _guards(fspa)
     moves = Moves(fspa)
     limit_s = None if None in (fspa.limit_steps, fspa.clock_s) else (fspa.limit_steps or 0) * (fspa.clock_s or 0.0)
     return Explanation(
         name=fspa.name,
         doc=fspa.doc,
-        formula=fspa.formula.ascii,
-        english=fspa.formula.english,
+        formula=str(fspa.formula),
+        english=formula_text(fspa),
         semantics=fspa.semantics,
         level=fspa.level,
-        outline=None if formula is None else _outline(formula, endless=fspa.semantics == "infinite"),
+        outline=_outline(formula, endless=fspa.semantics == "infinite") if isinstance(formula, Formula) else None,
         exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
         failures=_failures(fspa, guards),
         judge=fspa.judge,
@@ -179,7 +176,7 @@ def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
         edge = fspa.edges[index]
         leads.setdefault(edge.source, {})[Lead(_words(guards[index]), edge.target)] = None
     return tuple(
-        StateRow(state.id, state.label.english, state.verdict, state.distance, tuple(leads.get(state.id, ())))
+        StateRow(state.id, label_text(fspa, state.id), state.verdict, state.distance, tuple(leads.get(state.id, ())))
         for state in fspa.states
     )
 

@@ -1,48 +1,13 @@
-"""Parse the formulas and guards of an automaton from its texts."""
+"""Parse the guards of an automaton from their texts."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
-from tltlc.core.source import SourceFile
 from tltlc.logic import formula as build
-from tltlc.logic.formula import Formula, atom, rebuild
+from tltlc.logic.formula import Formula, atom
 from tltlc.logic.text.printer import operand_text
-from tltlc.pipeline import Session
-
-
-def formula_of(fspa: Fspa) -> Formula | None:
-    """Return the formula of an automaton, or None if its text is no valid formula.
-
-    The text may be invalid if another tool made the automaton.
-    """
-    stand_ins = {declared.name: f"atom_{index}" for index, declared in enumerate(fspa.atoms)}
-    text = fspa.formula.ascii
-    if stand_ins:
-        text = _any_of(stand_ins).sub(lambda match: stand_ins[match[0]], text)
-    signals = "".join(f"signal {stand_in}: bool\n" for stand_in in stand_ins.values())
-    session = Session(SourceFile(fspa.name, f"{signals}spec explained = {text}\n"))
-    if any(diagnostic.severity == "error" for diagnostic in session.syntax_errors):
-        return None
-    specs = session.resolution.program.specs
-    names = {stand_in: name for name, stand_in in stand_ins.items()}
-    return _renamed(specs[0].formula, names) if specs else None
-
-
-def _any_of(names: dict[str, str]) -> re.Pattern[str]:
-    """Return a pattern that matches the names of atoms, the longest possible one first."""
-    longest_first = sorted(names, key=len, reverse=True)
-    return re.compile(rf"(?<![\w.])(?:{'|'.join(map(re.escape, longest_first))})(?![\w.])")
-
-
-def _renamed(formula: Formula, names: dict[str, str]) -> Formula:
-    done: dict[Formula, Formula] = {}
-    for node in formula.bottom_up():
-        args = tuple(done[argument] for argument in node.args)
-        done[node] = atom(names[node.name]) if node.op == "atom" else rebuild(node, args)
-    return done[formula]
 
 
 def guard_reader(fspa: Fspa) -> Callable[[Guard], Formula]:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
-from tltlc.automaton.finite.build import text_of as finite_text
 from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.automaton.guards import TooManyPrimes
@@ -27,13 +26,13 @@ from tltlc.tools.hoa.tree import Hoa
 if TYPE_CHECKING:
     import os
 from tltlc.automaton.infinite.assembly import assembled
-from tltlc.automaton.infinite.readback import text_of as infinite_text
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.io.resources import bounded
 from tltlc.io.spec_file import STDIN_NAME, is_plain_name
+from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import FormulaOf
@@ -84,12 +83,12 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
                 raise OutOfStates
             state_names = _state_names(hoa, automaton.labels)
 
-            def text(state: int) -> Text:
-                return _text(state_names[state], formula_of, finite=finite)
+            def label(state: int) -> Formula | Text:
+                return _label(state_names[state], formula_of)
 
             places = {state.number: place for place, state in enumerate(hoa.states)}
             in_file_order = sorted(range(len(state_names)), key=lambda state: places[automaton.labels[state]])
-            parts = assembled(automaton, analysis, names, vocabulary.exclusive, text, in_file_order)
+            parts = assembled(automaton, analysis, names, vocabulary.exclusive, label, in_file_order)
         except (OutOfStates, OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
             raise TltlError([_too_large(source, reason, options)]) from None
     headers = metadata(hoa)
@@ -97,7 +96,7 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
     fspa = Fspa(
         name=options.name or _name(hoa),
         doc="",
-        formula=_text(title, formula_of, finite=finite),
+        formula=_label(title, formula_of),
         level=options.level or headers.level,
         limit_steps=options.limit_steps or headers.limit_steps,
         judge=options.judge or headers.judge or analysis.default_judge(),
@@ -155,13 +154,13 @@ def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
     return state_names
 
 
-def _text(words: str, formula_of: FormulaOf, *, finite: bool) -> Text:
-    """Return a state's name as a text: in three notations if it is a formula as tltlc prints it, else unchanged."""
+def _label(words: str, formula_of: FormulaOf) -> Formula | Text:
+    """Return a state's name as a formula if it is one as tltlc prints it, else unchanged."""
     expression, _ = parse_formula(SourceFile("<name>", words))
     formula = None if expression is None else formula_of(expression)
     # Operators of other tools may have other precedences.
     if formula is not None and ascii_text(formula) == words:
-        return finite_text(formula) if finite else infinite_text(formula)
+        return formula
     return Text(words.encode("ascii", "backslashreplace").decode(), words, words)
 
 

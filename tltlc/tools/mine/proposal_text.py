@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from textwrap import fill
 from typing import Final
 
+from tltlc.automaton.text import formula_text
 from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.clause import atoms_of
 from tltlc.tools.mine.confirm import Proposal
@@ -40,7 +41,7 @@ def _proposal(rank: int, proposal: Proposal, evidence: Evidence, bits: Bits) -> 
     yield ""
     yield from (f"{_INDENT}    {clause.text}" for clause in proposal.clauses)
     yield ""
-    yield _wrapped(proposal.fspa.formula.english)
+    yield _wrapped(formula_text(proposal.fspa))
     yield from (_wrapped(reason, "- ") for reason in reasons(proposal, evidence, bits))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from tltlc.automaton.text import formula_text
 from tltlc.tools.mine.clause import atoms_of
 from tltlc.tools.mine.confirm import Proposal
 from tltlc.tools.mine.evidence import Evidence
@@ -26,8 +27,8 @@ def document(proposals: Sequence[Proposal], evidence: Evidence, search: Search, 
             {
                 "rank": rank,
                 "clauses": [clause.text for clause in proposal.clauses],
-                "formula": proposal.fspa.formula.ascii,
-                "english": proposal.fspa.formula.english,
+                "formula": str(proposal.fspa.formula),
+                "english": formula_text(proposal.fspa),
                 "score": proposal.figures.score(atoms_of(proposal.clauses)),
                 "support": proposal.figures.support,
                 "separation": proposal.figures.separation,

@@ -8,6 +8,7 @@ from itertools import groupby
 from textwrap import wrap
 from typing import Final
 
+from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace
 from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.confirm import Judgement, Proposal
@@ -65,7 +66,7 @@ def declarations(proposals: Sequence[Proposal], words: Words, imported: str | No
 
 def _spec(proposal: Proposal, evidence: Evidence, bits: Bits) -> str:
     paragraphs = [
-        proposal.fspa.formula.english,
+        formula_text(proposal.fspa),
         "",
         *(_sentence(reason) for reason in reasons(proposal, evidence, bits)),
     ]

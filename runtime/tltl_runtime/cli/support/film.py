@@ -13,8 +13,8 @@ from tltlc.interfaces.cli import exits
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.recordings.summary import Notation
     from tltl_runtime.stealth.rendering.film import View
+    from tltlc.automaton.fspa import Notation
 
 T = TypeVar("T")
 

@@ -29,7 +29,8 @@ from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.run.report import Report, Window
 from tltl_runtime.training.run.run import CHECKPOINT, Run
 from tltl_runtime.training.run.settings import Stop
-from tltlc.automaton.fspa import State
+from tltlc.automaton.fspa import Fspa, State
+from tltlc.automaton.text import label_text
 
 _WIDTH: Final = 100
 """The greatest width of the picture, in characters."""
@@ -118,7 +119,7 @@ class Picture:
             _success(report, stop, bar),
             *space,
             Text(_ended(window, count, len(states)), "dim", no_wrap=True, overflow="ellipsis"),
-            _states(window, states, count, bar),
+            _states(window, run.fspa, states, count, bar),
             *space,
             *(Text(line, no_wrap=True, overflow="ellipsis") for line in lines),
         )
@@ -150,14 +151,14 @@ def _ended(window: Window, shown: int, states: int) -> str:
     return f"where the last {window.count} episodes ended{of_states}"
 
 
-def _states(window: Window, states: tuple[State, ...], count: int, bar: int) -> Table:
+def _states(window: Window, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
     """The ``count`` states in which most of the last episodes ended, with what remained to be satisfied there."""
     shown = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
     for state in sorted(shown, key=lambda state: state.id):
         ended, violated = window.states.get(state.id, 0.0), window.violated.get(state.id, 0.0)
         colour = "red" if violated > ended / 2 else "green" if state.accepting else "cyan"
-        label = Text(state.label.english, "" if ended else "dim")
+        label = Text(label_text(fspa, state.id), "" if ended else "dim")
         if violated:
             label = Text.assemble((f"{percent(violated)} violated: ", "red"), label)
         table.add_row(f"state {state.id}", _bar(ended, colour, bar), f"{percent(ended):>4}", label)

@@ -11,6 +11,7 @@ from tltl_runtime.stealth.capabilities.capabilities import given_params
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.number_text import number
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 
 
 def approach(level: Level, fspa: Fspa, undone: Subgoal, accounts: Sequence[Account]) -> str:
@@ -33,7 +34,7 @@ def remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
     """Describe the state in which most of the episodes failed, and what remained to be done there."""
     ((state, count),) = Counter(account.summary.unmet for account in accounts).most_common(1)
     often = "" if count == len(accounts) else "mostly " if 2 * count > len(accounts) else "most often "
-    return f"{often}in state {state}, where this remained: {fspa.states[state].label.english}"
+    return f"{often}in state {state}, where this remained: {label_text(fspa, state)}"
 
 
 def _limit(level: Level, fspa: Fspa, near: Sequence[NearestMiss], of: str) -> str:

@@ -38,6 +38,7 @@ from tltl_runtime.training.run.run import (
 )
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.files import reason
@@ -241,7 +242,7 @@ def _best(accounts: Sequence[Account], fspa: Fspa) -> Best | None:
     if not failed:
         return None
     farthest = max(failed, key=lambda account: account.summary.progress)
-    return Best(farthest.summary.progress, fspa.states[farthest.summary.unmet].label.english)
+    return Best(farthest.summary.progress, label_text(fspa, farthest.summary.unmet))
 
 
 def _inputs(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:

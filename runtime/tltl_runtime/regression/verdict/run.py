@@ -19,6 +19,7 @@ from tltl_runtime.stealth.recordings.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltl_runtime.support.folder_lock import held
 from tltl_runtime.support.record_json import to_json
+from tltlc.automaton.text import label_text
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.writing import remove_file, write_files
@@ -198,7 +199,7 @@ def _inputs(prepared: Ready, reference: Reference, error: float) -> str:
         # Sentences of the report contain these names.
         [signal.name for signal in fspa.signals],
         [atom.name for atom in fspa.atoms],
-        [state.label.english for state in fspa.states],
+        [label_text(fspa, state.id) for state in fspa.states],
         prepared.outdated,
     ]
     return inputs_hash(parts)

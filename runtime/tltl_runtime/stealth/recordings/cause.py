@@ -13,6 +13,7 @@ from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import Snapshot, places, touches
 from tltl_runtime.stealth.world.player import PlayerKind
+from tltlc.automaton.text import label_text
 from tltlc.core.record import record
 from tltlc.expression.tree import Signal, nodes
 from tltlc.resolve.spec import Atom
@@ -124,7 +125,7 @@ def _here(
 
 
 def _remaining(episode: Episode) -> str:
-    return episode.fspa.states[int(episode.states[-1])].label.english.rstrip(".")
+    return label_text(episode.fspa, int(episode.states[-1])).rstrip(".")
 
 
 def _blows(level: Level, before: Snapshot, after: Snapshot) -> dict[str, float]:

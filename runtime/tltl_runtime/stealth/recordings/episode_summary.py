@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.recordings.episode import Episode
+from tltlc.automaton.text import label_text
 
 
 def summary_of(episode: Episode, index: int = 0) -> EpisodeSummary:
@@ -22,7 +23,7 @@ def summary_of(episode: Episode, index: int = 0) -> EpisodeSummary:
         verdict=episode.verdict,
         seconds=episode.snapshots[-1].time,
         state=states[-1],
-        label=episode.fspa.states[unmet].label.english,
+        label=label_text(episode.fspa, unmet),
     )
 
 

@@ -6,16 +6,15 @@ import csv
 import shlex
 from io import StringIO
 from math import inf
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.episode_summary import seen_steps, summary_of
 from tltl_runtime.support.number_text import column, number, share
+from tltlc.automaton.fspa import Notation
+from tltlc.automaton.text import label_text
 from tltlc.resolve.spec import ValueType
-
-Notation = Literal["english", "unicode", "ascii"]
-"""The notation of formulas in text for people."""
 
 _UNITS: Final[dict[ValueType, str]] = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad"}
 _INSTANT: Final = 1e-6
@@ -62,7 +61,7 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
                 "time": episode.snapshots[row].time,
                 "state": states[row],
                 "progress": float(episode.progress[row]),
-                "label": getattr(fspa.states[states[row]].label, notation),
+                "label": label_text(fspa, states[row], notation),
             }
             for row in rows
         ],

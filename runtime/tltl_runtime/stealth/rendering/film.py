@@ -14,13 +14,14 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.summary import Notation
 from tltl_runtime.stealth.rendering.camera import View as Rendered
 from tltl_runtime.stealth.rendering.film_file import Picture
 from tltl_runtime.stealth.rendering.interpolation import between
 from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
+from tltlc.automaton.fspa import Notation
+from tltlc.automaton.text import label_text
 
 View = Literal["third_person", "top_down", "overview", "plan"]
 
@@ -146,7 +147,7 @@ def _framed(
     picture.paste(Image.fromarray(view), (0, 0))
     draw = ImageDraw.Draw(picture)
     row, shot = moment
-    state = episode.fspa.states[int(episode.states[row])]
+    state = int(episode.states[row])
     top = height + 5
     draw.text((8, top), f"{shot.time:6.2f} s", _PALE, font)
     bars = (("progress", float(episode.progress[row]), _GREEN), ("health", episode.snapshots[row].health, _RED))
@@ -162,8 +163,8 @@ def _framed(
         x += bar + 2 * _GAP
     if row == len(episode.actions):
         draw.text((x, top), episode.end, _PALE, font)
-    draw.rectangle((8, height + _LINES[0] + 2, 16, height + _LINES[0] + 12), fill=state_colour(state.id))
-    lines = _fitting(getattr(state.label, notation), width - 30, font)
+    draw.rectangle((8, height + _LINES[0] + 2, 16, height + _LINES[0] + 12), fill=state_colour(state))
+    lines = _fitting(label_text(episode.fspa, state, notation), width - 30, font)
     for line, y in zip(lines, _LINES, strict=False):
         draw.text((22, height + y), line, _PALE, font)
     return np.asarray(picture)

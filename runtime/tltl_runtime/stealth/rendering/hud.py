@@ -11,6 +11,7 @@ from tltl_runtime.stealth.recordings.cause import Cause, Kind
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import formula_text, label_text
 from tltlc.core.record import record, replace
 
 Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
@@ -75,13 +76,13 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
     lines = [Line(f"{_clock(snapshot.time, fspa)}   {info['verdict']}", "quiet")]
     if snapshot.enemies:
         lines.append(_seen(snapshot))
-    lines += [Line(text) for text in _shortened(fspa.states[info["state"]].label.english)]
+    lines += [Line(text) for text in _shortened(label_text(fspa, info["state"]))]
     return Hud(bars, tuple(lines))
 
 
 def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
     """Return the screen before the first key is pressed."""
-    goal = wrap(fspa.formula.english, _LONG)
+    goal = wrap(formula_text(fspa), _LONG)
     below = (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin.")
     return replace(shown, title=f"{level.name} {level.variant}", below=below)
 

@@ -21,8 +21,8 @@ from tltl_runtime.stealth.capabilities.reach import Reach
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.level import Box, Enemy, Level, Point
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.summary import Notation
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Notation
+from tltlc.automaton.text import label_text
 
 SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
 """Colours by kind of solid; :data:`BARRIERS` has the colours of barriers."""
@@ -272,7 +272,7 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
 def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
     """Label a state in the legend: number, what remains to be satisfied, settled verdict."""
     automaton_state = fspa.states[state]
-    text = getattr(automaton_state.label, notation)
+    text = label_text(fspa, state, notation)
     if len(text) > letters:
         text = text[: letters - 1] + "…"
     settled = (

@@ -14,7 +14,8 @@ from torch.utils.tensorboard import SummaryWriter
 
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.report import Report, Window
-from tltlc.automaton.fspa import Fspa, State
+from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.files import reading_error, reason
 from tltlc.io.json_text import loads
@@ -82,15 +83,14 @@ def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
         "window": window.count,
         **(dict.fromkeys(OF_THE_WINDOW) if not window.count else means(window)),
         "confirmation": report.confirmation and to_json(report.confirmation),
-        "states": [_ended(window, fspa.states[state]) for state in sorted(window.states)],
+        "states": [_ended(window, fspa, state) for state in sorted(window.states)],
         "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
     }
 
 
-def _ended(window: Window, state: State) -> dict[str, Any]:
-    label, ended, violated = state.label, window.states[state.id], window.violated.get(state.id, 0.0)
-    shares = {"share": round(ended, 6), "violated": round(violated, 6)}
-    return {"state": state.id, "label": label.ascii, "english": label.english, **shares}
+def _ended(window: Window, fspa: Fspa, state: int) -> dict[str, Any]:
+    shares = {"share": round(window.states[state], 6), "violated": round(window.violated.get(state, 0.0), 6)}
+    return {"state": state, "label": str(fspa.states[state].label), "english": label_text(fspa, state), **shares}
 
 
 def means(window: Window) -> dict[str, float]:

@@ -17,6 +17,7 @@ from tltl_runtime.regression.report.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends.drawing.picture_content import shown
 
 
@@ -200,7 +201,7 @@ def test_the_table_has_the_same_numbers(fspa: Fspa, now: Traffic, before: Traffi
     rows = [[cell.text for cell in row] for row in table.iter("tr")][1:]
     assert len(rows) == len(fspa.states)
     for state, row in zip(fspa.states, rows, strict=True):
-        assert row[:2] == [str(state.id), state.label.english]
+        assert row[:2] == [str(state.id), label_text(fspa, state.id)]
         assert row[2] == f"{now.visited.get(state.id, 0)} of {now.episodes}"
         assert row[3] == f"{now.failed.get(state.id, 0)} of {now.episodes}"
         assert row[4] == f"{before.visited.get(state.id, 0)} of {before.episodes}"

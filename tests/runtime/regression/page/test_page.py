@@ -22,6 +22,7 @@ from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, S
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.retrain.retrained import Retrained, Trained
 from tltl_runtime.stealth.level import Box
+from tltlc.automaton.fspa import Text
 from tltlc.core.record import replace
 
 EVIL = "</script><b onclick='x'>`$title`&amp;<!--"
@@ -169,10 +170,10 @@ def test_names_are_escaped() -> None:
         enemies=tuple(replace(enemy, name=EVIL) for enemy in case.level.enemies),
     )
     state = case.fspa.states[0]
-    label = replace(state.label, english=EVIL, unicode=EVIL)
+    label = Text(EVIL, EVIL, EVIL)
     fspa = replace(
         case.fspa,
-        formula=replace(case.fspa.formula, english=EVIL),
+        formula=label,
         states=(replace(state, label=label), *case.fspa.states[1:]),
         atoms=tuple(replace(atom, base=EVIL, arguments=()) for atom in case.fspa.atoms),
     )

@@ -14,6 +14,7 @@ from tltl_runtime.stealth.recordings.cause import Cause
 from tltl_runtime.stealth.rendering.hud import beginning, ending, hud
 from tltl_runtime.stealth.rendering.interpolation import between
 from tltlc import compile_text
+from tltlc.automaton.text import label_text
 from tltlc.core.record import replace
 
 
@@ -33,7 +34,7 @@ def test_the_display_shows_the_state_of_the_game(played: Any) -> None:
     assert texts[:2] == ["0.0 s, 60 s left   pending", "nobody sees you"]
     endless = replace(env.task.fspa, limit_steps=None)
     assert hud(snapshot, info, endless).lines[0].text == "0.0 s   pending"
-    assert " ".join(texts[2:]) == env.task.fspa.states[0].label.english
+    assert " ".join(texts[2:]) == label_text(env.task.fspa, 0)
     assert max(map(len, texts)) <= 36
 
 

@@ -65,8 +65,7 @@ def _specs(argument: str, format: str, settings: Settings) -> int:  # noqa: A002
                 report.add(error.diagnostics)
                 continue
             report.add(opened.diagnostics)
-            formulas = {spec.name: spec.formula for spec in opened.program.specs} if opened.program else {}
-            explanations += [explain(fspa, formulas.get(fspa.name)) for fspa in opened.automata]
+            explanations += map(explain, opened.automata)
         if explanations or not report.status:
             _show(explanations, format)
     return report.status

@@ -12,7 +12,7 @@ from tltlc.interfaces.cli.paths import OutputPath, is_stdout
 from tltlc.interfaces.cli.settings import Settings, source_options
 
 if TYPE_CHECKING:
-    from tltlc.backends import Notation
+    from tltlc.automaton.fspa import Notation
 
 _TARGET_OF_ENDING = {
     ".svg": "svg",

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from tltl_runtime.regression.report.page.markup import element, short
 from tltl_runtime.regression.report.page.traffic import Traffic
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Options, emit
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -226,7 +227,7 @@ def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
         element(
             "tr",
             element("th", state.id, scope="row"),
-            element("td", state.label.english),
+            element("td", label_text(fspa, state.id)),
             *(
                 element("td", f"{counts.get(state.id, 0)} of {seen.episodes}", class_="number")
                 for seen in (now, before)

@@ -12,6 +12,7 @@ from tltl_runtime.regression.report.page.level_map import map_data
 from tltl_runtime.regression.report.page.packing import across, down, runs
 from tltl_runtime.regression.report.page.recorded import recorded
 from tltl_runtime.stealth.level import Box
+from tltlc.automaton.text import label_text
 
 _FINE_CM: Final = 5
 """The resolution of trajectories, in centimetres.  There are many, and at this resolution a step takes one letter."""
@@ -25,7 +26,7 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
     return {
         "slug": slug,
         "map": map_data(level),
-        "states": [state.label.english for state in fspa.states],
+        "states": [label_text(fspa, state.id) for state in fspa.states],
         "now": _all_of(level.bounds, case.report.accounts),
         "before": _all_of((case.designed or level).bounds, case.before),
         "episodes": [recorded(index, case.episodes[index]) for index in sorted(case.episodes)],

@@ -21,6 +21,7 @@ from tltl_runtime.regression.report.page.summary import NOT_RUN, badge
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import formula_text
 
 _KEY: Final = (
     "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "
@@ -90,7 +91,7 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
         facts += [f"spec {report.played.spec}", f"policy {report.played.policy[:12]}"]
     if report.figures and not report.certain:
         facts.append("not certain, though all of its episodes were played")
-    goal = element("p", fspa.formula.english, class_="goal") if fspa else None
+    goal = element("p", formula_text(fspa), class_="goal") if fspa else None
     return joined((element("p", " · ".join(facts), class_="facts"), goal))
 
 

@@ -1,0 +1,51 @@
+"""Print the formula of an automaton and the labels of its states, in three notations."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa, Notation, Text
+from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
+
+_LONGEST_IN_ENGLISH: Final = 2_000
+"""Formulas with more characters get no English sentence: it would be too long to read."""
+_GOES_ON: Final = "The trace must go on for one more step."
+_ENDS: Final = "The trace must end here."
+
+
+def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
+    """Return the formula of an automaton in a notation."""
+    return _text(fspa.formula, notation, endless=fspa.semantics == "infinite")
+
+
+def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
+    """Return what remains to be satisfied in a state, given by its number, in a notation.
+
+    The English sentence says so if acceptance depends on whether the trace ends here: ``X`` leaves a
+    state with label ``true`` that rejects, and ``N`` leaves one with label ``false`` that accepts.
+    """
+    label, accepting, endless = fspa.states[state].label, fspa.states[state].accepting, fspa.semantics == "infinite"
+    if notation == "english" and not endless:
+        if label is TRUE and not accepting:
+            return _GOES_ON
+        if label is FALSE and accepting:
+            return _ENDS
+    return _text(label, notation, endless=endless)
+
+
+def _text(formula: Formula | Text, notation: Notation, *, endless: bool) -> str:
+    if isinstance(formula, Text):
+        return {"ascii": formula.ascii, "unicode": formula.unicode, "english": formula.english}[notation]
+    if notation == "unicode":
+        return unicode_text(formula)
+    plain = ascii_text(formula)
+    if notation == "ascii":
+        return plain
+    if len(plain) > _LONGEST_IN_ENGLISH:
+        return f"Satisfy {plain}."
+    if endless and not {TRUE, FALSE}.isdisjoint(formula.walk()):
+        from tltlc.automaton.infinite.readback import without_constants
+
+        formula = without_constants(formula)
+    return english_text(formula, endless=endless)
