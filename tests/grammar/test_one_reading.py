@@ -8,7 +8,7 @@ allowed only if all readings are equal.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from itertools import product
 
 import pytest
@@ -483,6 +483,9 @@ def as_clause(word: str, one: Here, other: Here, clause: str) -> Whole:
     return whole(clause, of_word(word, one, other, clause))
 
 
+Parts = tuple[str, str, str, str, str, str]
+"""The parts of a clause: its keyword, what is around it, a joined atom, an operator, a word, and its right side."""
+
 TRACES: list[Trace] = [trace for length in (1, 2, 3, 4) for trace in product(LETTERS, repeat=length)]
 SOME: list[Trace] = TRACES[::7]
 
@@ -545,32 +548,33 @@ def _negated_clause(word: str, left: Here, other: Here, clause: str) -> Whole:
 
 def test_many_random_clauses_are_clear_and_many_are_not() -> None:
     # The random clauses must contain both kinds, or the test of their edits would prove nothing.
-    results = [(bool(offered(clause)), meaning is not None) for clause, meaning in drawn(400)]
+    results = [(bool(offered(text(parts))), reading(*parts) is not None) for parts in drawn(400)]
     assert sum(fixed and clear for fixed, clear in results) > 40
     assert sum(not clear for _, clear in results) > 100
 
 
-def drawn(number: int) -> Iterator[tuple[str, Whole | None]]:
-    """Yield random clauses and their readings: ``number`` of any kind, and ``number`` of a kind that is often clear."""
+def drawn(number: int) -> list[Parts]:
+    """Return the parts of random clauses: ``number`` of any kind, and ``number`` of a kind that is often clear."""
     all_parts = list(product(CLAUSES, AROUND, JOINS, OPERATORS, WORDS, RIGHT))
     clear_parts = list(
         product(CLAUSES, list(AROUND)[::4], list(JOINS)[:3], list(OPERATORS)[:2], WORDS, list(RIGHT)[:2])
     )
     random_ = random.Random(7)
-    for clause, around, join, operator, word, right in (
-        *random_.sample(all_parts, number),
-        *random_.sample(clear_parts, number),
-    ):
-        text = around.format(f"{join}{operator}a {word} {right}")
-        yield f"{clause} {text}", reading(clause, around, join, operator, word, right)
+    return [*random_.sample(all_parts, number), *random_.sample(clear_parts, number)]
 
 
-@pytest.mark.parametrize(
-    ("clause", "meaning"), list(drawn(400)), ids=lambda value: value if isinstance(value, str) else ""
-)
-def test_an_edit_of_a_random_clause_has_its_single_reading(clause: str, meaning: Whole | None) -> None:
-    for text in offered(clause):
-        assert meaning is not None, text
-        body = text.removeprefix(HEAD)
+def text(parts: Parts) -> str:
+    """Return the text of a clause."""
+    clause, around, join, operator, word, right = parts
+    return f"{clause} {around.format(f'{join}{operator}a {word} {right}')}"
+
+
+@pytest.mark.parametrize("parts", drawn(400), ids=text)
+def test_an_edit_of_a_random_clause_has_its_single_reading(parts: Parts) -> None:
+    edited_texts = offered(text(parts))
+    meaning = reading(*parts) if edited_texts else None
+    for edited in edited_texts:
+        assert meaning is not None, edited
+        body = edited.removeprefix(HEAD)
         wrong = [trace for trace, accepted in verdicts(compiled(body)) if accepted != meaning(trace)]
-        assert not wrong, f"{text}: {[sorted(letter) for letter in wrong[0]]}"
+        assert not wrong, f"{edited}: {[sorted(letter) for letter in wrong[0]]}"

@@ -57,10 +57,13 @@ def test_the_level_is_rebuilt_although_its_files_have_changed(game: Path) -> Non
     assert level.exits[0].position == (8.0, 8.0, 0.0)
 
 
-@pytest.mark.parametrize("reference", read_baseline(read_suite(SHIPPED).baseline), ids=lambda one: one.played.level)
-def test_the_shipped_levels_are_rebuilt(reference: Reference) -> None:
-    level = designed(reference)
-    assert level is not None and level_hash(level) == reference.played.level_hash
+def test_the_shipped_levels_are_rebuilt() -> None:
+    references = read_baseline(read_suite(SHIPPED).baseline)
+    assert references
+    for reference in references:
+        level = designed(reference)
+        assert level is not None, reference.played.level
+        assert level_hash(level) == reference.played.level_hash, reference.played.level
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from random import Random
 
@@ -22,7 +23,8 @@ ROOT = Path(__file__).parents[3]
 EVERYTHING = (ROOT / "tests" / "grammar" / "everything.tltl").read_text(encoding="utf-8")
 
 
-def _texts() -> dict[str, str]:
+@cache
+def texts_without_errors() -> dict[str, str]:
     """The ``.tltl`` files of the repository that have no syntax errors."""
     files = sources()
     for path in sorted(ROOT.rglob("*.tltl")):
@@ -39,13 +41,10 @@ def _texts() -> dict[str, str]:
     return texts
 
 
-TEXTS = _texts()
-
-
 @pytest.mark.parametrize("style", STYLES)
 def test_all_files_of_the_repository_are_formatted_correctly(style: str) -> None:
-    assert len(TEXTS) > 100
-    for name, text in TEXTS.items():
+    assert len(texts_without_errors()) > 100
+    for name, text in texts_without_errors().items():
         try:
             check(text, style)
         except AssertionError as error:

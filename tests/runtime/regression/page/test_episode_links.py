@@ -9,9 +9,15 @@ import pytest
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.page.episode_links import episode_links
+from tltl_runtime.stealth.recordings.episode import Episode
 
-FAILED = dict(enumerate(samples.cover_and_hide_failed()))
-MET = dict(enumerate(samples.cover_and_hide_met()))
+
+def failed() -> dict[int, Episode]:
+    return dict(enumerate(samples.cover_and_hide_failed()))
+
+
+def met() -> dict[int, Episode]:
+    return dict(enumerate(samples.cover_and_hide_met()))
 
 
 @pytest.mark.parametrize(
@@ -28,18 +34,18 @@ MET = dict(enumerate(samples.cover_and_hide_met()))
 )
 def test_links_play_the_episodes_of_a_finding(text: str, episodes: tuple[int, ...], words: str) -> None:
     finding = Finding(text, episodes, others=text.startswith("reaches"))
-    links = episode_links(finding, FAILED, "a")
+    links = episode_links(finding, failed(), "a")
     assert links is not None and re.sub(r"<.*?>", "", links).strip() == words
     for index in re.findall(r"\d", words.partition(":")[2]):
         assert f'title="play the end of episode {index}"' in links
 
 
 def test_links_play_successes_from_the_start() -> None:
-    links = episode_links(Finding("successes are longer", (0, 1)), MET, "a")
+    links = episode_links(Finding("successes are longer", (0, 1)), met(), "a")
     assert links is not None and re.sub(r"<.*?>", "", links).strip() == "play episodes: 0 1"
     assert re.findall(r'href="#(.*?)"', links) == ["a/0/0", "a/1/0"]
     assert 'title="play episode 1"' in links
 
 
 def test_a_finding_without_recordings_has_no_links() -> None:
-    assert episode_links(Finding("fails", (7,)), FAILED, "a") is None
+    assert episode_links(Finding("fails", (7,)), failed(), "a") is None
