@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import Played, with_baseline, write_game
+from tests.shared import made_once
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.run import regress
 
@@ -15,10 +16,12 @@ from tltl_runtime.regression.verdict.run import regress
 @pytest.fixture(name="recorded", scope="module")
 def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A game with its baseline; the folder ``run`` has the results of a first run of its suite."""
-    folder = tmp_path_factory.mktemp("recorded")
+    return made_once(tmp_path_factory, "recorded-game", _record)
+
+
+def _record(folder: Path) -> None:
     suite = with_baseline(write_game(folder))
     list(regress(suite, suite.cases, baseline_of(suite), folder / "run", 1, Played()))
-    return folder
 
 
 @pytest.fixture(name="game")
