@@ -13,7 +13,11 @@ endif
 ORDERED := --random-order --random-order-seed=$(SEED)
 endif
 
-.PHONY: demo test test-again test-slow fuzz lint format generate docs vscode bench checkers clean
+# Python stores compiled modules even where the shell forbids it; otherwise each process that a test starts, and each
+# worker of pytest, compiles all modules again.
+unexport PYTHONDONTWRITEBYTECODE
+
+.PHONY: demo test tests test-again test-slow fuzz lint format generate docs vscode bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
 demo: $(VENV)/.installed-rl
@@ -38,7 +42,11 @@ demo: $(VENV)/.installed-rl
 	fi
 	@echo "The command is $(BIN)/tltlc; after 'source $(BIN)/activate' it is tltlc."
 
-test: lint
+# The static checks and the tests, side by side: mypy alone would leave a core idle.
+test: $(VENV)/.installed-dev
+	@$(MAKE) --no-print-directory -j 2 lint tests SEED=$(SEED)
+
+tests: $(VENV)/.installed-dev
 	@$(if $(ORDERED),echo "The order is random; the same one again: make test ORDER=random SEED=$(SEED)")
 	$(BIN)/python -m pytest -q -rs -n 2 -m "not slow" $(ORDERED)
 
