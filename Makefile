@@ -17,7 +17,7 @@ endif
 # worker of pytest, compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test tests test-again test-slow fuzz lint format generate docs vscode bench checkers clean
+.PHONY: demo quick test tests test-again test-slow fuzz lint format generate docs vscode bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
 demo: $(VENV)/.installed-rl
@@ -41,6 +41,11 @@ demo: $(VENV)/.installed-rl
 		echo "The game is not played: its physics, pybullet, needs Python 3.10 or 3.11 (make demo PYTHON=python3.11)."; \
 	fi
 	@echo "The command is $(BIN)/tltlc; after 'source $(BIN)/activate' it is tltlc."
+
+# An answer within a minute: the tests of the compiler that start no process and no compiler. The rules: tests/quick.py.
+quick: $(VENV)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/python -m pytest -q -n 2 -m quick $(ORDERED)
 
 # The static checks and the tests, side by side: mypy alone would leave a core idle.
 test: $(VENV)/.installed-dev

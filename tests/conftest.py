@@ -7,10 +7,13 @@ import shutil
 import signal
 import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from tests import quick
 
 # The time of an example, and of drawing it, depends more on the load of the machine than on the code.
 settings.register_profile("any", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -40,7 +43,7 @@ HANDLERS: dict[signal.Signals, Any] = {
 _cache = tempfile.mkdtemp(prefix="tltlc-tests-")
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """Isolate the tests, and the processes that they start, from the user's environment."""
     for name in LEFT_OUT:
         os.environ.pop(name, None)
@@ -51,6 +54,20 @@ def pytest_configure() -> None:
     for number, handler in HANDLERS.items():
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, handler)
+    if quick.is_chosen(config):
+        config.pluginmanager.register(quick.SkipProcesses())
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave out, for ``-m quick``, what has no quick tests; otherwise let pytest decide."""
+    return True if quick.is_chosen(config) and not quick.has_quick_tests(collection_path) else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the quick tests, before pytest selects tests by their marks."""
+    for item in items:
+        if quick.is_quick(item):
+            item.add_marker(quick.QUICK)
 
 
 @pytest.hookimpl(wrapper=True)

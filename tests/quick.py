@@ -1,0 +1,113 @@
+"""Choose the tests of ``make quick``, a subset that answers within a minute.
+
+A quick test starts no process, needs no compiler of another language, no physics and no training, and is no property
+test. The rules are here, in one place; no test marks itself. ``pytest -m quick`` reads a file only if it may hold
+quick tests, and skips a test that is about to start a process after all.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from threading import current_thread, main_thread
+
+import pytest
+from hypothesis import is_hypothesis_test
+
+QUICK = "quick"
+TESTS = Path(__file__).parent
+
+FOLDERS = ("benchmarks", "editors", "runtime", "tools/conformance")
+"""Folders without quick tests: they compare with peers, start editors, play and train, or build foreign monitors."""
+
+LARGE = (
+    "automaton/infinite/test_reference.py",
+    "automaton/infinite/test_written.py",
+    "automaton/test_bounds.py",
+    "automaton/test_budgets.py",
+    "automaton/test_corpus.py",
+    "automaton/test_labels.py",
+    "backends/test_json.py",
+    "backends/test_rungs.py",
+    "grammar/test_english.py",
+    "grammar/test_fuzz.py",
+    "grammar/test_one_reading.py",
+    "interfaces/cli/test_fuzz.py",
+    "interfaces/lsp/test_actions.py",
+    "interfaces/lsp/test_fuzz.py",
+    "interfaces/lsp/test_references.py",
+    "logic/test_english.py",
+    "resolve/test_checks.py",
+    "resolve/test_formulas.py",
+    "tools/fmt/test_command.py",
+    "tools/lint/test_offers.py",
+    "tools/lint/test_run.py",
+    "tools/mine/test_limits.py",
+)
+"""Files without quick tests, because they compute for seconds: large formulas, whole corpora."""
+
+STARTS_PROCESSES = re.compile(
+    r"\b(subprocess|multiprocessing|os\.fork|chromium|docs\.sessions|lsp\.client|playground\.test_server)\b"
+)
+"""What a file mentions that starts processes; none of its tests is quick."""
+
+FIXTURES = frozenset({"client", "process"})
+"""Fixtures that start processes; a test that uses one is not quick, but others in its file may be."""
+
+NEW_PROCESS = frozenset({"os.exec", "os.fork", "os.forkpty", "os.posix_spawn", "os.system", "subprocess.Popen"})
+"""The audit events of Python when a process starts."""
+
+
+def is_chosen(config: pytest.Config) -> bool:
+    """Whether pytest was started with ``-m quick``."""
+    return bool(config.option.markexpr == QUICK)
+
+
+@cache
+def has_quick_tests(path: Path) -> bool:
+    """Whether a file or folder may contain quick tests. It is not imported, so that nothing that it imports is."""
+    if not path.is_relative_to(TESTS):
+        return True
+    name = path.relative_to(TESTS).as_posix()
+    if any(name == folder or name.startswith(f"{folder}/") for folder in FOLDERS) or name in LARGE:
+        return False
+    if not path.name.startswith("test_"):
+        return path.is_dir()
+    return not STARTS_PROCESSES.search(path.read_text(encoding="utf-8"))
+
+
+def is_quick(item: pytest.Item) -> bool:
+    """Whether a test is quick, by its file, its fixtures and its marks."""
+    if not has_quick_tests(item.path) or any(item.iter_markers("slow")):
+        return False
+    if is_hypothesis_test(getattr(item, "obj", None)):
+        return False
+    return FIXTURES.isdisjoint(getattr(item, "fixturenames", ()))
+
+
+class SkipProcesses:
+    """A plugin that skips each test that is about to start a process; in a second thread, it fails the start instead.
+
+    For example, a few tests of commands draw a picture, which a process lays out.
+    """
+
+    def __init__(self) -> None:
+        self._test_runs = False
+        sys.addaudithook(self._audit)
+
+    def _audit(self, event: str, _: object) -> None:
+        if self._test_runs and event in NEW_PROCESS:
+            if current_thread() is main_thread():
+                pytest.skip("starts a process, so it is not quick")
+            raise RuntimeError("a quick test starts a process: a rule in tests/quick.py must leave out its file")
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self) -> Iterator[None]:
+        self._test_runs = True
+        try:
+            return (yield)
+        finally:
+            self._test_runs = False
