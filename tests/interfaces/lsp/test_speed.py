@@ -125,7 +125,7 @@ def test_symbols_read_each_declaration_once(monkeypatch: pytest.MonkeyPatch) -> 
         read.append(declaration)
         return original(declaration, *arguments, **options)
 
-    original = symbols.declaration_text
+    original: Callable[..., str] = vars(symbols)["declaration_text"]
     monkeypatch.setattr(symbols, "declaration_text", recording)
     document, _, _ = opened(f"entity {', '.join(f'e{i}' for i in range(50))}")
     assert len(symbols.symbols(document, UTF_16)) == 50
@@ -139,7 +139,7 @@ def test_the_label_of_a_state_is_parsed_on_its_own(monkeypatch: pytest.MonkeyPat
         sizes.append(len(source.text))
         return parse_formula(source)
 
-    parse_formula = names.parse_formula
+    parse_formula = vars(names)["parse_formula"]
     monkeypatch.setattr(names, "parse_formula", recording)
     label = 'step a\n    expect state "F a"\n'
     document, _, _ = opened(f'signal a: bool\nspec s = F a\ntest "t" for s {{\n{label * 30}}}')
