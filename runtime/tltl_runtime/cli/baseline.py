@@ -17,10 +17,7 @@ from tltl_runtime.cli.support.printable import plain
 from tltl_runtime.cli.support.suite_argument import check_there
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_apart, check_writable
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.report import Report
-from tltlc.io.files import exists, is_file
+from tltlc.api import TltlError, cli, fileio
 
 if TYPE_CHECKING:
     from tltl_runtime.regression.suite.suite import Case, Suite
@@ -48,7 +45,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     already is not played again where level, policy, spec, seed, versions and code are as they were.  Without SUITE, the
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
-    with Report() as report, learning_for("`tltlc baseline`"), on_without_readers():
+    with cli.Report() as report, learning_for("`tltlc baseline`"), on_without_readers():
         check_there(suite)
         from tltl_runtime.cli.support.regression_display import RegressionDisplay
         from tltl_runtime.regression.suite.dependencies import files_of
@@ -60,7 +57,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         output = path or written_to(loaded.path)
         check_apart({"--output": output}, files_of(loaded) - {loaded.baseline.resolve()})
         check_writable({"--output": output})
-        existed, older = exists(output), _older(output)
+        existed, older = fileio.exists(output), _older(output)
         try:
             with RegressionDisplay() as display:
                 for compared in write_recorded(loaded, output, workers, display, older, fresh=fresh):
@@ -73,7 +70,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         if output.resolve() != loaded.baseline.resolve():
             words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(output)]
             click.echo(f"to judge by it: {join(words)}", err=True)
-        return exits.CLEAN
+        return cli.exits.CLEAN
     return report.status
 
 
@@ -82,7 +79,7 @@ def _older(path: Path) -> tuple[Reference, ...]:
     from tltl_runtime.regression.verdict.baseline import read_baseline
 
     with suppress(TltlError):
-        return read_baseline(path) if is_file(path) else ()
+        return read_baseline(path) if fileio.is_file(path) else ()
     return ()
 
 

@@ -12,13 +12,11 @@ from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.stealth.levels.place import level_place
-from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
-    from tltlc.automaton.fspa import Notation
+    from tltlc.api import Notation
 
 
 @click.command(
@@ -33,7 +31,7 @@ Examples:
 @click.option(
     "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
 )
-@click.option("--episodes", metavar="N", type=WholeRange(min=1), default=1, show_default=True)
+@click.option("--episodes", metavar="N", type=cli.WholeRange(min=1), default=1, show_default=True)
 @seed_option("Of the first episode; those of the next follow.")
 @output_folder("The folder for recordings and plans, made where it is missing.", default=Path("demonstrations"))
 @click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Make a film of each episode, too.")
@@ -62,7 +60,7 @@ def command(
     from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.training.imitation.demonstrations import expert_episodes
 
-    with Report() as report:
+    with cli.Report() as report:
         file, variant = level_place(level)
         env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
         played = succeeded = 0
@@ -79,7 +77,7 @@ def command(
             env.close()
         if episodes > 1:
             click.echo(f"{succeeded} of {episodes} succeeded")
-        return exits.CLEAN if succeeded == episodes else exits.FINDINGS
+        return cli.exits.CLEAN if succeeded == episodes else cli.exits.FINDINGS
     return report.status
 
 
@@ -87,12 +85,12 @@ def _write(folder: Path, episode: Episode, film: str | None, notation: Notation)
     """Write the recording and the pictures of an episode; return the path of the recording."""
     from tltl_runtime.stealth.recordings.file import SUFFIX, file_stem, new_path, to_bytes
     from tltl_runtime.stealth.rendering.plan import draw_episode
-    from tltlc.io.writing import write_files
+    from tltlc.api import fileio
 
     recording = to_bytes(episode)
     path = new_path(folder, file_stem(episode), recording, [".png", *([f".{film}"] if film else [])])
     name = path.name.removesuffix(SUFFIX)
-    write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation), path.name: recording})
+    fileio.write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation), path.name: recording})
     if film:
         span = (0.0, episode.snapshots[-1].time)
         write_film(folder / f"{name}.{film}", episode, span, Film(notation=notation))

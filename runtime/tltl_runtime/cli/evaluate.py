@@ -20,9 +20,7 @@ from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.cli.support.writable_paths import check_writable
 from tltl_runtime.support.number_text import listed
-from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.paths import OutputPath, is_stdout
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
@@ -46,10 +44,10 @@ Examples:
 @click.option(
     "--level", metavar="LEVEL[:VARIANT]", help="Where; by default where the policy was trained.  VARIANT: v0."
 )
-@click.option("--episodes", metavar="N", type=WholeRange(1, 10**6), default=100, show_default=True)
+@click.option("--episodes", metavar="N", type=cli.WholeRange(1, 10**6), default=100, show_default=True)
 @seed_option("Of the evaluation: episode i of seed N always plays the same.")
 @click.option(
-    "--first", metavar="I", type=WholeRange(min=0), default=0, show_default=True, help="Begin with episode I."
+    "--first", metavar="I", type=cli.WholeRange(min=0), default=0, show_default=True, help="Begin with episode I."
 )
 @click.option("--spec", metavar="SPEC[:NAME]", help="What is to be done; by default what the policy was trained for.")
 @click.option(
@@ -61,7 +59,7 @@ Examples:
     help="Processes that play (0: one a core), or those of a Ray cluster.",
 )
 @click.option(
-    "--json", "json_file", metavar="FILE", type=OutputPath("file", stdout=True, checked=True),
+    "--json", "json_file", metavar="FILE", type=cli.OutputPath("file", stdout=True, checked=True),
     help="Write the report as JSON, too; `-` prints it in place of the text.",
 )  # fmt: skip
 @output_folder("Write recordings, their plans, a picture of all ways and the report to this folder.")
@@ -95,7 +93,7 @@ def command(
         raise click.UsageError("name a POLICY or a --level, or both")
     if recorded and not folder:
         raise click.UsageError("--record needs the folder for the recordings: --out DIR")
-    with Report() as report, learning_for("`tltlc evaluate`"):
+    with cli.Report() as report, learning_for("`tltlc evaluate`"):
         from tltl_runtime.cli.support.level_argument import check_named, check_no_toml
 
         check_no_toml(spec)
@@ -107,12 +105,11 @@ def command(
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
         from tltl_runtime.stealth.capabilities.feasible import reach_warnings
         from tltl_runtime.stealth.levels.file import load_level
-        from tltlc.core.record import replace
-        from tltlc.io.files import read_bytes
+        from tltlc.api import fileio, replace
 
         path, name, variant = policy_place(policy, level, "tltlc evaluate")
         # Read the file once: a running training may replace it meanwhile.
-        data = read_bytes(path, str(path), MAX_BYTES)
+        data = fileio.read_bytes(path, str(path), MAX_BYTES)
         trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
         sha256 = hashlib.sha256(data).hexdigest()
         if name is None:
@@ -125,7 +122,7 @@ def command(
         again = _command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
         # Check this only now: the report may go into the folder, which EvaluationFiles has created.
-        check_writable({"--json": None if is_stdout(json_file) else json_file})
+        check_writable({"--json": None if cli.is_stdout(json_file) else json_file})
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
             with closing(results(setup, tasks, workers, _waiting)) as playing:
@@ -187,7 +184,7 @@ def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, w
         counts = " and ".join(f"{count} of {wanted} {name}" for name, count in played.items())
         click.echo(f"stopped: {counts} episodes were played", err=True)
     text = json.dumps(files.document(complete), indent=2, ensure_ascii=False) + "\n"
-    if not is_stdout(json_file):
+    if not cli.is_stdout(json_file):
         click.echo(files.text(), nl=False)
     else:
         click.echo(text, nl=False)

@@ -11,7 +11,7 @@ import click
 from tltl_runtime.cli.support.input_files import read_each
 from tltl_runtime.cli.support.learning import learning_for
 from tltl_runtime.cli.support.options import output_file, summary_format
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.policies.policy import Policy
@@ -38,7 +38,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one POLICY")
     summaries: list[dict[str, Any]] = []
-    with Report(format, results=True) as report, learning_for("`tltlc inspect`"):
+    with cli.Report(format, results=True) as report, learning_for("`tltlc inspect`"):
         from tltl_runtime.policies.summary import summary, summary_text
 
         for name, (policy, so_far, ended) in read_each(files, _read, report):
@@ -74,6 +74,6 @@ def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
 
 def _export(policy: Policy, path: Path) -> None:
     from tltl_runtime.policies.onnx import to_onnx
-    from tltlc.io.writing import write_file
+    from tltlc.api import fileio
 
-    write_file(path, to_onnx(policy))
+    fileio.write_file(path, to_onnx(policy))

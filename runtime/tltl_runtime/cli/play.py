@@ -16,8 +16,7 @@ from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import SUFFIX
 from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.rendering.hud import KEYS
-from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.paths import OutputPath
+from tltlc.api import cli
 
 
 @click.command(
@@ -37,14 +36,14 @@ Examples:
 @click.option(
     "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
 )
-@click.option("--seed", type=WholeRange(min=0), help="Of the first episode; by default another one each time.")
+@click.option("--seed", type=cli.WholeRange(min=0), help="Of the first episode; by default another one each time.")
 @click.option(
     "--output",
     "--out",
     "-o",
     "out",
     metavar="PLACE",
-    type=OutputPath("place"),
+    type=cli.OutputPath("place"),
     help=f"Where to record: NAME{SUFFIX}, or a folder, made where it is missing.  Older recordings stay.",
 )
 @keyboard_options

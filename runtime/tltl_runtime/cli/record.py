@@ -14,10 +14,7 @@ from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.printable import plain
 from tltl_runtime.stealth.levels.place import level_place
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.keyboard import Recordings
@@ -44,7 +41,7 @@ Examples:
 @click.option(
     "--episodes",
     metavar="N",
-    type=WholeRange(min=1),
+    type=cli.WholeRange(min=1),
     default=20,
     show_default=True,
     help="How many demonstrations there are to be in the folder.",
@@ -52,7 +49,7 @@ Examples:
 @click.option(
     "--seed",
     metavar="N",
-    type=WholeRange(min=0),
+    type=cli.WholeRange(min=0),
     help="Of the first episode (default: 0, with the keyboard another one each time); where the expert fails in one "
     "after the other, those from another seed on may go better.",
 )
@@ -78,7 +75,7 @@ def command(
 
     The exit status is 0 where there are N demonstrations, and 1 where the player stopped before.
     """
-    with Report() as report, on_without_readers():
+    with cli.Report() as report, on_without_readers():
         from tltl_runtime.stealth.env import make_env
         from tltl_runtime.stealth.recording import RecordEpisode
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
@@ -104,11 +101,11 @@ def command(
             env.close()
         click.echo(_count_text(demonstrations, episodes))
         if demonstrations.count < episodes:
-            return exits.FINDINGS
+            return cli.exits.FINDINGS
         level_option = f"--level {loaded.name if file == loaded.name else quote(file)}:{quote(variant)}"
         arguments = f"{quote(spec)} {level_option}" if spec else level_option
         click.echo(f"to imitate them: tltlc train {arguments} --method imitation --demonstrations {quote(str(folder))}")
-        return exits.CLEAN
+        return cli.exits.CLEAN
     return report.status
 
 
@@ -135,7 +132,7 @@ def _begins(demonstrations: Demonstrations, wanted: int) -> list[str]:
     return lines
 
 
-def _by_expert(env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int, report: Report) -> None:
+def _by_expert(env: RecordEpisode, demonstrations: Demonstrations, wanted: int, seed: int, report: cli.Report) -> None:
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings
     from tltl_runtime.training.imitation.demonstrations import by_expert
 

@@ -16,12 +16,7 @@ from tltl_runtime.cli.support.options import Function, output_folder
 from tltl_runtime.cli.support.suite_argument import check_there
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import is_output
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.numbers import FiniteRange
-from tltlc.interfaces.cli.paths import OutputPath
-from tltlc.interfaces.cli.report import Report
-from tltlc.io.files import is_file, read_source
-from tltlc.io.limits import TOML
+from tltlc.api import TltlError, cli, fileio
 
 _MINUTES: Final = 10.0
 """The default limit of each training with --retrain."""
@@ -30,7 +25,7 @@ _REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 def _report(name: str, about: str) -> Callable[[Function], Function]:
     about = f"{about}; `-` prints it in place of the text."
-    return click.option(f"--{name}", metavar="FILE", type=OutputPath("file", stdout=True, checked=True), help=about)
+    return click.option(f"--{name}", metavar="FILE", type=cli.OutputPath("file", stdout=True, checked=True), help=about)
 
 
 @click.command(
@@ -71,7 +66,7 @@ Examples:
 @click.option(
     "--minutes",
     metavar="M",
-    type=FiniteRange(min=0, min_open=True, max=1_000_000),
+    type=cli.FiniteRange(min=0, min_open=True, max=1_000_000),
     help=f"Of each training, at the most (default: {_MINUTES:g}).",
 )
 @all_cores_option
@@ -104,7 +99,7 @@ def command(
         raise click.UsageError("--minutes are those of --retrain: give it, too")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
-    with Report() as report, learning_for("`tltlc regress`"), on_without_readers():
+    with cli.Report() as report, learning_for("`tltlc regress`"), on_without_readers():
         check_there(suite)
         from tltl_runtime.cli.support.regression_run import Wanted, run
 
@@ -125,10 +120,10 @@ def command(
 
 def _is_suite(word: str) -> bool:
     """Whether a word is the path of a suite."""
-    if not word.endswith(".toml") or not is_file(word):
+    if not word.endswith(".toml") or not fileio.is_file(word):
         return False
     try:
-        return "\n[[case]]" in "\n" + read_source(word, max_bytes=TOML.size).text
+        return "\n[[case]]" in "\n" + fileio.read_source(word, max_bytes=fileio.limits.TOML.size).text
     except TltlError:
         return False
 

@@ -13,13 +13,12 @@ from tltl_runtime.cli.support.film import FILMS, Film, write_film
 from tltl_runtime.cli.support.input_files import read_each
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_file, summary_format
-from tltlc.interfaces.cli.numbers import FiniteRange
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
     from tltl_runtime.stealth.rendering.film import View
-    from tltlc.automaton.fspa import Notation
+    from tltlc.api import Notation
 
 _VIEWS: Final = ("third_person", "top_down", "overview", "plan")
 _ENDINGS: Final = (".png", *FILMS, ".csv")
@@ -63,13 +62,13 @@ Examples:
 @click.option("--view", type=click.Choice(_VIEWS), help="Of a film (default: third_person).")
 @click.option(
     "--speed",
-    type=FiniteRange(0.05, 100.0),
+    type=cli.FiniteRange(0.05, 100.0),
     help="Of a film (default: 1): 2 is twice as fast as the game.",
 )
 @click.option(
     "--fps",
     "rate",
-    type=FiniteRange(1.0, 60.0),
+    type=cli.FiniteRange(1.0, 60.0),
     help="Pictures a second (default: one for each decision).",
 )
 @click.option("--size", metavar="WxH", callback=_size, help="Of a film (default: 640x480) or a plan, in pixels.")
@@ -77,14 +76,14 @@ Examples:
     "--from",
     "start",
     metavar="SECONDS",
-    type=FiniteRange(min=0.0),
+    type=cli.FiniteRange(min=0.0),
     help="Begin a film or the signals here.",
 )
 @click.option(
     "--to",
     "stop",
     metavar="SECONDS",
-    type=FiniteRange(min=0.0),
+    type=cli.FiniteRange(min=0.0),
     help="End a film or the signals here.",
 )
 @notation_option
@@ -117,7 +116,7 @@ def command(
 
     film = Film(view or "third_person", speed or 1.0, rate, size or (640, 480), notation)
     summaries: list[dict[str, Any]] = []
-    with Report(format, results=True) as report:
+    with cli.Report(format, results=True) as report:
         for name, episode in read_each(files, read_episode, report):
             fields = {"file": name, **summary(episode, notation)}
             if checked:
@@ -178,16 +177,16 @@ def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[fl
 
 def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
     """Write the output that the extension of the path selects.  ``size`` applies to plans; None: the natural size."""
-    from tltlc.io.writing import write_file
+    from tltlc.api import fileio
 
     ending = path.suffix.lower()
     if ending == ".csv":
         from tltl_runtime.stealth.recordings.summary import trace_csv
 
-        write_file(path, trace_csv(episode, *span))
+        fileio.write_file(path, trace_csv(episode, *span))
     elif ending == ".png":
         from tltl_runtime.stealth.rendering.plan import draw_episode
 
-        write_file(path, draw_episode(episode, size, film.notation))
+        fileio.write_file(path, draw_episode(episode, size, film.notation))
     else:
         write_film(path, episode, span, film)

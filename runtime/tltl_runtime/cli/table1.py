@@ -15,12 +15,7 @@ from tltl_runtime.cli.support.learning import learning_for
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_no_training
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.numbers import FiniteRange
-from tltlc.interfaces.cli.report import Report
-from tltlc.io.child_interrupts import raise_if_interrupted
+from tltlc.api import Diagnostic, TltlError, cli, record
 
 if TYPE_CHECKING:
     from tltl_runtime.regression.table1.paper_table import Model
@@ -60,7 +55,7 @@ Examples:
 @click.option(
     "--minutes",
     metavar="M",
-    type=FiniteRange(min=0, max=1_000_000),
+    type=cli.FiniteRange(min=0, max=1_000_000),
     help="Of each training, at the most; 0: no limit but that of steps (default: 60; with --shipped as many as the "
     "policies were given that come with the levels).",
 )
@@ -73,9 +68,9 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
     again, the command goes on.  What has changed since, be it a level, a spec, a setting or the code that plays, is
     trained or played anew.
     """
-    with Report() as report, learning_for("`tltlc table1`"), on_without_readers():
+    with cli.Report() as report, learning_for("`tltlc table1`"), on_without_readers():
         from tltl_runtime.support.folder_lock import held
-        from tltlc.io.writing import write_files
+        from tltlc.api import fileio
 
         title = f"another run of `tltlc table1` is at work in `{folder}`"
         busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
@@ -88,8 +83,8 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
                 click.echo(f"stopped: what is over is kept in `{folder}`; to go on: {wanted.again}", err=True)
                 raise
             click.echo(text, nl=False)
-            write_files(folder, {"table1.md": text}, _ELSEWHERE)
-        return exits.CLEAN
+            fileio.write_files(folder, {"table1.md": text}, _ELSEWHERE)
+        return cli.exits.CLEAN
     return report.status
 
 
@@ -165,4 +160,4 @@ def _train(arguments: list[str]) -> None:
                 training.terminate()
                 training.wait()
             raise
-    raise_if_interrupted(training.returncode)
+    cli.raise_if_interrupted(training.returncode)

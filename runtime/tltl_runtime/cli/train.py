@@ -15,9 +15,7 @@ from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.support.number_text import duration, share
 from tltl_runtime.training.run.choices import Method
-from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.training.run.report import Report as Trained
@@ -62,7 +60,7 @@ Watching, from another terminal:
     "The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED, by imitation "
     "with -imitation behind it, with --from -tuned)."
 )
-@click.option("--seed", metavar="N", type=WholeRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
+@click.option("--seed", metavar="N", type=cli.WholeRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
 @click.option(
     "--resume",
     metavar="DIR",
@@ -96,7 +94,7 @@ Watching, from another terminal:
 @click.option(
     "--steps",
     metavar="N",
-    type=WholeRange(),
+    type=cli.WholeRange(),
     callback=_setting("stop", "steps"),
     help="End after so many steps of all environments.",
 )
@@ -136,7 +134,7 @@ def command(
     """
     if resume is not None and folder is not None:
         raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
-    with Report() as report, learning_for("`tltlc train`"):
+    with cli.Report() as report, learning_for("`tltlc train`"):
         from tltl_runtime.cli.support.level_argument import check_no_toml
 
         check_no_toml(spec, settings="--config")
@@ -158,7 +156,7 @@ def command(
                 new_settings(asked, begins_with(asked)) if resume is None else resumed_run(asked, resume).settings
             )
             click.echo(settings_text(settings), nl=False)
-            return exits.CLEAN
+            return cli.exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
         again, is_first = resume_command(run.folder), peers().rank == 0
         if resume is not None:
@@ -167,7 +165,7 @@ def command(
             if record := ended_as(run):
                 if is_first:
                     click.echo(_over(run, record, again))
-                return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
+                return cli.exits.CLEAN if record["end"] == "met" else cli.exits.FINDINGS
             check_limits(run)
         if is_first:
             for line in _begins(run, resume=resume is not None):
@@ -188,11 +186,11 @@ def command(
             raise
         if not is_first:
             # Exit cleanly: if one process fails, torchrun ends all, and the first one still writes the record.
-            return exits.CLEAN
+            return cli.exits.CLEAN
         write_record(run, last)
         for line in _ended(run, last, again):
             click.echo(line)
-        return exits.CLEAN if last.stop == "met" else exits.FINDINGS
+        return cli.exits.CLEAN if last.stop == "met" else cli.exits.FINDINGS
     return report.status
 
 

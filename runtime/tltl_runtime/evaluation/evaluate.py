@@ -20,8 +20,7 @@ from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
 from tltl_runtime.stealth.env import check_fit
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.vector.cores import cores
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, Fspa, TltlError
 
 Pool = int | Literal["ray"]
 """Where to play: in this process (1), in this many workers (0: one per core), or on Ray."""

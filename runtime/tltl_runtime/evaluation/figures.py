@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
 from tltl_runtime.spec.episode_summary import End, EpisodeSummary
-from tltlc.core.record import record
+from tltlc.api import record
 
 
 @record

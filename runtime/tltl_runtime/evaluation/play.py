@@ -9,8 +9,7 @@ import numpy as np
 
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary, settled_end
-from tltlc.automaton.text import label_text
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, label_text
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
 """The random streams of an episode: for the reset of the environment, and for sampled actions."""

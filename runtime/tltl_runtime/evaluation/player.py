@@ -15,9 +15,7 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import to_bytes
 from tltl_runtime.stealth.recordings.trajectory import Trajectory, trajectory
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import EMPTY, record, replace
-from tltlc.monitor import RewardOptions
+from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
 
 Recorded = Literal["none", "failures", "all"]
 

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Task
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 class LostError(Exception):

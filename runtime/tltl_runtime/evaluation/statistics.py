@@ -7,7 +7,7 @@ from math import sqrt
 from statistics import NormalDist, fmean, stdev
 from typing import Final
 
-from tltlc.core.record import record
+from tltlc.api import record
 
 Z_95: Final = NormalDist().inv_cdf(0.975)
 """The quantile of the normal distribution for a two-sided 95 % interval."""

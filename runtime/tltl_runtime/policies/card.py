@@ -7,9 +7,7 @@ from typing import Any, Final
 
 from tltl_runtime.policies.network import Network
 from tltl_runtime.stealth.level import Sensors
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import record
-from tltlc.monitor import RewardOptions
+from tltlc.api import Fspa, RewardOptions, record
 
 OBSERVATION: Final = 1
 """The version of the observations.  It changes whenever the same numbers get another meaning."""

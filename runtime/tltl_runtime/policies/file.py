@@ -23,21 +23,12 @@ from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltlc.automaton.fspa import Fspa
-from tltlc.backends import emit
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_bytes
-from tltlc.io.json_text import loads
-from tltlc.io.limits import ARTEFACT, POLICY
-from tltlc.io.resources import bounded
-from tltlc.io.writing import write_file
-from tltlc.pipeline import read_artefact
+from tltlc.api import Diagnostic, Fspa, SourceFile, TltlError, compiler, fileio
 
 SUFFIX: Final = ".safetensors"
 FORMAT: Final = "tltl-policy"
 VERSION: Final = 1
-MAX_BYTES: Final = POLICY.size
+MAX_BYTES: Final = fileio.limits.POLICY.size
 """The maximum size of a file: 64 MiB, or thirty million weights."""
 _RECORD_BYTES: Final = 1 << 20
 """The bytes that :func:`check_size` reserves for the card without its artefact."""
@@ -63,10 +54,10 @@ def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "na
             :data:`MAX_BYTES`.
         ValueError: the record of the training is not JSON data.
     """
-    write_file(Path(path), to_bytes(policy), advice, durable=True, over_inputs=True)
+    fileio.write_file(Path(path), to_bytes(policy), advice, durable=True, over_inputs=True)
 
 
-@bounded()
+@fileio.bounded()
 def read_policy(path: str | os.PathLike[str]) -> Policy:
     """Read a policy from a file.
 
@@ -76,7 +67,7 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
             TLT0604, its artefact is invalid.
     """
     name = os.fspath(path)
-    return from_bytes(read_bytes(path, name, MAX_BYTES), name)
+    return from_bytes(fileio.read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(policy: Policy) -> bytes:
@@ -91,7 +82,7 @@ def to_bytes(policy: Policy) -> bytes:
 
 def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
     """Raise TltlError, TLT0862, if a policy with this network is too large for a file."""
-    (artefact,) = emit("json", fspa).values()
+    (artefact,) = compiler.emit("json", fspa).values()
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
     weights = 2 * weight_count(network, _observed(fspa, sensors), BRANCHES)
@@ -102,7 +93,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
 
 def card_json(card: Card) -> dict[str, Any]:
     """Return the card as JSON data, with the artefact of the spec in place of ``fspa``."""
-    (artefact,) = emit("json", card.fspa).values()
+    (artefact,) = compiler.emit("json", card.fspa).values()
     document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name != "fspa"}
     return document | {"artefact": json.loads(artefact)}
@@ -137,7 +128,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
     """
     length = int.from_bytes(data[:8], "little")
     try:
-        header = loads(data[8 : 8 + length], ARTEFACT) if length <= len(data) - 8 else None
+        header = fileio.parse_json(data[8 : 8 + length], fileio.limits.ARTEFACT) if length <= len(data) - 8 else None
     except (ValueError, RecursionError):
         header = None
     if not isinstance(header, dict):
@@ -147,7 +138,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
 
 def _card(header: dict[str, Any], name: str) -> Card:
     try:
-        document = loads(header["__metadata__"][_KEY], ARTEFACT)
+        document = fileio.parse_json(header["__metadata__"][_KEY], fileio.limits.ARTEFACT)
     except (KeyError, TypeError):
         document = None
     except (ValueError, RecursionError):
@@ -166,7 +157,7 @@ def _card(header: dict[str, Any], name: str) -> Card:
 
 
 def _fspa(document: object, name: str) -> Fspa:
-    return read_artefact(SourceFile(f"{name}/artefact", json.dumps(document, ensure_ascii=False)))
+    return compiler.read_artefact(SourceFile(f"{name}/artefact", json.dumps(document, ensure_ascii=False)))
 
 
 def _fault(card: Card) -> str | None:

@@ -11,9 +11,7 @@ from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.number_text import listed
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import label_text
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, Fspa, TltlError, label_text
 
 _MOST: Final = 3
 """A message names at most this many differences."""

@@ -7,8 +7,7 @@ import json
 
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.record_json import to_json
-from tltlc.automaton.fspa import Fspa
-from tltlc.expression.json import to_json as expression_json
+from tltlc.api import Fspa, expressions
 
 
 def spec_hash(fspa: Fspa) -> str:
@@ -23,7 +22,7 @@ def spec_hash(fspa: Fspa) -> str:
             "limit_steps": fspa.limit_steps,
             "clock_s": fspa.clock_s,
             "params": {param.name: param.value for param in fspa.params},
-            "atoms": [expression_json(atom.expression) for atom in fspa.atoms],
+            "atoms": [expressions.to_json(atom.expression) for atom in fspa.atoms],
             "exclusive": fspa.exclusive,
             "states": [(state.accepting, state.verdict, state.distance) for state in fspa.states],
             "edges": [(edge.source, edge.target, edge.guard.primes) for edge in fspa.edges],

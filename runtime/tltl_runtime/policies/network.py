@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal, get_args
 
-from tltlc.core.record import record
+from tltlc.api import record
 
 Shapes = Mapping[str, tuple[int, ...]]
 """The shapes of one environment's observation by key: (n,) or (channels, height, width)."""

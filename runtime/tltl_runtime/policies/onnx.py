@@ -19,8 +19,7 @@ from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.snapshot import BRANCHES, CHOICES
-from tltlc.automaton.text import label_text
-from tltlc.core.record import replace
+from tltlc.api import label_text, replace
 
 SUFFIX: Final = ".onnx"
 

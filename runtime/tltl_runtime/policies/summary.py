@@ -9,7 +9,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.support.number_text import column, share
 from tltl_runtime.support.record_json import to_json
-from tltlc.automaton.text import formula_text, label_text
+from tltlc.api import formula_text, label_text
 
 _ENDS: Final[Mapping[str, str]] = {
     "met": "the spec was met",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.core.record import record
+from tltlc.api import record
 
 End = Literal["success", "violation", "limit", "stopped"]
 """How an episode ended.

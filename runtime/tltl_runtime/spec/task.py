@@ -8,16 +8,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import EMPTY, record
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.project import project_for
-from tltlc.io.spec_file import read, split
-from tltlc.monitor import Monitor, RewardOptions
-from tltlc.monitor.arguments import reward_options
-from tltlc.pipeline import CompileOptions, compile_source, read_artefact, unknown_spec
-from tltlc.resolve.spec import Spec
+from tltlc.api import (
+    EMPTY,
+    Diagnostic,
+    Fspa,
+    Monitor,
+    RewardOptions,
+    SourceFile,
+    Spec,
+    TltlError,
+    compiler,
+    fileio,
+    monitors,
+    record,
+)
 
 _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
 
@@ -63,7 +67,7 @@ def load_task(
     fspa, _ = read_spec(spec)
     param_names = {param.name for param in fspa.params}
     values = {name: value for name, value in offered.items() if name in param_names}
-    task = Task(fspa, {**values, **params}, reward_options(reward))
+    task = Task(fspa, {**values, **params}, monitors.reward_options(reward))
     task.monitor()
     return task
 
@@ -79,15 +83,17 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
         source, path, name = SourceFile("<text>", spec), "<text>", None
         is_artefact = _is_artefact(spec)
     else:
-        path, name = split(os.fspath(spec))
-        source, is_artefact = read(path)
+        path, name = fileio.split_spec_name(os.fspath(spec))
+        source, is_artefact = fileio.read_spec_file(path)
     if is_artefact:
-        fspa = read_artefact(source)
+        fspa = compiler.read_artefact(source)
         if name not in (None, fspa.name):
-            raise TltlError([unknown_spec(str(name), [fspa.name], path)])
+            raise TltlError([compiler.unknown_spec(str(name), [fspa.name], path)])
         return fspa, None
-    libraries = () if path == "<text>" else project_for(path).libraries
-    compiled = compile_source(source, CompileOptions(library_dirs=libraries, specs=(name,) if name else ()))
+    libraries = () if path == "<text>" else fileio.project_for(path).libraries
+    compiled = compiler.compile_source(
+        source, compiler.CompileOptions(library_dirs=libraries, specs=(name,) if name else ())
+    )
     fspa = _only(compiled.automata, path)
     return fspa, next(candidate for candidate in compiled.program.specs if candidate.name == fspa.name)
 

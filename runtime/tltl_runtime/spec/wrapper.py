@@ -16,10 +16,7 @@ from gymnasium.utils import RecordConstructorArgs
 from numpy.typing import NDArray
 
 from tltl_runtime.spec.task import load_task
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor import MonitorError, RewardOptions, Step
-from tltlc.monitor.samples import number
+from tltlc.api import Diagnostic, Fspa, MonitorError, RewardOptions, Step, TltlError, monitors
 
 SignalsFunction = Callable[[gymnasium.Env[Any, Any]], Mapping[str, SupportsFloat]]
 Observation = dict[str, Any]
@@ -111,7 +108,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         self.taken = None
         sample = self._sample("after the reset")
         for signal in self._inputs:
-            number(signal, sample[signal.name], "after the reset")
+            monitors.number(signal, sample[signal.name], "after the reset")
         start = self.task.fspa.states[0]
         info = {
             **info,

@@ -29,9 +29,7 @@ from tltl_runtime.stealth.signals import Signals
 from tltl_runtime.stealth.snapshot import ACTIONS, BRANCHES
 from tltl_runtime.stealth.window.screen import MODES, Screen
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor import RewardOptions
+from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 _CELL: Final = 0.5
 """The width of the cells of ``info["cell"]``, in metres."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.core.record import record
+from tltlc.api import record
 
 Point = tuple[float, float, float]
 

@@ -17,9 +17,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import reason
-from tltlc.monitor import Step
+from tltlc.api import Diagnostic, Step, TltlError, fileio
 
 
 class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
@@ -176,5 +174,5 @@ def writable_folder(folder: Path) -> Path:
         with TemporaryFile(dir=folder):
             return folder
     except OSError as error:
-        title = f"cannot write to `{folder}`: {reason(error)}"
+        title = f"cannot write to `{folder}`: {fileio.reason(error)}"
         raise TltlError([Diagnostic("TLT0005", title, help="name another folder")]) from None

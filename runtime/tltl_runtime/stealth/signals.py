@@ -7,8 +7,7 @@ from math import atan2, dist, pi
 from typing import TYPE_CHECKING, Final
 
 from tltl_runtime.stealth.level import Level, Point, fixed_places
-from tltlc.core.names import full_name
-from tltlc.core.record import record
+from tltlc.api import record, specs
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
@@ -83,7 +82,7 @@ def level_signals(level: Level) -> dict[str, LevelSignal]:
         signals += _of_entity(entity, place)
     signals += [LevelSignal("active", (switch.name,), _active(row)) for row, switch in enumerate(level.switches)]
     signals += [LevelSignal("open", (barrier.name,), _open(row)) for row, barrier in enumerate(level.barriers)]
-    by_name = {full_name(signal.base, signal.arguments): signal for signal in signals}
+    by_name = {specs.full_name(signal.base, signal.arguments): signal for signal in signals}
     for alias, name in level.signals:
         by_name[alias] = by_name[name]
     return by_name

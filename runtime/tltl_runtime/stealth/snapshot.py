@@ -9,7 +9,7 @@ from typing import Final
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, PlayerView
 from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
 from tltl_runtime.stealth.world.player import PlayerState
-from tltlc.core.record import record
+from tltlc.api import record
 
 CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
     "x": ("stay", "greater", "smaller"),

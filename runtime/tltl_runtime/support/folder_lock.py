@@ -7,9 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import reason
-from tltlc.io.locking import try_lock
+from tltlc.api import Diagnostic, TltlError, fileio
 
 _LOCK: Final = ".lock"
 
@@ -28,9 +26,9 @@ def held(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
         folder.mkdir(parents=True, exist_ok=True)
         file = (folder / _LOCK).open("a+b")
     except (OSError, ValueError) as error:
-        title = f"cannot write into `{folder}`: {reason(error)}"
+        title = f"cannot write into `{folder}`: {fileio.reason(error)}"
         raise TltlError([Diagnostic("TLT0005", title, help=advice)]) from None
     with file:
-        if not try_lock(file):
+        if not fileio.try_lock(file):
             raise TltlError([busy])
         yield

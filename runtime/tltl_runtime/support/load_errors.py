@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record
 
 
 @record

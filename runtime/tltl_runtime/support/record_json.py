@@ -15,7 +15,7 @@ from math import isfinite
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
-from tltlc.core.record import MissingFieldsError
+from tltlc.api import MissingFieldsError
 
 T = TypeVar("T")
 

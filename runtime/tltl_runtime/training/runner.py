@@ -18,8 +18,7 @@ from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.self_imitation import imitate
 from tltl_runtime.training.ppo.distributed import peers
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record
 
 
 @record

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from tltl_runtime.vector.cores import started
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 _TO_ANSWER_S: Final = 10.0
 """How long a cluster may take to answer."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def cores() -> int:

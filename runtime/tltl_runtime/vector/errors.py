@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from typing import Final
 
-from tltlc.core.record import record
+from tltlc.api import record
 
 _UNGUARDED: Final = (
     "it ended before it made them: a worker begins by importing the program, so what the program does stands under",

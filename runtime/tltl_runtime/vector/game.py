@@ -15,8 +15,7 @@ from tltl_runtime.stealth.env import check_fit, make_env, spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.observation.sensors import SensorChoice
 from tltl_runtime.vector.env import WorkerVectorEnv
-from tltlc.automaton.fspa import Fspa
-from tltlc.monitor import RewardOptions
+from tltlc.api import Fspa, RewardOptions
 
 
 def make_vec(

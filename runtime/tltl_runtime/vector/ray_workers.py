@@ -18,7 +18,7 @@ from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
 from tltl_runtime.vector.workers import TO_START_S, shared_out
-from tltlc.core.record import replace
+from tltlc.api import replace
 
 
 class RayWorkers:

@@ -17,7 +17,7 @@ from tltl_runtime.support.child_processes import interrupts_withheld
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
-from tltlc.core.record import replace
+from tltlc.api import replace
 
 TO_START_S: Final = 120.0
 """The least time that a worker gets to import its modules and make its environments."""

@@ -123,7 +123,7 @@ def test_an_unwritable_file_is_reported(tmp_path: Path, fspa: Fspa) -> None:
 
 
 def test_endless_measurements_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.training.run.metrics.MEASUREMENTS", Limit(size=1 << 20))
+    monkeypatch.setattr("tltlc.io.limits.MEASUREMENTS", Limit(size=1 << 20))
     (tmp_path / METRICS).symlink_to("/dev/zero")
     with pytest.raises(TltlError, match="TLT0004"):
         read_metrics(tmp_path / METRICS)

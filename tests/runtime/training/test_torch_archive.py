@@ -15,7 +15,6 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.training.run import torch_archive
 from tltl_runtime.training.run.torch_archive import TorchArchiveError, read_torch
 from tltlc.io.limits import Limit
 
@@ -104,7 +103,7 @@ def test_keys_that_take_very_long_to_hash_are_rejected(pickled: bytes) -> None:
 
 
 def test_pickles_with_too_many_operations_are_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(torch_archive, "CHECKPOINT", Limit(size=1 << 20, depth=32, values=10))
+    monkeypatch.setattr("tltlc.io.limits.CHECKPOINT", Limit(size=1 << 20, depth=32, values=10))
     with pytest.raises(TorchArchiveError, match="more than 10 values"):
         read_torch(saved([None] * 1000))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
-from tltlc.interfaces.cli.report import show
+from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.keyboard import Recordings
@@ -59,7 +59,7 @@ def play_at_keyboard(
     taking = recordings(f"{level.name}-{level.variant}")
     # Reset first: if the level lacks something that the spec needs, the error comes before the window opens.
     env.reset()
-    show(reach_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
+    cli.show(reach_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
     window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
     renderer = Renderer(level, *_SIZE)
     try:

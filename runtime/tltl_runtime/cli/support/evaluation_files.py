@@ -22,12 +22,7 @@ from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 from tltl_runtime.support.record_json import to_json
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interfaces.cli.paths import is_stdout
-from tltlc.io.files import exists, may_be_file
-from tltlc.io.json_text import load
-from tltlc.io.limits import REPORT
-from tltlc.io.writing import write_file, write_files
+from tltlc.api import Diagnostic, TltlError, cli, fileio
 
 _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
@@ -76,7 +71,7 @@ class EvaluationFiles:
     ) -> None:
         self._setup, self._path, self._sha256, self._first, self._folder = setup, path, sha256, first, folder
         self._command = command
-        self._json = None if is_stdout(json_file) else json_file
+        self._json = None if cli.is_stdout(json_file) else json_file
         self._level = load_level(setup.level, setup.variant)
         self._played: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
@@ -109,7 +104,7 @@ class EvaluationFiles:
             path = new_path(self._folder, stem, result.recording, [".png"])
             plan = draw_episode(from_bytes(result.recording, path.name))
             files = {path.name: result.recording, f"{path.name.removesuffix(SUFFIX)}.png": plan}
-            write_files(self._folder, files)
+            fileio.write_files(self._folder, files)
             self._recorded.append(path.name)
 
     def text(self) -> str:
@@ -159,7 +154,7 @@ class EvaluationFiles:
         Return a description of the folder's contents; empty without a folder.
         """
         if self._json is not None:
-            write_file(self._json, text, "name another place with --json")
+            fileio.write_file(self._json, text, "name another place with --json")
         if self._folder is None:
             return ""
         pictures: dict[str, str | bytes] = {}
@@ -167,7 +162,7 @@ class EvaluationFiles:
             if trajectories:
                 title = f"{self._level.name} {self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
                 pictures[_PICTURES[sampled]] = draw_trajectories(self._level, self._setup.fspa, trajectories, title)
-        write_files(self._folder, {_REPORT: text, **pictures})
+        fileio.write_files(self._folder, {_REPORT: text, **pictures})
         count = len(self._recorded)
         recorded = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * (count > 0)}"
         look_at = f"; look at {next(iter(pictures))} first" if pictures else ""
@@ -191,7 +186,7 @@ class EvaluationFiles:
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
         # Remove the report last: it shows that the pictures belong to an evaluation.
         older = [folder / name for name in (*_PICTURES.values(), _REPORT)]
-        for path in sorted(filter(may_be_file, folder.iterdir())):
+        for path in sorted(filter(fileio.may_be_file, folder.iterdir())):
             if (match := recording.fullmatch(path.name)) and self._is_of_another(path):
                 older += [path, folder / f"{match[1]}.png"]
         existing = [path for path in older if path.is_file()]
@@ -219,7 +214,7 @@ class EvaluationFiles:
 
 def _check_place(folder: Path) -> None:
     """Raise TltlError, TLT0722, if the report or a picture would replace a file of the user."""
-    existing = [folder / name for name in (_REPORT, *_PICTURES.values()) if exists(folder / name)]
+    existing = [folder / name for name in (_REPORT, *_PICTURES.values()) if fileio.exists(folder / name)]
     if existing and not _is_report(folder / _REPORT):
         title = f"`{existing[0]}` is there already, and no evaluation wrote it"
         raise TltlError([Diagnostic("TLT0722", title, help="name another folder with --out")])
@@ -228,7 +223,7 @@ def _check_place(folder: Path) -> None:
 def _is_report(path: Path) -> bool:
     """Whether a file is the report of an evaluation."""
     try:
-        document = load(path, REPORT) if may_be_file(path) else None
+        document = fileio.load_json(path, fileio.limits.REPORT) if fileio.may_be_file(path) else None
     except (TltlError, OSError, ValueError):
         return False
     return isinstance(document, dict) and document.keys() >= _KEYS

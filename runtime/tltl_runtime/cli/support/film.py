@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.core.record import record
-from tltlc.interfaces.cli import exits
+from tltlc.api import cli, record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
     from tltl_runtime.stealth.rendering.film import View
-    from tltlc.automaton.fspa import Notation
+    from tltlc.api import Notation
 
 T = TypeVar("T")
 
@@ -44,7 +43,7 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
     """
     from tltl_runtime.stealth.rendering.film import frames
     from tltl_runtime.stealth.rendering.film_file import NoEncoderError, write_gif, write_mp4
-    from tltlc.io.writing import replaced
+    from tltlc.api import fileio
 
     rate = film.rate or min(film.speed / DECISION, _MOST_FRAMES_A_SECOND)
     start, stop = span
@@ -56,10 +55,10 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
     pictures = _counted(frames(episode, times, film.view, film.size, film.notation), len(times))
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
-        with replaced(path) as temporary:
+        with fileio.replaced(path) as temporary:
             write(temporary, pictures, 1 / rate)
     except NoEncoderError as error:
-        raise exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
+        raise cli.exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
 
 
 def _counted(pictures: Iterable[T], count: int) -> Iterator[T]:

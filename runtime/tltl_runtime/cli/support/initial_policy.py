@@ -20,10 +20,7 @@ from tltl_runtime.training.run.initial_policy import weights_hash
 from tltl_runtime.training.run.run import Run
 from tltl_runtime.training.run.settings import Settings
 from tltl_runtime.training.run.settings_file import read_values
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_source
+from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
 
 _COMMAND = "tltlc train --from"
 
@@ -67,7 +64,7 @@ def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> 
         message = "--from is for the method `automaton`: an agent that imitates begins with what it is shown"
         raise click.UsageError(message, click.get_current_context())
     network = begun.card.network
-    asked = {} if config is None else read_values(read_source(config)).get("network", {})
+    asked = {} if config is None else read_values(fileio.read_source(config)).get("network", {})
     if replace(network, **asked) != network:
         title = f"`{begun.path}` has another network than `[network]` in `{config}` asks for"
         raise TltlError([Diagnostic("TLT0941", title, help=f"leave `[network]` out of `{config}`, or --from")])

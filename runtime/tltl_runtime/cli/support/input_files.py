@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.report import Report
+from tltlc.api import TltlError, cli
 
 T = TypeVar("T")
 
 
-def read_each(files: Sequence[str], read: Callable[[str], T], report: Report) -> Iterator[tuple[str, T]]:
+def read_each(files: Sequence[str], read: Callable[[str], T], report: cli.Report) -> Iterator[tuple[str, T]]:
     """Yield the name of each file and the result of ``read``.  Errors go into the report."""
     for name in files:
         try:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
-from tltlc.interfaces.cli import exits
+from tltlc.api import cli
 
 _MODULES: Final = {"torch", "rsl_rl", "tensordict", "safetensors", "tensorboard", "onnx", "onnxscript"}
 
@@ -20,4 +20,4 @@ def learning_for(command: str) -> Iterator[None]:
         module = (error.name or "").partition(".")[0]
         if module not in _MODULES:
             raise
-        raise exits.missing_component(command, module, "tltlc[rl]") from error
+        raise cli.exits.missing_component(command, module, "tltlc[rl]") from error

@@ -12,21 +12,19 @@ import click
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.levels.place import level_place
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import exists, is_file, read_bytes
-from tltlc.io.spec_file import split
+from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def names_level(text: str) -> bool:
     """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level of the package, and not an existing path."""
-    return not exists(text) and level_place(text)[0] in level_names()
+    return not fileio.exists(text) and level_place(text)[0] in level_names()
 
 
 def check_spelling(text: str) -> None:
     """Raise TltlError, TLT0001, if a plain name is not an existing path and resembles the name of a level."""
     name = level_place(text)[0]
     close = get_close_matches(name, level_names(), n=1)
-    if close and re.fullmatch(r"[\w-]+", name) and not exists(text):
+    if close and re.fullmatch(r"[\w-]+", name) and not fileio.exists(text):
         title = f"there is neither a file nor a level `{text}`"
         raise TltlError([Diagnostic("TLT0001", title, help=f"did you mean the level `{close[0]}`?")])
 
@@ -37,9 +35,9 @@ def check_named(policy: Path | None, level: str | None) -> None:
     Raises:
         TltlError: the same error as reading the policy or the level would raise.
     """
-    if policy is not None and not names_level(str(policy)) and not exists(policy):
+    if policy is not None and not names_level(str(policy)) and not fileio.exists(policy):
         check_spelling(str(policy))
-        read_bytes(policy, str(policy), 0)
+        fileio.read_bytes(policy, str(policy), 0)
     if level is not None:
         name, variant = level_place(level)
         load_level(name, variant or "v0")
@@ -50,7 +48,7 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
 
     It is probably a level, or a file for the option ``settings``.
     """
-    path = split(spec)[0] if spec else ""
+    path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):
         suggestions = [f"where it holds settings, write `{settings} {quote(path)}`"] if settings else []
         suggestions.append(f"where it is a level, `--level {quote(spec or path)}`")
@@ -59,7 +57,7 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
 
 def check_there(level: str, variant: str, command: str) -> None:
     """Raise TltlError, TLT0001, if a level's file is missing.  The help suggests ``command`` with --level."""
-    if level.endswith(".toml") and not exists(level):
+    if level.endswith(".toml") and not fileio.exists(level):
         suffix = "" if variant == "v0" else f":{variant}"
         title = f"the level's file `{level}` is not there any more"
         help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{suffix}`"
@@ -79,8 +77,8 @@ def own_level(spec: str, how: str = "with --level") -> str:
     if fspa.level is None:
         message = f"`{fspa.name}` does not say which level it is about: name one {how}"
         raise click.UsageError(message, click.get_current_context())
-    beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
-    if is_file(beside):
+    beside = Path(fileio.split_spec_name(spec)[0]).parent / f"{fspa.level}.toml"
+    if fileio.is_file(beside):
         return str(beside)
     if fspa.level not in level_names():
         title = f"there is no level `{fspa.level}`: `{beside}` is not there, and none of that name comes with tltlc"

@@ -8,8 +8,7 @@ from typing import Final
 from tltl_runtime.stealth.levels.file import level_names, level_path, load_level, variants
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.levels.table import suggestion
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_source
+from tltlc.api import Diagnostic, TltlError, fileio
 
 _STARTER: Final = Path(__file__).parents[2] / "starter" / "vault.toml"
 """A small level to start with, the example of docs/levels.md."""
@@ -37,7 +36,7 @@ def files(name: str) -> dict[str, str]:
     spec = Path(levels[0].spec.rpartition(":")[0])
     if spec.name:
         paths[spec.name] = spec
-    texts = {name: read_source(file, name).text for name, file in paths.items()}
+    texts = {name: fileio.read_source(file, name).text for name, file in paths.items()}
     return {**texts, "README.md": _README.format(level=path.name, spec=spec.name or "SPEC.tltl")}
 
 

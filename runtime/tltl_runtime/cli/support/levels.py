@@ -19,14 +19,7 @@ from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.stealth.observation.observation import Senses
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interfaces.cli.exits import CLEAN, status_of
-from tltlc.interfaces.cli.inputs import Input, open_input
-from tltlc.interfaces.cli.paths import OutputPath
-from tltlc.interfaces.cli.report import Report
-from tltlc.interfaces.cli.settings import Settings
-from tltlc.io.writing import write_file
+from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 
 
 @click.command()
@@ -34,14 +27,14 @@ from tltlc.io.writing import write_file
 @click.option(
     "--plan",
     metavar="FILE.png",
-    type=OutputPath("file"),
+    type=cli.OutputPath("file"),
     help="Draw the level from above, red where nobody can stand (for one level and variant).",
 )
 def command(
     levels: tuple[str, ...],
-    inputs: Sequence[Input],
-    settings: Settings,
-    report: Report,
+    inputs: Sequence[cli.Input],
+    settings: cli.Settings,
+    report: cli.Report,
     sensors: Mapping[str, Any],
     plan: Path | None,
 ) -> None:
@@ -63,7 +56,9 @@ def command(
 class _Check:
     """Checks levels and reports each remark only once, even if it applies to several variants."""
 
-    def __init__(self, inputs: Sequence[Input], settings: Settings, report: Report, sensors: Mapping[str, Any]) -> None:
+    def __init__(
+        self, inputs: Sequence[cli.Input], settings: cli.Settings, report: cli.Report, sensors: Mapping[str, Any]
+    ) -> None:
         self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
         self._said: set[object] = set()
 
@@ -78,7 +73,7 @@ class _Check:
         for opened in inputs:
             for fspa, places in _specs(opened):
                 diagnostics = check_supply(level, fspa, places)
-                if status_of(diagnostics) == CLEAN:
+                if cli.status_of(diagnostics) == cli.CLEAN:
                     diagnostics += check_reach(level, reach, fspa, places)
                 self._add(diagnostics)
                 if not diagnostics:
@@ -88,13 +83,13 @@ class _Check:
         self._say(f"{level.name}: the agent senses {_sensed(senses)}")
         return level, reach
 
-    def _own(self, level: Level) -> list[Input]:
+    def _own(self, level: Level) -> list[cli.Input]:
         """Compile the spec that a level is made for."""
         if not level.spec:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
             self._say(f"{level.name}: made for no spec; {advice}")
             return []
-        opened = open_input(shown(Path(level.spec)), self._settings)
+        opened = cli.open_input(shown(Path(level.spec)), self._settings)
         self._add(opened.diagnostics)
         return [opened]
 
@@ -116,10 +111,10 @@ def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
     from tltl_runtime.stealth.rendering.plan import draw_level
 
     level, reach = seen[0]
-    write_file(path, draw_level(level, reach), "name another place with --plan")
+    fileio.write_file(path, draw_level(level, reach), "name another place with --plan")
 
 
-def _specs(opened: Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
+def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
     specs = {spec.name: spec for spec in opened.program.specs} if opened.program else {}
     for fspa in opened.automata:
         yield fspa, SpecPlaces(specs.get(fspa.name))

@@ -8,8 +8,7 @@ from typing import Any, Final, TypeVar
 
 import click
 
-from tltlc.interfaces.cli.numbers import WholeRange
-from tltlc.interfaces.cli.paths import OutputPath
+from tltlc.api import cli
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -22,7 +21,7 @@ def output_folder(about: str, default: Path | None = None) -> Callable[[Function
         *_OUTPUT,
         "folder",
         metavar="DIR",
-        type=OutputPath("folder", checked=True),
+        type=cli.OutputPath("folder", checked=True),
         default=default,
         show_default=default is not None,
         help=about,
@@ -31,12 +30,12 @@ def output_folder(about: str, default: Path | None = None) -> Callable[[Function
 
 def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
     """The option ``-o FILE``, passed to the command as ``path``."""
-    return click.option(*_OUTPUT, "path", metavar=metavar, type=OutputPath("file", checked=True), help=about)
+    return click.option(*_OUTPUT, "path", metavar=metavar, type=cli.OutputPath("file", checked=True), help=about)
 
 
 def seed_option(about: str) -> Callable[[Function], Function]:
     """The option ``--seed N``, by default 0."""
-    kind = WholeRange(min=0)
+    kind = cli.WholeRange(min=0)
     return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=about)
 
 

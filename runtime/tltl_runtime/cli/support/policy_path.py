@@ -11,8 +11,7 @@ from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.run import POLICY, RUN, named_trainings, read_place, resume_command
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import exists, is_dir, is_file
+from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
@@ -34,7 +33,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
         assert name is not None
         return _shipped(name), name, variant
     path = policy_path(policy)
-    if name is None and is_file(policy / RUN):
+    if name is None and fileio.is_file(policy / RUN):
         # The card has only the level's name; the folder of the training has the path of its file.
         name, variant = read_place(policy)
         check_there(name, variant, f"{command} {quote(str(policy))}")
@@ -67,18 +66,18 @@ def policy_path(path: Path) -> Path:
             resembles a level's name.
     """
     check_spelling(str(path))
-    if path.suffix.lower() == ".onnx" and is_file(path):
+    if path.suffix.lower() == ".onnx" and fileio.is_file(path):
         title = f"`{path}` is the model for other engines, which `tltlc inspect -o` wrote"
         raise TltlError([Diagnostic("TLT0840", title, help="name the .safetensors file that it was made of")])
-    if path.suffix.lower() == ".toml" and is_file(path):
+    if path.suffix.lower() == ".toml" and fileio.is_file(path):
         title = f"`{path}` is a TOML file, e.g. a level, and no policy"
         help_ = "a policy is a .safetensors file, or the folder of a training; a level is named with --level"
         raise TltlError([Diagnostic("TLT0840", title, help=help_)])
-    if not is_dir(path):
+    if not fileio.is_dir(path):
         return path
-    if exists(path / POLICY):
+    if fileio.exists(path / POLICY):
         return path / POLICY
-    if exists(path / RUN):
+    if fileio.exists(path / RUN):
         title = f"the training in `{path}` has no policy yet: {progress(path)}"
         help_ = f"`{resume_command(path)}` goes on until it has one; one that is going on has it soon"
     elif suggestion := named_trainings(path):

@@ -13,8 +13,7 @@ from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import SUFFIX, new_path, write_episode
 from tltl_runtime.support.number_text import share
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import reason
+from tltlc.api import Diagnostic, TltlError, fileio
 
 
 class RecordingFiles:
@@ -83,7 +82,7 @@ def _refusal(folder: Path, make: bool) -> str:
         if make:
             folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        return reason(error)
+        return fileio.reason(error)
     if not folder.is_dir():
         return "there is no such folder"
     return "" if os.access(folder, os.W_OK) else "permission denied"

@@ -24,11 +24,7 @@ from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.support.number_text import listed
 from tltl_runtime.training.run.versions import versions
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.json_text import load
-from tltlc.io.limits import REPORT
-from tltlc.io.writing import write_file, write_files
+from tltlc.api import TltlError, fileio, record
 
 PAGE: Final = "report.html"
 """The name of the page in the folder of a run."""
@@ -111,7 +107,7 @@ def _earlier(outcome: SuiteRun, name: str) -> Verdict | None:
     """The verdict of an earlier run in the folder on a case, or None."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-        verdict = load(path, REPORT)["content"]["verdict"]
+        verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]
         if verdict in get_args(Verdict):
             return cast(Verdict, verdict)
     return None
@@ -142,11 +138,11 @@ def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
     for option, text_of in REPORTS.items():
         if option in files:
             texts[option] = text_of(outcome)
-            write_file(files[option], texts[option], f"name another place with {option}")
+            fileio.write_file(files[option], texts[option], f"name another place with {option}")
     if not outcome.cases and outcome.missing and "--html" not in files:
         return None
     page = texts.get("--html") or _page_text(outcome)
-    write_files(outcome.folder, {PAGE: page}, "name another folder with --out")
+    fileio.write_files(outcome.folder, {PAGE: page}, "name another folder with --out")
     return files.get("--html", outcome.folder / PAGE)
 
 

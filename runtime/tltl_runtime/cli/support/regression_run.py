@@ -26,10 +26,7 @@ from tltl_runtime.regression.suite.unnamed_changes import unnamed
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
 from tltl_runtime.regression.verdict.run import Done, check, owned, regress
 from tltl_runtime.support.number_text import listed
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.diagnostics.formats.github import workflow_command
-from tltlc.interfaces.cli import exits
+from tltlc.api import TltlError, cli, record, workflow_command
 
 _MOST_NAMED: Final = 8
 """The most files that are named of those on which no case depends."""
@@ -96,7 +93,7 @@ def run(wanted: Wanted) -> int:
             _tell_too(_outcome(suite, cases, left_out, wanted, results), wanted)
             raise
         _tell(_outcome(suite, cases, left_out, wanted, results), wanted)
-    return exits.CLEAN if all(done.report.verdict == "pass" for done in results) else exits.FINDINGS
+    return cli.exits.CLEAN if all(done.report.verdict == "pass" for done in results) else cli.exits.FINDINGS
 
 
 def _chosen(suite: Suite, wanted: Wanted) -> Selection:
@@ -209,7 +206,7 @@ def _tell_too(outcome: SuiteRun, wanted: Wanted) -> None:
     try:
         _tell(outcome, wanted)
     except Exception as error:
-        exits.report(error)
+        cli.exits.report(error)
 
 
 def _are_meant(outcome: SuiteRun) -> bool:

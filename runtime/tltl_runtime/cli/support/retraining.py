@@ -25,9 +25,7 @@ from tltl_runtime.regression.verdict.baseline import baseline_command
 from tltl_runtime.regression.verdict.run import NOT_THE_CASE, Done
 from tltl_runtime.training.run.record import ended_as, write_record
 from tltl_runtime.training.run.run import RUN, Run
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.report import show
+from tltlc.api import TltlError, cli, record, replace
 
 _NOT_THE_CASE: Final = NOT_THE_CASE | {"TLT0005"}
 """Codes of errors of the workers or of the folder, which are no faults of a case."""
@@ -92,7 +90,7 @@ def _one_case(name: str) -> Iterator[None]:
         if _NOT_THE_CASE & {diagnostic.code for diagnostic in error.diagnostics}:
             raise
         click.echo(f"{plain(name)}: nothing can be said of its training", err=True)
-        show(error.diagnostics, "text", sys.stderr)
+        cli.show(error.diagnostics, "text", sys.stderr)
 
 
 def _train(asked: Retraining, name: str, run: Run) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tltlc.io.files import exists, read_source
+from tltlc.api import fileio
 
 
 def check_there(suite: Path | None) -> None:
@@ -13,7 +13,7 @@ def check_there(suite: Path | None) -> None:
     Raises:
         TltlError: TLT0001, the same error as reading the suite would raise.
     """
-    if suite is not None and not exists(suite):
+    if suite is not None and not fileio.exists(suite):
         from tltl_runtime.stealth.levels.made_for import shown
 
-        read_source(suite, shown(suite))
+        fileio.read_source(suite, shown(suite))

@@ -29,8 +29,7 @@ from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.run.report import Report, Window
 from tltl_runtime.training.run.run import CHECKPOINT, Run
 from tltl_runtime.training.run.settings import Stop
-from tltlc.automaton.fspa import Fspa, State
-from tltlc.automaton.text import label_text
+from tltlc.api import Fspa, State, label_text
 
 _WIDTH: Final = 100
 """The greatest width of the picture, in characters."""

@@ -10,7 +10,7 @@ from tltl_runtime.training.run.report import Report
 from tltl_runtime.training.run.run import CHECKPOINT, RUN, Run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.vector.errors import WorkerError
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def train_shown(run: Run, *, resume: bool, again: str) -> Report:

@@ -50,11 +50,7 @@ from tltl_runtime.training.run.run import (
 )
 from tltl_runtime.training.run.settings import Settings, read_settings
 from tltl_runtime.training.run.settings_file import read_values
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_source, reading_error
-from tltlc.io.spec_file import split
+from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
 
 T = TypeVar("T")
 
@@ -89,7 +85,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
             raise _usage(f"`{asked.spec}` is a level, and so is `{asked.level}`: name a spec, or one of them alone")
         asked = replace(asked, level=asked.spec, spec=None)
     elif asked.spec is not None:
-        check_spelling(split(asked.spec)[0])
+        check_spelling(fileio.split_spec_name(asked.spec)[0])
     begun = begins_with(asked)
     path, variant = _place(asked, begun)
     settings = new_settings(asked, begun)
@@ -212,7 +208,7 @@ def _check_folder(folder: Path) -> None:
     try:
         names = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
     except OSError as error:
-        raise reading_error(str(folder), error) from None
+        raise fileio.reading_error(str(folder), error) from None
     if names:
         title = f"`{folder}` is no training, and has other files: `{names[0]}`{' and more' * (len(names) > 1)}"
         help_ = f"name a folder of its own, e.g. `--out {quote(str(folder / 'training'))}`"
@@ -240,7 +236,7 @@ def _usage(message: str) -> click.UsageError:
 
 def _with_file(settings: Settings, path: Path) -> Settings:
     """Update settings from a file; raises the errors of :func:`read_settings`."""
-    for table, values in read_values(read_source(path)).items():
+    for table, values in read_values(fileio.read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
         settings = replace(settings, **changed)
     return settings

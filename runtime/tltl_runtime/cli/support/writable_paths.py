@@ -8,9 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import descriptor_of, exists, is_file, reason
-from tltlc.io.writing import check_not_read
+from tltlc.api import Diagnostic, TltlError, fileio
 
 _OUTPUT: Final = ("-", "/dev/stdout")
 
@@ -24,7 +22,7 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
     for option, path in files.items():
         if path is None or not _takes_a_place(path):
             continue
-        check_not_read(path, f"name another place with {option}")
+        fileio.check_not_read(path, f"name another place with {option}")
         try:
             # This fails if the system does not allow the name.
             with suppress(FileNotFoundError):
@@ -33,7 +31,7 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
             with TemporaryFile(dir=path.resolve().parent):
                 pass
         except OSError as error:
-            why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
+            why = "there is no such folder" if isinstance(error, FileNotFoundError) else fileio.reason(error)
             help_ = f"name another place with {option}"
             raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {why}", help=help_)]) from None
 
@@ -58,16 +56,16 @@ def check_no_training(folder: Path) -> None:
     """Raise TltlError, TLT0005, if a folder contains a training: other files must not go there."""
     from tltl_runtime.training.run.run import RUN
 
-    if exists(folder / RUN):
+    if fileio.exists(folder / RUN):
         title = f"cannot write into `{folder}`: it is the folder of a training"
         raise TltlError([Diagnostic("TLT0005", title, help="name another folder with --out")])
 
 
 def is_output(path: Path) -> bool:
     """Whether a path is standard output: `-`, its device, or the file that standard output is redirected to."""
-    return str(path) in _OUTPUT or descriptor_of(path) == 1
+    return str(path) in _OUTPUT or fileio.descriptor_of(path) == 1
 
 
 def _takes_a_place(path: Path) -> bool:
     """Whether writing creates or replaces a file.  Pipes and devices are written directly."""
-    return not exists(path) or is_file(path)
+    return not fileio.exists(path) or fileio.is_file(path)

@@ -12,9 +12,7 @@ from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.recordings.cause import Kind, cause
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.core.record import record, replace
-from tltlc.monitor.guards import bounding_literal, robustness
-from tltlc.monitor.tables import tables
+from tltlc.api import monitors, record, replace
 
 _SEEN_S: Final = 3.0
 """Enemies that saw the player in this many seconds before the end are reported."""
@@ -117,7 +115,7 @@ def _seen_by(episode: Episode, time: float) -> tuple[str, ...]:
 def _has_arrived(episode: Episode, state: int, broke: Sequence[str]) -> bool:
     """Whether only the atoms in ``broke`` prevented, at the last sample, a transition towards acceptance."""
     fspa, values = episode.fspa, episode.atoms[-1].tolist()
-    primes = [prime for edge in tables(fspa).improving[state] for prime in edge.guard.primes]
+    primes = [prime for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     missing = [{fspa.atoms[atom].name for atom, wanted in prime if (values[atom] > 0.0) != wanted} for prime in primes]
     return any(names and names <= {*broke} for names in missing)
 
@@ -130,14 +128,14 @@ def _shut(episode: Episode) -> tuple[str, ...]:
 def _nearest(episode: Episode, state: int) -> NearestMiss | None:
     """The nearest miss in a state; None if no edge leads from it towards acceptance, or the state was not visited."""
     fspa = episode.fspa
-    guards = [edge.guard for edge in tables(fspa).improving[state]]
+    guards = [edge.guard for edge in monitors.tables(fspa).improving[state]]
     steps = _last_stay(episode, state)
     if not guards or not steps:
         return None
     atoms: Sequence[list[float]] = episode.atoms.tolist()
-    best, step = max((max(robustness(guard, atoms[step]) for guard in guards), -step) for step in steps)
+    best, step = max((max(monitors.robustness(guard, atoms[step]) for guard in guards), -step) for step in steps)
     row = -step
-    atom, wanted = bounding_literal(guards, atoms[row])
+    atom, wanted = monitors.bounding_literal(guards, atoms[row])
     target, distance = _distance(episode, atom, steps) if wanted else (None, None)
     return NearestMiss(fspa.atoms[atom].name, round(best, 4), _place(episode, row + 1), target, distance, wanted)
 

@@ -12,8 +12,7 @@ from tltl_runtime.regression.explain.path_points import places_along
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, together
 from tltl_runtime.stealth.level import Level, Region
 from tltl_runtime.support.number_text import counted, percent
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import record
+from tltlc.api import Fspa, record
 
 _ALIKE: Final = 0.05
 """Shares of episodes that complete a stage count as equal if they differ by less than this."""

@@ -12,8 +12,7 @@ from tltl_runtime.regression.explain.places import in_the_way, place_name
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.cause import Kind
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import record, replace
+from tltlc.api import Fspa, record, replace
 
 _T = TypeVar("_T")
 _What = tuple[Kind, tuple[str, ...]]

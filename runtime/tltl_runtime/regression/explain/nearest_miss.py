@@ -10,8 +10,7 @@ from tltl_runtime.regression.explain.stages import Subgoal, near_enough
 from tltl_runtime.stealth.capabilities.capabilities import given_params
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.number_text import number
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import label_text
+from tltlc.api import Fspa, label_text
 
 
 def approach(level: Level, fspa: Fspa, undone: Subgoal, accounts: Sequence[Account]) -> str:

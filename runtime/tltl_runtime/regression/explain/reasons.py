@@ -17,8 +17,7 @@ from tltl_runtime.stealth.capabilities.reach import reachable
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.number_text import between, counted, percent_exactly
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.api import Fspa, TltlError
 
 _OVERLAYS: Final = "overlays/"
 """The prefix of the names of overlays among the files of a level."""

@@ -6,11 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 from tltl_runtime.stealth.expert.goals import distance_signals
-from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.core.record import EMPTY, record
-from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import Expression, Param, Signal, nodes
-from tltlc.monitor.tables import tables
+from tltlc.api import EMPTY, Fspa, Implicant, expressions, monitors, record
 
 _REACHES: Final = "reaches "
 
@@ -46,7 +42,7 @@ _MEETS: Final = Subgoal(other="meets the spec")
 def target_of(fspa: Fspa, atom: int) -> str | None:
     """The entity that the player must approach for an atom to hold; None unless the atom depends on just that."""
     expression = fspa.atoms[atom].expression
-    names = {node.name for node in nodes(expression) if isinstance(node, Signal)}
+    names = {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.Signal)}
     if len(names) != 1:
         return None
     (name,) = names
@@ -60,7 +56,10 @@ def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | N
     None if the atom has no target or depends on parameters that are not in ``params``.
     """
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
-    if target is None or {node.name for node in nodes(expression) if isinstance(node, Param)} - params.keys():
+    if (
+        target is None
+        or {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.Param)} - params.keys()
+    ):
         return None
     near, far = 0.0, _FAR
     while far - near > _PRECISION:
@@ -70,18 +69,18 @@ def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | N
 
 
 def _holds(
-    fspa: Fspa, expression: Expression, distance: str, metres: float, params: Mapping[str, float] = EMPTY
+    fspa: Fspa, expression: expressions.Expression, distance: str, metres: float, params: Mapping[str, float] = EMPTY
 ) -> bool:
     values = {**{param.name: param.value for param in fspa.params}, **params}
     try:
-        return evaluate(expression, {distance: metres}, values) > 0.0
+        return expressions.evaluate(expression, {distance: metres}, values) > 0.0
     except (ArithmeticError, ValueError):
         return False
 
 
 def subgoal(fspa: Fspa, state: int) -> Subgoal:
     """Return what leads from a state towards acceptance."""
-    subgoals = [_subgoal(fspa, prime) for edge in tables(fspa).improving[state] for prime in edge.guard.primes]
+    subgoals = [_subgoal(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     distinct = list(dict.fromkeys(subgoal for subgoal in subgoals if subgoal is not None))
     if len(distinct) < 2:
         return distinct[0] if distinct else _MEETS

@@ -16,8 +16,7 @@ from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.play import JudgedCase
 from tltl_runtime.regression.verdict.verdict import Change, Judgement, Verdict
 from tltl_runtime.stealth.levels.place import shown_variant
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record
 
 
 @record

@@ -10,8 +10,7 @@ from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
-from tltlc.diagnostics.formats.github import workflow_command
-from tltlc.io.files import is_file
+from tltlc.api import fileio, workflow_command
 
 _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
@@ -44,7 +43,7 @@ def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
     for name in changed:
         parts = Path(name).parts
         for path in paths:
-            if path.parts[-len(parts) :] == parts and is_file(path):
+            if path.parts[-len(parts) :] == parts and fileio.is_file(path):
                 return path
     return suite.path
 

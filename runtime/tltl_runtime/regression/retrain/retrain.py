@@ -37,12 +37,7 @@ from tltl_runtime.training.run.run import (
     read_run,
 )
 from tltl_runtime.training.run.settings import read_settings
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import label_text
-from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import reason
-from tltlc.io.writing import remove_file, write_files
+from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"
 """The name of the folder, in the folder of a run, that contains the training of each case."""
@@ -132,14 +127,14 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
     with held(folder):
         if not (folder / RECORD).exists():
             for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
-                remove_file(path, WRITABLE)
+                fileio.remove_file(path, WRITABLE)
             return None
     # Windows refuses to move the folder before the lock file is closed.
     new_folder = _free_beside(suite, folder)
     try:
         folder.rename(new_folder)
     except OSError as error:
-        title = f"cannot move `{folder}` to `{new_folder}`: {reason(error)}"
+        title = f"cannot move `{folder}` to `{new_folder}`: {fileio.reason(error)}"
         raise TltlError([Diagnostic("TLT0005", title, help=WRITABLE)]) from None
     return new_folder
 
@@ -188,7 +183,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, on_episode: Callab
         episode=f"{place}/{EPISODE}" if recording else None,
     )
     files: dict[str, str | bytes] = {EPISODE: recording} if recording else {}
-    write_files(run.folder, {**files, _RESULT: kept_text(inputs, result)}, WRITABLE, over_inputs=True)
+    fileio.write_files(run.folder, {**files, _RESULT: kept_text(inputs, result)}, WRITABLE, over_inputs=True)
     return result
 
 

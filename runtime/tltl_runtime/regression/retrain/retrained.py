@@ -8,7 +8,7 @@ from typing import Final, Literal
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.support.number_text import between, duration, number, percent_exactly
-from tltlc.core.record import record
+from tltlc.api import record
 
 Outcome = Literal["learned", "feasible", "no_way"]
 

@@ -7,9 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final, TypeGuard
 
 from tltl_runtime.support.number_text import listed
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.toml_text import parse
+from tltlc.api import SourceFile, TltlError, fileio
 
 _MOST: Final = 3
 """The most keys of a file that are named.  Further keys are counted."""
@@ -25,7 +23,7 @@ def changed_keys(before: str, now: str) -> str:
     counted from 1.  The description is empty if a text is not TOML.
     """
     try:
-        old, new = (parse(SourceFile("", text), "TLT0801", "") for text in (before, now))
+        old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
     except TltlError:
         return ""
     return listed(list(_changes((), old, new)), _MOST) or "its layout"

@@ -19,16 +19,7 @@ from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
 from tltl_runtime.stealth.levels.place import overlays_of
-from tltlc.core.record import record
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Import
-from tltlc.io.files import MAX_ARTEFACT_BYTES, exists, is_file, read_source
-from tltlc.io.project import FILE_NAME, project_for
-from tltlc.io.spec_file import split
-from tltlc.io.toml_text import parse as parse_toml
-from tltlc.resolve.imports import standard_library
+from tltlc.api import SourceFile, TltlError, fileio, record, specs, syntax
 
 _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
 _ESCAPE: Final = re.compile(rb"\\([0-7]{3}|.)", re.DOTALL)
@@ -64,7 +55,9 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
     known = {path for paths in dependencies_of.values() for path in paths}
     unknown = tuple(name for name in dict.fromkeys(changed) if not _matches_any(name, known))
     # Do not suggest files that `changed` names already: the unknown name may be the old name of a renamed file.
-    candidates = {path for path in known if is_file(path) and not any(_matches_any(name, [path]) for name in changed)}
+    candidates = {
+        path for path in known if fileio.is_file(path) and not any(_matches_any(name, [path]) for name in changed)
+    }
     suggestions = ((name, _similar_name(name, candidates)) for name in unknown)
     return Selection(
         tuple(case for case in suite.cases if case.name in concerned),
@@ -83,7 +76,7 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
     files = [suite.path, suite.baseline, policy_file(case.policy)]
     files += _level_files(level_path(case.level), case.variant)
     if case.spec is not None:
-        files += _spec_files(Path(split(case.spec)[0]))
+        files += _spec_files(Path(fileio.split_spec_name(case.spec)[0]))
     return tuple(dict.fromkeys(form for path in files for form in (Path(normpath(path.absolute())), path.resolve())))
 
 
@@ -108,7 +101,7 @@ def _matches_any(name: str, paths: Iterable[Path]) -> bool:
 def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
     """Suggest a correction of a name; None for a name with a folder, which may be a deleted file listed by git."""
     given = Path(_unquoted(name))
-    if len(given.parts) > 1 or exists(given):
+    if len(given.parts) > 1 or fileio.exists(given):
         return None
     stems = sorted({path.stem for path in paths if given.suffix in ("", path.suffix)})
     close = get_close_matches(given.stem, stems, n=1, cutoff=0.7)
@@ -157,7 +150,7 @@ def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: 
     """The files of assets or overlays.  Unless ``sure``, a name may be something else: only existing files count."""
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]
-        if sure or any(map(is_file, paths)):
+        if sure or any(map(fileio.is_file, paths)):
             yield from _first(paths)
 
 
@@ -179,39 +172,39 @@ def _imports(spec: Path) -> Iterator[Path]:
         return
     folder = spec.absolute().parent
     # The project file sets where imports are searched.
-    yield from _first(place / FILE_NAME for place in (folder, *folder.parents))
+    yield from _first(place / fileio.PROJECT_FILE for place in (folder, *folder.parents))
     try:
-        libraries = project_for(str(spec)).libraries
+        libraries = fileio.project_for(str(spec)).libraries
     except TltlError:
         libraries = ()
-    for declaration in parse(text)[0].declarations:
-        if not isinstance(declaration, Import):
+    for declaration in syntax.parse(text)[0].declarations:
+        if not isinstance(declaration, syntax.Import):
             continue
         if declaration.is_path:
             yield spec.parent / declaration.target
         else:
             name = declaration.target.replace(".", "/") + ".tltl"
-            yield from _first(folder / name for folder in (spec.parent, *libraries, standard_library()))
+            yield from _first(folder / name for folder in (spec.parent, *libraries, specs.standard_library()))
 
 
 def _first(paths: Iterable[Path]) -> Iterator[Path]:
     """The paths up to the first existing file.  The paths before it would take precedence."""
     for path in paths:
         yield path
-        if is_file(path):
+        if fileio.is_file(path):
             return
 
 
 def _text(path: Path) -> SourceFile | None:
     try:
-        return read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
+        return fileio.read_source(path, max_bytes=fileio.MAX_ARTEFACT_BYTES)
     except TltlError:
         return None
 
 
 def _table(text: SourceFile | None) -> dict[str, Any] | None:
     try:
-        return parse_toml(text, "TLT0801", "") if text else {}
+        return fileio.parse_toml(text, "TLT0801", "") if text else {}
     except TltlError:
         return None
 

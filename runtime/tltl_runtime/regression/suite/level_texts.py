@@ -12,16 +12,13 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.levels.place import overlays_of
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.archive import Archive, unpack
-from tltlc.io.files import is_file, read_source
-from tltlc.io.temporary import temporary_folder
+from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]
 """Names of files, as in ``files`` of a :class:`~tltl_runtime.stealth.level.Level`, each with a text or a hash."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
-_BASELINE: Final = Archive("the baseline", damaged="record it anew", elsewhere="record it anew on this system")
+_BASELINE: Final = fileio.Archive("the baseline", damaged="record it anew", elsewhere="record it anew on this system")
 _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
@@ -43,7 +40,7 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
 def text_now(name_or_path: str, variant: str, name: str) -> str | None:
     """The current text of a file of a level; None if it cannot be read."""
     path = level_path(name_or_path)
-    return _text(next(filter(is_file, _places(path, variant, name)), path))
+    return _text(next(filter(fileio.is_file, _places(path, variant, name)), path))
 
 
 def designed(reference: Reference) -> Level | None:
@@ -58,9 +55,9 @@ def designed(reference: Reference) -> Level | None:
     # Remove the level's spec: its file is not among the texts, and a map does not need it.
     texts[name] = _SPEC.sub("", texts[name], count=1)
     files = [(file, text.encode("utf-8", "surrogatepass")) for file, text in texts.items()]
-    with temporary_folder() as folder:
+    with fileio.temporary_folder() as folder:
         try:
-            unpack(folder, files, _BASELINE)
+            fileio.unpack(folder, files, _BASELINE)
             return load_level(str(folder / name), played.variant)
         except TltlError:
             return None
@@ -78,6 +75,6 @@ def _places(level: Path, variant: str, name: str) -> Iterator[Path]:
 
 def _text(path: Path) -> str | None:
     try:
-        return read_source(path).text.replace("\r\n", "\n")
+        return fileio.read_source(path).text.replace("\r\n", "\n")
     except TltlError:
         return None

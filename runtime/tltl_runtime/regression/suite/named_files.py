@@ -12,17 +12,14 @@ from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
-from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.io.files import exists, is_dir, may_be_file, read_bytes
-from tltlc.io.limits import TOML
+from tltlc.api import Diagnostic, Label, TltlError, fileio, replace
 
 _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
 
 
 def policy_file(path: Path) -> Path:
     """The file of a case's policy: ``path`` itself, or the policy in the folder of a training."""
-    if not is_dir(path):
+    if not fileio.is_dir(path):
         return path
     from tltl_runtime.training.run.run import POLICY
 
@@ -35,7 +32,7 @@ def policy_faults(path: Path, label: Label) -> list[Diagnostic]:
     TLT0872 if the folder contains no policy; otherwise the diagnostics of ``read_policy``.
     """
     file = policy_file(path)
-    if file != path and not exists(file):
+    if file != path and not fileio.exists(file):
         return _at(label, [_no_policy(path)])
     try:
         read_policy(file)
@@ -71,10 +68,10 @@ def level_like(name: str, folder: Path) -> str | None:
 
 def _is_level(path: Path) -> bool:
     """Whether a file looks like a level.  Pipes and devices are not read."""
-    if not may_be_file(path):
+    if not fileio.may_be_file(path):
         return False
     try:
-        return b"[bounds]" in read_bytes(path, str(path), TOML.size)
+        return b"[bounds]" in fileio.read_bytes(path, str(path), fileio.limits.TOML.size)
     except TltlError:
         return False
 
@@ -97,7 +94,7 @@ def _at(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
 def _no_policy(folder: Path) -> Diagnostic:
     from tltl_runtime.training.run.run import RUN, named_trainings, resume_command
 
-    if exists(folder / RUN):
+    if fileio.exists(folder / RUN):
         help_ = f"`{resume_command(folder)}` goes on until it has one; one that is going on has it soon"
         return Diagnostic("TLT0872", f"the training in `{folder}` has no policy yet", help=help_)
     help_ = named_trainings(folder) or "name a .safetensors file, or the folder that `tltlc train` named when it ended"

@@ -10,9 +10,7 @@ from typing import Any, TypeVar
 
 from tltl_runtime.support.record_json import from_json, to_json
 from tltl_runtime.support.source_hash import sources_hash
-from tltlc.io.files import may_be_file
-from tltlc.io.json_text import load
-from tltlc.io.limits import REPORT
+from tltlc.api import fileio
 
 T = TypeVar("T")
 
@@ -32,10 +30,10 @@ def read_kept(kind: type[T], path: Path, inputs: str) -> T | None:
 
     None if the file does not exist, cannot be read, or has another hash: compute the content again.
     """
-    if not may_be_file(path):
+    if not fileio.may_be_file(path):
         return None
     try:
-        document = load(path, REPORT)
+        document = fileio.load_json(path, fileio.limits.REPORT)
         return from_json(kind, document["content"], "content") if document["identity"] == inputs else None
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None

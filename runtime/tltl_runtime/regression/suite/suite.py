@@ -15,13 +15,7 @@ from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.levels.place import level_place, overlays_of, with_overlays
 from tltl_runtime.stealth.levels.table import REQUIRED, Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
-from tltlc.core.record import record
-from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.io.files import exists, is_file, read_source
-from tltlc.io.limits import SUITE
-from tltlc.io.resources import bounded
-from tltlc.io.spec_file import split
+from tltlc.api import Diagnostic, Label, Span, TltlError, fileio, record
 
 SHIPPED: Final = Path(__file__).with_name("shipped") / "suite.toml"
 """The suite that comes with the package: three levels, each in three variants."""
@@ -99,7 +93,7 @@ def baseline_path(suite: Path) -> Path:
     return suite.with_name(f"{suite.stem}.baseline.json")
 
 
-@bounded()
+@fileio.bounded()
 def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     """Read a suite from a file.  Paths in the file are relative to it.
 
@@ -112,7 +106,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
             TLT0853, no policy comes with the level; TLT0006, too many cases; and the errors of policies
             and specs from :mod:`~tltl_runtime.regression.suite.named_files`.
     """
-    source = read_source(path, shown(path))
+    source = fileio.read_source(path, shown(path))
     log: list[Diagnostic] = []
     table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
     if "case" not in table.entries:
@@ -127,8 +121,8 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     episodes = _episodes(table, MOST_EPISODES)
     thresholds = _thresholds(table, Thresholds())
     case_tables = table.tables("case")
-    if len(case_tables) > (SUITE.values or 0):
-        title, help_ = f"the suite has more than {SUITE.values:,} cases", "make several suites of it"
+    if len(case_tables) > (fileio.limits.SUITE.values or 0):
+        title, help_ = f"the suite has more than {fileio.limits.SUITE.values:,} cases", "make several suites of it"
         raise TltlError([Diagnostic("TLT0006", title, (table.label,), help_)])
     known: dict[str, tuple[str, ...]] = {}
     cases = []
@@ -227,7 +221,7 @@ def _level(table: Table, folder: Path) -> tuple[str, str]:
     if not level:
         return "", ""
     if level.endswith(".toml"):
-        if not is_file(folder / level):
+        if not fileio.is_file(folder / level):
             help_ = level_like(level, folder) or "paths are relative to the suite"
             table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.place("level"),), help_))
         return str(folder / level), Path(normpath(level)).as_posix()
@@ -236,7 +230,7 @@ def _level(table: Table, folder: Path) -> tuple[str, str]:
     except TltlError as error:
         (diagnostic,) = error.diagnostics
         name, variant = level_place(level)
-        is_there = name in level_names() or is_file(folder / name)
+        is_there = name in level_names() or fileio.is_file(folder / name)
         advice = diagnostic.help
         if variant and is_there:
             advice = _apart(name, variant)
@@ -261,7 +255,7 @@ def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
     overlays = []
     for name in names:
         path = folder / name
-        if name.endswith(".toml") and not is_file(path):
+        if name.endswith(".toml") and not fileio.is_file(path):
             table.log.append(_missing("overlay", name, table.place("overlay")))
         overlays.append(str(path) if name.endswith(".toml") else name)
     return tuple(overlays)
@@ -271,11 +265,11 @@ def _spec(table: Table, folder: Path) -> str | None:
     text = _text(table, "spec", "")
     if not text:
         return None
-    file, name = split(text)
-    if not is_file(folder / file):
+    file, name = fileio.split_spec_name(text)
+    if not fileio.is_file(folder / file):
         table.log.append(_missing("spec", file, table.place("spec")))
     spec = f"{folder / file}:{name}" if name else str(folder / file)
-    if is_file(folder / file):
+    if fileio.is_file(folder / file):
         table.log += spec_faults(spec, table.place("spec"))
     return spec
 
@@ -293,7 +287,7 @@ def _policy(table: Table, folder: Path, level: str) -> Path | None:
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
         return shipped
     path = folder / named
-    if not exists(path):
+    if not fileio.exists(path):
         known = (*shipped_policies(), *sorted(file.name for file in folder.glob(f"*{SUFFIX}")))
         table.log.append(_missing("policy", named, table.place("policy"), known))
     else:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, Literal
 
 from tltl_runtime.evaluation.statistics import Spread, wilson
-from tltlc.core.record import record
+from tltlc.api import record
 
 Model = Literal["expert", "imitation", "ours"]
 

@@ -23,8 +23,7 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.training.run.versions import versions
-from tltlc.core.record import record
-from tltlc.io.writing import write_file
+from tltlc.api import fileio, record
 
 EPISODES: Final = 100
 SEED: Final = 25_000
@@ -65,7 +64,7 @@ def measured(folder: Path, model: Model, level: str, variant: str, policy: Path 
     if (cached := read_kept(tuple[Went, ...], path, inputs)) is not None:
         return cached
     episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
-    write_file(path, kept_text(inputs, episodes), over_inputs=True)
+    fileio.write_file(path, kept_text(inputs, episodes), over_inputs=True)
     return episodes
 
 

@@ -19,7 +19,7 @@ from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.record import ended_as
 from tltl_runtime.training.run.run import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
 from tltl_runtime.training.run.settings import read_settings
-from tltlc.core.record import record, replace
+from tltlc.api import record, replace
 
 _MINUTES: Final = 60.0
 

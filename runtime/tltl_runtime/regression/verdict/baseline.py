@@ -15,18 +15,11 @@ from tltl_runtime.regression.verdict.verdict import FIGURES
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import EMPTY, record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_bytes
-from tltlc.io.json_text import loads
-from tltlc.io.limits import REPORT
-from tltlc.io.resources import bounded
-from tltlc.io.writing import write_file
+from tltlc.api import EMPTY, Diagnostic, Fspa, TltlError, fileio, record
 
 FORMAT: Final = "tltl-baseline"
 VERSION: Final = 3
-MAX_BYTES: Final = REPORT.size
+MAX_BYTES: Final = fileio.limits.REPORT.size
 
 _ROUNDING: Final = 1e-6
 """The rounding error by which a figure may leave its range."""
@@ -82,10 +75,12 @@ def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     episodes = document.removesuffix("}").replace('{"index":', '\n{"index":')
     texts = {text_sha256(text): text.split("\n") for reference in references for _, text in reference.texts}
     lines = ",\n".join(_lines(sha256, text_lines) for sha256, text_lines in texts.items())
-    write_file(path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output", over_inputs=True)
+    fileio.write_file(
+        path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output", over_inputs=True
+    )
 
 
-@bounded()
+@fileio.bounded()
 def read_baseline(path: Path) -> tuple[Reference, ...]:
     """Read a baseline from a file.
 
@@ -95,7 +90,7 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     """
     name = str(path)
     try:
-        document = loads(read_bytes(path, name, MAX_BYTES), REPORT)
+        document = fileio.parse_json(fileio.read_bytes(path, name, MAX_BYTES), fileio.limits.REPORT)
     except (ValueError, RecursionError) as error:
         raise _REFUSALS.unreadable(name, f"it is not JSON: {error!s:.60}") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:

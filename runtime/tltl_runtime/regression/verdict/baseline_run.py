@@ -18,10 +18,7 @@ from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.play import Ready, Told, episodes, ready
 from tltl_runtime.regression.verdict.verdict import Verdict, judge
 from tltl_runtime.support.source_hash import sources_hash
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.files import exists, is_file
-from tltlc.io.writing import remove_file, write_file
+from tltlc.api import TltlError, fileio, record, replace
 
 _ADVICE: Final = "name another place with --output"
 
@@ -83,7 +80,7 @@ def write_recorded(
         yield compared
     write_baseline(path, tuple(recorded))
     if partial:
-        remove_file(partial, _ADVICE)
+        fileio.remove_file(partial, _ADVICE)
 
 
 def kept_at(path: Path) -> Path | None:
@@ -91,7 +88,7 @@ def kept_at(path: Path) -> Path | None:
 
     None if ``path`` is a device or a pipe.
     """
-    if exists(path) and not is_file(path):
+    if fileio.exists(path) and not fileio.is_file(path):
         return None
     return Path(f"{os.path.realpath(path)}.partial")
 
@@ -161,4 +158,4 @@ def _played(prepared: Ready, pool: Pool, on_episode: Told) -> Reference:
 
 def _keep(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:
     if path:
-        write_file(path, kept_text(inputs, references), _ADVICE, over_inputs=True)
+        fileio.write_file(path, kept_text(inputs, references), _ADVICE, over_inputs=True)

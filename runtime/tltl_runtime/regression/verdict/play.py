@@ -24,10 +24,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_and_changes, load_level
 from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.training.run.versions import versions
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_bytes
-from tltlc.io.spec_file import split
+from tltlc.api import Diagnostic, TltlError, fileio, record
 
 Told = Callable[[Case, int, Account], None]
 """A callback for each played episode: the case, the number of episodes so far, and the last account."""
@@ -77,7 +74,7 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
         TltlError: policy, level, variant or spec cannot be loaded or do not fit together.
     """
     path = policy_file(case.policy)
-    data = read_bytes(path, str(path), MAX_BYTES)
+    data = fileio.read_bytes(path, str(path), MAX_BYTES)
     policy = from_bytes(data, str(path))
     setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
     level, changes = level_and_changes(setup.level, setup.variant)
@@ -171,7 +168,7 @@ def _outdated(case: Case, setup: Setup, level: Level) -> str | None:
     Raises:
         TltlError: the level's spec cannot be read.
     """
-    name = split(level.spec)[1]
+    name = fileio.split_spec_name(level.spec)[1]
     if case.spec is not None or name != setup.fspa.name:
         return None
     now = read_spec(level.spec)[0]

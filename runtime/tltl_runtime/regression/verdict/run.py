@@ -19,10 +19,7 @@ from tltl_runtime.stealth.recordings.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltl_runtime.support.folder_lock import held
 from tltl_runtime.support.record_json import to_json
-from tltlc.automaton.text import label_text
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.writing import remove_file, write_files
+from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
 
 CASES: Final = "cases"
 """The name of the folder, in the folder of a run, that contains a folder for each case."""
@@ -132,7 +129,7 @@ def regress(
 def _forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
     """Remove the cached results of all cases, so that a stopped ``fresh`` run continues with fresh results only."""
     for case in cases:
-        remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
+        fileio.remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
@@ -220,7 +217,7 @@ def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
     named = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))
     recordings = {name: by_index[index] for index, name in named.items()}
-    write_files(folder, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE, over_inputs=True)
+    fileio.write_files(folder, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE, over_inputs=True)
     for path in folder.glob(f"*{SUFFIX}"):
         # Remove recordings of earlier runs, which may be of another level.
         if path.name not in recordings:

@@ -32,7 +32,7 @@ from typing import Final, Literal
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
 from tltl_runtime.regression.verdict.confidence import mean_p_value, rate_interval
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltlc.core.record import record
+from tltlc.api import record
 
 Verdict = Literal["pass", "review", "fail"]
 

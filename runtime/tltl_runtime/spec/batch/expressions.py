@@ -19,7 +19,7 @@ import torch
 from torch import Tensor
 
 from tltl_runtime.spec.batch.writer import Writer
-from tltlc.expression.tree import Expression
+from tltlc.api import expressions
 
 
 class Program:
@@ -30,7 +30,7 @@ class Program:
 
     def __init__(
         self,
-        expressions: Sequence[Expression],
+        expressions: Sequence[expressions.Expression],
         signals: Sequence[str],
         params: Mapping[str, float],
         device: torch.device,

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from tltl_runtime.spec.batch.samples import check_exclusive
-from tltlc.automaton.fspa import Fspa, Implicant
+from tltlc.api import Fspa, Implicant
 
 Primes = tuple[Implicant, ...]
 

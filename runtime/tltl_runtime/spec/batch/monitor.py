@@ -13,9 +13,7 @@ from tltl_runtime.spec.batch.guards import PrimeSets, Transitions
 from tltl_runtime.spec.batch.reward_modes import BatchTransition, reward_mode
 from tltl_runtime.spec.batch.rewards import VERDICTS, Outcomes
 from tltl_runtime.spec.batch.samples import BatchSamples
-from tltlc.automaton.fspa import Fspa
-from tltlc.monitor import RewardOptions
-from tltlc.monitor.arguments import automaton, reward_options
+from tltlc.api import Fspa, RewardOptions, monitors
 
 _VIOLATED = VERDICTS.index("violated")
 
@@ -115,7 +113,7 @@ class BatchMonitor:
         dtype: torch.dtype = torch.float64,
         checked: bool = True,
     ) -> None:
-        self.fspa, options = automaton(fspa), reward_options(reward)
+        self.fspa, options = monitors.automaton_argument(fspa), monitors.reward_options(reward)
         self.count, self.device, self.dtype = count, torch.device(device), dtype
         self._checked = checked
         if count < 1:

@@ -13,9 +13,7 @@ import torch
 from torch import Tensor
 
 from tltl_runtime.spec.batch.guards import PrimeSets
-from tltlc.automaton.fspa import Fspa
-from tltlc.monitor.reward import RewardOptions, ends_episode
-from tltlc.monitor.tables import tables
+from tltlc.api import Fspa, RewardOptions, monitors
 
 VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 """The verdicts, in the order of their indices."""
@@ -26,7 +24,7 @@ class Outcomes:
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
         self._options, self._limit = options, fspa.limit_steps
-        scalar = tables(fspa)
+        scalar = monitors.tables(fspa)
         states, edges = fspa.states, fspa.edges
         self._by_share = fspa.judge == "limit" and options.termination == "entry"
 
@@ -34,7 +32,9 @@ class Outcomes:
             return torch.tensor(values, dtype=dtype, device=device)
 
         self._accepting = torch.tensor([states[e.target].accepting for e in edges], device=device)
-        self._ends = torch.tensor([ends_episode(scalar, e.source, e.target, options) for e in edges], device=device)
+        self._ends = torch.tensor(
+            [monitors.ends_episode(scalar, e.source, e.target, options) for e in edges], device=device
+        )
         verdicts = [states[e.target].verdict for e in edges]
         self._violated = numbers([float(verdict == "violated") for verdict in verdicts])
         self._base = numbers([scalar.base_progress[e.target] for e in edges])

@@ -10,10 +10,7 @@ from torch import Tensor
 
 from tltl_runtime.spec.batch.expressions import Program
 from tltl_runtime.spec.batch.formats import fits, narrowed
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.expression.tree import Const, nodes
-from tltlc.monitor.samples import ROUNDING, WAYS_OUT, MonitorError, Samples, listed, param_values, shown
+from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors
 
 _NAMED = 5
 """An error message names at most this many environments."""
@@ -43,7 +40,7 @@ class BatchSamples:
         self._checked = checked
         self.names = tuple(signal.name for signal in fspa.signals)
         self.clamped: dict[str, int] = {}
-        values = param_values(fspa.params, params or {})
+        values = monitors.param_values(fspa.params, params or {})
         self._given = dtype
         self._dtype = dtype = dtype if fits(_numbers(fspa, values), dtype) else torch.float64
         self._program = Program([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
@@ -101,7 +98,7 @@ class BatchSamples:
             return contiguous
         missing = [name for name in self.names if name not in signals]
         if missing:
-            raise _error("TLT0611", f"no value for {listed(missing)}")
+            raise _error("TLT0611", f"no value for {monitors.listed(missing)}")
         if not self.names:
             return torch.empty((0, self._count), dtype=self._dtype, device=self._device)
         rows = [torch.as_tensor(signals[name], dtype=self._dtype, device=self._device) for name in self.names]
@@ -136,7 +133,7 @@ class BatchSamples:
         wrong = (column != 0.0) & (column != 1.0)
         if bool(wrong.any()):
             indices = _indices(wrong)
-            value = shown(float(column[indices[0]]))
+            value = monitors.shown(float(column[indices[0]]))
             raise _error(
                 "TLT0612", f"{_environments(indices)}: the signal `{self.names[row]}` is {value}, not true or false"
             )
@@ -147,7 +144,7 @@ class BatchSamples:
             wrong = unusable[row] if failed is None else unusable[row] | failed
             if bool(wrong.any()):
                 raise self._atom_error(row, _indices(wrong), columns)
-        for row, outside in enumerate(((raw - values).abs() > ROUNDING).sum(1).tolist()):
+        for row, outside in enumerate(((raw - values).abs() > monitors.ROUNDING).sum(1).tolist()):
             if outside:
                 name = self._fspa.atoms[row].name
                 self.clamped[name] = self.clamped.get(name, 0) + int(outside)
@@ -156,7 +153,7 @@ class BatchSamples:
         """Return the error of an atom; the scalar monitor finds the reason at the sample of the first environment."""
         sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
         try:
-            Samples(self._fspa, self._params, []).atom_values(sample, _environments(indices))
+            monitors.Samples(self._fspa, self._params, []).atom_values(sample, _environments(indices))
         except MonitorError as error:
             return error
         title = f"the atom `{self._fspa.atoms[row].name}` is too large to compute"
@@ -166,7 +163,7 @@ class BatchSamples:
 def _numbers(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
     """Yield all numbers that the values of the atoms are computed from, except those of the samples."""
     for atom in fspa.atoms:
-        yield from (node.value for node in nodes(atom.expression) if isinstance(node, Const))
+        yield from (node.value for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Const))
     for signal in fspa.signals:
         yield from (end for end in (signal.low, signal.high) if end is not None)
     yield from params.values()
@@ -184,7 +181,8 @@ def check_exclusive(fspa: Fspa, truth: Tensor) -> None:
             indices = _indices(wrong)
             names = [fspa.atoms[atom].name for atom in group]
             holding = [name for name, holds in zip(names, held[:, indices[0]].tolist(), strict=True) if holds]
-            text = f"{_environments(indices)}: {listed(holding)} hold at once, against `exclusive {', '.join(names)}`"
+            both = monitors.listed(holding)
+            text = f"{_environments(indices)}: {both} hold at once, against `exclusive {', '.join(names)}`"
             raise _error("TLT0614", text)
 
 
@@ -202,4 +200,4 @@ def _environments(indices: Sequence[int]) -> str:
 
 
 def _error(code: str, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, text, help=WAYS_OUT[code])])
+    return MonitorError([Diagnostic(code, text, help=monitors.WAYS_OUT[code])])

@@ -7,9 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from operator import add, ge, gt, le, lt, mul
 from typing import Final, cast
 
-from tltlc.core.record import record
-from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS, evaluate
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.api import expressions, record
 
 _COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
 _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
@@ -42,15 +40,15 @@ class Writer:
         """Return the name of a column filled with a constant."""
         return self._line(f"columns.new_full((columns.shape[1],), {self._held(constant)}.item())")
 
-    def number(self, node: Expression) -> Term:
+    def number(self, node: expressions.Expression) -> Term:
         """Return the term of an expression."""
-        if isinstance(node, Const):
+        if isinstance(node, expressions.Const):
             return self._constant(node.value)
-        if isinstance(node, Param):
+        if isinstance(node, expressions.Param):
             return self._constant(self._params[node.name])
-        if isinstance(node, Signal):
+        if isinstance(node, expressions.Signal):
             return Term(self._line(f"columns[{self._columns[node.name]}]"))
-        if isinstance(node, When):
+        if isinstance(node, expressions.When):
             return self._when(node)
         args = [self.number(argument) for argument in node.args]
         fails = self._any_of([term.fails for term in args])
@@ -58,7 +56,7 @@ class Writer:
             return self._folded(node, args, fails)
         return self._operation(node, args, fails)
 
-    def _operation(self, node: Op, args: list[Term], fails: str | None) -> Term:
+    def _operation(self, node: expressions.Op, args: list[Term], fails: str | None) -> Term:
         if node.op in ("+", "*"):
             compute = add if node.op == "+" else mul
             total = args[0]
@@ -99,9 +97,13 @@ class Writer:
             fails = self._any_of([fails, self._line(f"isinf({result}) & isfinite({inner})")])
         return Term(result, None, fails)
 
-    def _power(self, node: Op, args: list[Term], fails: str | None) -> Term:
+    def _power(self, node: expressions.Op, args: list[Term], fails: str | None) -> Term:
         base, exponent = args
-        factors = MULTIPLIED_EXPONENTS.get(node.args[1].value, 0) if isinstance(node.args[1], Const) else 0
+        factors = (
+            expressions.MULTIPLIED_EXPONENTS.get(node.args[1].value, 0)
+            if isinstance(node.args[1], expressions.Const)
+            else 0
+        )
         if factors:
             square = self._line(f"{base.name} * {base.name}")
             return Term(square if factors == 2 else self._line(f"{square} * {base.name}"), None, fails)
@@ -120,7 +122,7 @@ class Writer:
         is_beyond = self._line(f"{second_name} {'<' if op == 'min' else '>'} {first_name}")
         return Term(self._line(f"where({is_beyond}, {second_name}, {first_name})"))
 
-    def _when(self, node: When) -> Term:
+    def _when(self, node: expressions.When) -> Term:
         result = self.number(node.otherwise)
         for condition, value in reversed(node.cases):
             test = self._condition(condition)
@@ -135,8 +137,8 @@ class Writer:
             result = Term(self._line(f"where({taken}, {values})"), None, fails)
         return result
 
-    def _condition(self, node: Expression | Condition) -> Term:
-        assert isinstance(node, Condition), "and, or, not and cases take conditions"
+    def _condition(self, node: expressions.Expression | expressions.Condition) -> Term:
+        assert isinstance(node, expressions.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
             inner = self._condition(node.args[0])
             if inner.constant is not None:
@@ -144,13 +146,13 @@ class Writer:
             return Term(self._line(f"~{inner.name}"), None, inner.fails)
         if node.op in ("and", "or"):
             return self._connective(node)
-        left, right = (self.number(cast("Expression", side)) for side in node.args)
+        left, right = (self.number(cast("expressions.Expression", side)) for side in node.args)
         fails = self._any_of([left.fails, right.fails])
         if left.constant is not None and right.constant is not None:
             return Term("", float(_COMPARISONS[node.op](left.constant, right.constant)), fails)
         return Term(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
 
-    def _connective(self, node: Condition) -> Term:
+    def _connective(self, node: expressions.Condition) -> Term:
         """Return ``and`` or ``or``, built from the last part to the first.
 
         A part after one that decides the result cannot fail: its failure counts only where the
@@ -166,18 +168,22 @@ class Writer:
             result = Term(self._line(f"{truth} {sign} {rest}"), None, fails)
         return result
 
-    def _folded(self, node: Op, args: list[Term], fails: str | None) -> Term:
+    def _folded(self, node: expressions.Op, args: list[Term], fails: str | None) -> Term:
         """Return the value of an operation on constants."""
         # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
         # stay a power, so it is not passed on as a literal.
-        parts = tuple(Const(term.constant if term.constant is not None else math.nan) for term in args)
-        if node.op == "^" and not isinstance(node.args[1], Const) and parts[1].value in MULTIPLIED_EXPONENTS:
+        parts = tuple(expressions.Const(term.constant if term.constant is not None else math.nan) for term in args)
+        if (
+            node.op == "^"
+            and not isinstance(node.args[1], expressions.Const)
+            and parts[1].value in expressions.MULTIPLIED_EXPONENTS
+        ):
             try:
                 return Term(*self._literal(math.pow(parts[0].value, parts[1].value)), fails)
             except _FAILURES:
                 return Term(*self._literal(math.nan), self._everywhere())
         try:
-            return Term(*self._literal(evaluate(Op(node.op, parts), {}, {})), fails)
+            return Term(*self._literal(expressions.evaluate(expressions.Op(node.op, parts), {}, {})), fails)
         except _FAILURES:
             return Term(*self._literal(math.nan), self._everywhere())
 

@@ -13,11 +13,7 @@ from tltl_runtime.stealth.levels.made_for import comes_with_the_package
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor.samples import param_values, range_text
-from tltlc.resolve.spec import Signal
-from tltlc.resolve.units import TYPES
+from tltlc.api import Diagnostic, Fspa, Signal, TltlError, monitors, specs
 
 _KIND_OF: Final = {"active": "switch", "open": "barrier"}
 """The signals that only one kind of entity has, with that kind."""
@@ -48,7 +44,7 @@ def check_supply(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnosti
         help_ = f"write `clock {DECISION:g} s` in the specification"
         diagnostics.append(Diagnostic("TLT0617", title, places.clock(), help_))
     try:
-        param_values(fspa.params, given_params(level, fspa))
+        monitors.param_values(fspa.params, given_params(level, fspa))
     except TltlError as error:
         diagnostics += error.diagnostics
     return diagnostics
@@ -88,7 +84,7 @@ def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnosti
 def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
     """Report differences between a signal as the spec declares it and as the level supplies it."""
     bool_wanted = signal.type == "bool" and offer.type != "bool"
-    if bool_wanted or TYPES[signal.type] != TYPES[offer.type]:
+    if bool_wanted or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
         title = (
             f"`{signal.name}` is {_with_article(signal.type)} in the spec, "
             f"and the level `{level.name}` gives {_with_article(offer.type)}"
@@ -100,8 +96,8 @@ def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) ->
     least, most = _ends(offer.low, offer.high)
     if least < low or most > high:
         title = (
-            f"`{signal.name}` is in {range_text(signal.low, signal.high)} in the spec, "
-            f"and in {range_text(*_rounded(offer))} in the level `{level.name}`"
+            f"`{signal.name}` is in {monitors.range_text(signal.low, signal.high)} in the spec, "
+            f"and in {monitors.range_text(*_rounded(offer))} in the level `{level.name}`"
         )
         help_ = "widen its range: a value outside counts as the nearest one inside"
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")

@@ -13,14 +13,7 @@ from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import offers
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Diagnostic, Severity, TltlError
-from tltlc.expression.tree import Expression, Param, Signal
-from tltlc.io.limits import WORK
-from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
-from tltlc.resolve.range_proof.interval import Interval, UndefinedError
-from tltlc.resolve.range_proof.region import Region, Variable, bound
+from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
 
 _TALLER: Final = 0.25
 """The step, in metres, by which jumps are raised in search of the obstacle that is too high."""
@@ -77,7 +70,7 @@ def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
 def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
     """The indices of the atoms that cannot hold at any reachable place."""
     offered = offers(level)
-    box: dict[Variable, Interval] = {}
+    box: dict[ranges.Variable, ranges.Interval] = {}
     for signal in fspa.signals:
         offer = offered[signal.name]
         low, high = _ends(offer.low, offer.high)
@@ -85,27 +78,27 @@ def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
             low = max(low, reach.distances[signal.arguments[0]])
         # A sample outside the declared range is clamped to it.
         least, most = _ends(signal.low, signal.high)
-        box[Signal(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
+        box[expressions.Signal(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
     known_params = given_params(level, fspa)
     for param in fspa.params:
         value = known_params.get(param.name, param.value)
-        box[Param(param.name)] = (value, value)
+        box[expressions.Param(param.name)] = (value, value)
     return frozenset(index for index, atom in enumerate(fspa.atoms) if _highest(atom.expression, box) <= 0.0)
 
 
-def _ends(low: float | None, high: float | None) -> Interval:
+def _ends(low: float | None, high: float | None) -> ranges.Interval:
     return -inf if low is None else low, inf if high is None else high
 
 
-def _highest(expression: Expression, box: Mapping[Variable, Interval]) -> float:
+def _highest(expression: expressions.Expression, box: Mapping[ranges.Variable, ranges.Interval]) -> float:
     """An upper bound of an expression in a box."""
     highest = -inf
     try:
-        for case in cases(expression):
-            region = Region(box, {}).where(case.constraints)
+        for case in ranges.cases(expression):
+            region = ranges.Region(box, {}).where(case.constraints)
             if region is not None:
-                highest = max(highest, bound(case.value, region)[1])
-    except (TooManyCasesError, UndefinedError):
+                highest = max(highest, ranges.bound(case.value, region)[1])
+    except (ranges.TooManyCasesError, ranges.UndefinedError):
         return inf
     return highest
 
@@ -137,7 +130,7 @@ class _Ways:
         self._level, self._reach = level, reach
         self._higher: dict[float, Reach] = {highest_lift(PlayerKind()): reach}
         self._without: dict[str, Reach] = {}
-        self._budget = Budget(WORK["cells of reachable space"])
+        self._budget = Budget(fileio.limits.WORK["cells of reachable space"])
 
     def end(self, entity: str) -> str:
         """Describe what blocks the way to an unreachable entity, as far as the budget allows."""

@@ -39,9 +39,7 @@ from tltl_runtime.stealth.capabilities.space import (
 )
 from tltl_runtime.stealth.level import Box, Level, Mover, fixed_places
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.limits import WORK
+from tltlc.api import Diagnostic, TltlError, fileio, record
 
 NEAR: Final = 1.0
 """An entity counts as reached within this distance of its position, in metres."""
@@ -98,7 +96,7 @@ def reachable(
     if budget is not None:
         return _reachable(level, lift, without, budget)
     try:
-        return _reachable(level, lift, without, Budget(WORK["cells of reachable space"]))
+        return _reachable(level, lift, without, Budget(fileio.limits.WORK["cells of reachable space"]))
     except SpaceBudgetError:
         title = f"it takes too long to find out what can be reached in `{level.name}:{level.variant}`"
         help_ = "make the level smaller, or leave out barriers whose switches lie behind other barriers"

@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Signal, nodes
-from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Call, ClockDecl, Declaration, EntityDecl, Expr, Name, SignalDecl, SpecDecl
-from tltlc.grammar.walk import expressions, parts
-from tltlc.resolve.spec import Spec
+from tltlc.api import Label, Span, Spec, expressions, syntax
 
 
 class SpecPlaces:
@@ -21,11 +15,11 @@ class SpecPlaces:
 
     def __init__(self, spec: Spec | None) -> None:
         self._spec = spec
-        self._all: Sequence[Declaration] = parse(spec.source)[0].declarations if spec else ()
+        self._all: Sequence[syntax.Declaration] = syntax.parse(spec.source)[0].declarations if spec else ()
         self._own = [
             declaration
             for declaration in self._all
-            if isinstance(declaration, SpecDecl) and spec and declaration.name == spec.name
+            if isinstance(declaration, syntax.SpecDecl) and spec and declaration.name == spec.name
         ]
 
     def entity(self, name: str) -> tuple[Label, ...]:
@@ -34,7 +28,10 @@ class SpecPlaces:
         If nothing uses the entity, return its declaration.
         """
         declared = (
-            entity for declaration in self._all if isinstance(declaration, EntityDecl) for entity in declaration.names
+            entity
+            for declaration in self._all
+            if isinstance(declaration, syntax.EntityDecl)
+            for entity in declaration.names
         )
         return self._label(
             _use(self._own, name)
@@ -63,12 +60,14 @@ class SpecPlaces:
 
     def clock(self) -> tuple[Label, ...]:
         """Return the declaration of the clock."""
-        return self._label(_first(declaration.span for declaration in self._all if isinstance(declaration, ClockDecl)))
+        return self._label(
+            _first(declaration.span for declaration in self._all if isinstance(declaration, syntax.ClockDecl))
+        )
 
     def _atoms_of(self, signal: str) -> list[str]:
         """The atoms that are computed from a signal."""
         atoms = self._spec.atoms if self._spec else ()
-        return [atom.base for atom in atoms if Signal(signal) in nodes(atom.expression)]
+        return [atom.base for atom in atoms if expressions.Signal(signal) in expressions.nodes(atom.expression)]
 
     def _base(self, signal: str) -> str:
         """The name of a signal without its arguments."""
@@ -80,7 +79,7 @@ class SpecPlaces:
         return _first(
             declaration.name_span
             for declaration in self._all
-            if isinstance(declaration, SignalDecl) and declaration.name == base
+            if isinstance(declaration, syntax.SignalDecl) and declaration.name == base
         )
 
     def _written(self, text: str) -> Span | None:
@@ -94,12 +93,12 @@ class SpecPlaces:
         return (Label(self._spec.source, span or self._spec.name_span),) if self._spec else ()
 
 
-def _use(declarations: Iterable[Declaration], name: str) -> Span | None:
+def _use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
     """The first name or call of that name in the expressions of some declarations."""
     for part in _parts(declarations):
-        if isinstance(part, Call) and part.name == name:
+        if isinstance(part, syntax.Call) and part.name == name:
             return part.name_span
-        if isinstance(part, Name) and part.name == name:
+        if isinstance(part, syntax.Name) and part.name == name:
             return part.span
     return None
 
@@ -108,7 +107,7 @@ def _first(spans: Iterable[Span]) -> Span | None:
     return next(iter(spans), None)
 
 
-def _parts(declarations: Iterable[Declaration]) -> Iterator[Expr]:
+def _parts(declarations: Iterable[syntax.Declaration]) -> Iterator[syntax.Expr]:
     for declaration in declarations:
-        for expression in expressions(declaration):
-            yield from parts(expression)
+        for expression in syntax.expressions(declaration):
+            yield from syntax.parts(expression)

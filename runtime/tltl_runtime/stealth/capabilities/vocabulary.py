@@ -6,15 +6,14 @@ from math import dist, pi
 
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.signals import AXES, level_signals
-from tltlc.core.record import record
-from tltlc.resolve.spec import ValueType
+from tltlc.api import record, specs
 
 
 @record
 class Offer:
     """A signal of a level: its type, and its range in SI units; None is an open end."""
 
-    type: ValueType
+    type: specs.ValueType
     low: float | None
     high: float | None
 

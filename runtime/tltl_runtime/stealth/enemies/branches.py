@@ -10,7 +10,7 @@ from math import cos, hypot, pi, sin, sqrt
 from typing import TYPE_CHECKING, Final
 
 from tltl_runtime.stealth.enemies.behaviour import Node, action, condition, selector, sequence
-from tltlc.core.record import record
+from tltlc.api import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.enemies.enemy import Guard

@@ -18,7 +18,7 @@ from tltl_runtime.stealth.enemies.grid import Floor, Grid, Place, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, blocked, corners, distance_to_segment
 from tltl_runtime.stealth.level import Enemy, Level, Point
 from tltl_runtime.stealth.world.geometry import Bounds
-from tltlc.core.record import record
+from tltlc.api import record
 
 Mode = Literal["patrol", "chase", "search", "return"]
 

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.enemies.fields import ARRIVED, GOALS, middles, nearest_numbers, neighbours, steps_to
 from tltl_runtime.stealth.enemies.segments import Rectangle, crosses
 from tltl_runtime.stealth.level import Box, Level
-from tltlc.io.limits import WORK
+from tltlc.api import fileio
 
 CELL: Final = 0.25
 RADIUS: Final = 0.35
@@ -54,7 +54,7 @@ def grid_of(level: Level) -> Grid:
 def is_too_large(bounds: Box) -> bool:
     """Whether a floor is so large that its shortest paths would take minutes and gigabytes."""
     columns, rows = (int((bounds.high[axis] - bounds.low[axis]) / CELL + 1e-9) for axis in (0, 1))
-    return columns * rows > WORK["cells of floor"]
+    return columns * rows > fileio.limits.WORK["cells of floor"]
 
 
 class Grid:

@@ -17,7 +17,7 @@ from tltl_runtime.stealth.expert.motion import Floats, Motion, Poses, joined, po
 from tltl_runtime.stealth.expert.routes import Field
 from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerState
-from tltlc.core.record import record
+from tltlc.api import record
 
 LONGEST_FALL: Final = 9
 """A body that is still falling after this many decisions is given up."""

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import SupportsFloat
 
-from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import Signal, nodes
-from tltlc.resolve.spec import Atom
+from tltlc.api import Atom, Fspa, Implicant, expressions
 
 
 def next_goals(
@@ -29,7 +26,7 @@ def next_goals(
     distances = {name: entity for name, entity in distance_signals(fspa).items() if entity in places}
     entities = [_entity(atom, distances) for atom in fspa.atoms]
     settled = [
-        None if entity is not None else evaluate(atom.expression, signals, values) > 0.0
+        None if entity is not None else expressions.evaluate(atom.expression, signals, values) > 0.0
         for atom, entity in zip(fspa.atoms, entities, strict=True)
     ]
     candidates: list[tuple[int, str]] = []
@@ -61,7 +58,7 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
     """The entity whose distance an atom depends on, or None."""
-    read = (node.name for node in nodes(atom.expression) if isinstance(node, Signal))
+    read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Signal))
     return next((distances[name] for name in read if name in distances), None)
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.world.player import DECISION, SIGN, SUBSTEPS, PlayerKind, PlayerState
-from tltlc.core.record import record
+from tltlc.api import record
 
 Floats = NDArray[np.float64]
 Truths = NDArray[np.bool_]

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.expert.surfaces import CELL, Cells, Surfaces
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.snapshot import Snapshot
-from tltlc.core.record import record
+from tltlc.api import record
 
 Seconds = NDArray[np.float64]
 _Edges = tuple[NDArray[np.intp], NDArray[np.intp], Seconds, NDArray[np.intp]]

@@ -21,7 +21,7 @@ from tltl_runtime.stealth.enemies.segments import Corners, corners
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.snapshot import Snapshot, player_view
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.core.record import record
+from tltlc.api import record
 
 _MODELS: Final = 12
 """The number of models of each enemy."""

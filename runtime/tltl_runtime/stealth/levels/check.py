@@ -10,18 +10,18 @@ from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
 from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.stealth.signals import readers
-from tltlc.core.record import replace
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.api import Diagnostic, SourceFile, replace
 
 
 def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
     """Return TLT0804 for each name that a spec could not declare as an entity."""
-    from tltlc.grammar.parser import parse
+    from tltlc.api import syntax
 
     diagnostics = []
     for name in names:
-        valid = re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) and not parse(SourceFile("", f"entity {name}\n"))[1]
+        valid = (
+            re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) and not syntax.parse(SourceFile("", f"entity {name}\n"))[1]
+        )
         if not valid:
             help_ = "a name is one word of letters, digits and _, and no word of the language, e.g. `north_door`"
             diagnostics.append(Diagnostic("TLT0804", f"no spec could speak of `{name}`", places.named(name), help_))

@@ -10,7 +10,7 @@ from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.table import FARTHEST
 from tltl_runtime.stealth.signals import readers
-from tltlc.core.record import replace
+from tltlc.api import replace
 
 _THINNEST: Final = 1e-3
 """The smallest side of a box, in metres."""

@@ -23,13 +23,7 @@ from tltl_runtime.stealth.levels.room import check_room
 from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.stealth.levels.ways import check_ways
-from tltlc.core.record import replace
-from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.io.files import is_file, read_source
-from tltlc.io.limits import LEVEL, OVERLAYS
-from tltlc.io.resources import bounded
-from tltlc.io.spec_file import is_plain_name
+from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, replace
 
 _MOST_FAULTS: Final = 1_000
 """Stop reading a level after this many faults."""
@@ -40,7 +34,7 @@ def level_names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in LEVELS.glob("*.toml")))
 
 
-@bounded()
+@fileio.bounded()
 def variants(name_or_path: str) -> tuple[str, ...]:
     """Return the variants of a level, in the order of its file; errors as in :func:`load_level`."""
     loading = _Loading(level_path(name_or_path))
@@ -48,7 +42,7 @@ def variants(name_or_path: str) -> tuple[str, ...]:
     return tuple(loading.variants)
 
 
-@bounded()
+@fileio.bounded()
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     """Return the descriptions of a variant's overlays, in their order.
 
@@ -57,14 +51,14 @@ def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     return level_and_changes(name_or_path, variant)[1]
 
 
-@bounded()
+@fileio.bounded()
 def level_and_changes(name_or_path: str, variant: str) -> tuple[Level, tuple[str, ...]]:
     """Return a level as :func:`load_level` reads it, and its :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
 
-@bounded()
+@fileio.bounded()
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
@@ -86,7 +80,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     return _Loading(level_path(name_or_path)).level(variant)
 
 
-@bounded()
+@fileio.bounded()
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
     """Return a level as :func:`load_level` does, and warnings.
 
@@ -112,7 +106,7 @@ def level_path(name_or_path: str) -> Path:
         help_ = "a level is a `.toml` file, or one of those that `tltlc list levels` shows"
     elif "+" in name_or_path and (level := name_or_path.partition("+")[0]) in level_names():
         help_ = f"overlays are added to a variant: `{name_or_path.replace(level, f'{level}:v0', 1)}`"
-    elif is_file(f"{name_or_path}.toml"):
+    elif fileio.is_file(f"{name_or_path}.toml"):
         help_ = f"did you mean the file `{name_or_path}.toml`?"
     raise TltlError([Diagnostic("TLT0800", title, help=help_)])
 
@@ -205,15 +199,15 @@ class _Loading:
         The limit is :data:`tltlc.io.limits.LEVEL`.
         """
         points = sum(len(getattr(thing, "path", ())) + len(getattr(thing, "route", ())) for thing in chain(*groups))
-        if sum(map(len, groups)) + points > (LEVEL.values or 0):
-            title = f"the level `{self.path.stem}` holds more than {LEVEL.values:,} things"
+        if sum(map(len, groups)) + points > (fileio.limits.LEVEL.values or 0):
+            title = f"the level `{self.path.stem}` holds more than {fileio.limits.LEVEL.values:,} things"
             help_ = (
                 "leave some out: steps of stairs and points of ways count, too, as often as a part with them is used"
             )
             raise TltlError([Diagnostic("TLT0006", title, (self.root.label,), help_)])
 
     def _read(self, path: Path, name: str) -> Entry:
-        source = read_source(path, shown(path))
+        source = fileio.read_source(path, shown(path))
         # Git may convert line ends; the hash must not depend on that.
         text = source.text.replace("\r\n", "\n")
         self.files.append((name, hashlib.sha256(text.encode()).hexdigest()))
@@ -229,7 +223,7 @@ class _Loading:
             help_ = "give one, e.g. `v0 = []`, or leave `[variants]` out"
             self.log.append(Diagnostic("TLT0803", "the level has no variants", (table.label,), help_))
         for key in overlays:
-            if not is_plain_name(key):
+            if not fileio.is_plain_name(key):
                 title = f"no command could speak of the variant `{key}`"
                 help_ = "a name is one word of letters, digits and _, e.g. `very_hard`"
                 self.log.append(Diagnostic("TLT0804", title, (table.place(key),), help_))
@@ -261,10 +255,10 @@ class _Loading:
         trees: dict[str, Tree] = {name: entry.value for name, entry in entries.items()}
         named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
         names = self.variants[variant]
-        overlays = [(name, self._shared("overlays", name, named)) for name in names[: OVERLAYS + 1]]
-        overlays += [(name, self._added(name)) for name in added[: OVERLAYS + 1]]
-        if len(overlays) > OVERLAYS:
-            title = f"a variant of the level `{self.path.stem}` has more than {OVERLAYS} overlays"
+        overlays = [(name, self._shared("overlays", name, named)) for name in names[: fileio.limits.OVERLAYS + 1]]
+        overlays += [(name, self._added(name)) for name in added[: fileio.limits.OVERLAYS + 1]]
+        if len(overlays) > fileio.limits.OVERLAYS:
+            title = f"a variant of the level `{self.path.stem}` has more than {fileio.limits.OVERLAYS} overlays"
             raise TltlError([Diagnostic("TLT0006", title, (named,), "put their changes together in one overlay")])
         for name, path in overlays:
             if path is not None:
@@ -296,7 +290,7 @@ class _Loading:
         ``label`` is where the name stands in a file; without one, the name is an argument.
         """
         for place in (self.path.parent / folder, LEVELS / folder):
-            if is_file(path := place / f"{name}.toml") and path.parent == place:
+            if fileio.is_file(path := place / f"{name}.toml") and path.parent == place:
                 return path
         known = shared_names(self.path, folder) if len(self.log) < MOST_SUGGESTIONS else ()
         title = f"there is no {folder[:-1]} `{name}`"

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
-from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.io.files import is_file, read_source
+from tltlc.api import Diagnostic, fileio
 
 LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""
@@ -30,7 +29,7 @@ def made_for(table: Table, level: Path) -> str:
         table.log.append(wrong(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
         return ""
     label = table.place("spec")
-    path = next((folder / file for folder in (level.parent, *SPECS) if is_file(folder / file)), None)
+    path = next((folder / file for folder in (level.parent, *SPECS) if fileio.is_file(folder / file)), None)
     if path is None:
         help_ = f"put it beside `{level.name}`"
         table.log.append(Diagnostic("TLT0805", f"there is no spec file `{file}`", (label,), help_))
@@ -57,8 +56,7 @@ def shown(path: Path) -> str:
 
 def _specs(path: Path) -> list[str]:
     """Return the names of the specs in a file, even if the file has other errors."""
-    from tltlc.grammar.parser import parse
-    from tltlc.grammar.tree import SpecDecl
+    from tltlc.api import syntax
 
-    declarations = parse(read_source(path, shown(path)))[0].declarations
-    return [declaration.name for declaration in declarations if isinstance(declaration, SpecDecl)]
+    declarations = syntax.parse(fileio.read_source(path, shown(path)))[0].declarations
+    return [declaration.name for declaration in declarations if isinstance(declaration, syntax.SpecDecl)]

@@ -9,7 +9,7 @@ from typing import Any
 
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.api import Diagnostic, Label
 
 
 def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict[str, Tree]:

@@ -22,8 +22,7 @@ from tltl_runtime.stealth.level import (
     Unlock,
 )
 from tltl_runtime.stealth.levels.table import Table, suggestion
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.api import Diagnostic, Label, record
 
 _OUTER_WALL: Final = 0.2
 """The thickness of the walls around a level, in metres."""

@@ -11,7 +11,7 @@ from tltl_runtime.stealth.levels.parts import Places
 from tltl_runtime.stealth.world.geometry import around
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltl_runtime.stealth.world.way import Way
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.api import Diagnostic, Label
 
 _PLAYER: Final = PlayerKind()
 _EPSILON: Final = 1e-6

@@ -9,8 +9,7 @@ from typing import Any, Final, TypeVar
 
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree
-from tltlc.core.record import EMPTY
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.api import EMPTY, Diagnostic, Label
 
 T = TypeVar("T")
 

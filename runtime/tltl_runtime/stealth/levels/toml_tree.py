@@ -8,10 +8,7 @@ from __future__ import annotations
 import re
 from typing import Any, Final
 
-from tltlc.core.record import record
-from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Label
-from tltlc.io.toml_text import parse
+from tltlc.api import Label, SourceFile, Span, fileio, record
 
 _HELP: Final = 'values are written as in `at = [1.0, 2.0, 0.0]`, texts as in `asset = "corridor"`'
 _KEY: Final = r"(?:[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*')"
@@ -40,7 +37,7 @@ def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> 
 
     Values inside an inline table have the span of the key before the table.
     """
-    data = parse(source, code, help_)
+    data = fileio.parse_toml(source, code, help_)
     return _tree(data, (), _places(source.text), Label(source, Span(0, 0)))
 
 

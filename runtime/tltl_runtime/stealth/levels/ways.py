@@ -12,7 +12,7 @@ from tltl_runtime.stealth.enemies.segments import Corners, blocked
 from tltl_runtime.stealth.level import Enemy, Level, Mover, Point
 from tltl_runtime.stealth.levels.parts import Places
 from tltl_runtime.stealth.levels.room import shown
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.api import Diagnostic
 
 _EPSILON: Final = 1e-6
 _MOST_EACH: Final = 10

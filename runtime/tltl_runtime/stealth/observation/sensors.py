@@ -10,7 +10,7 @@ from tltl_runtime.stealth.level import Level, MapSensor, Sensors, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, CELL_WIDTH, MAP_EXTENT
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described, readers
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 SensorChoice = Sensors | Mapping[str, Any]
 """A record, or a mapping with some of its fields; ``map`` may be a mapping, too."""

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box, Level, MapSensor, Point
 from tltl_runtime.stealth.levels.parts import CELL_TYPES
-from tltlc.core.record import record
+from tltlc.api import record
 
 LAYER: Final = 0.25
 """The height of a layer."""

@@ -13,8 +13,7 @@ from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import record
+from tltlc.api import Fspa, record
 
 Size = Literal["n", "n + 1", "signals", "atoms", "enemies", "movers", "switches", "barriers"]
 Arrays = Mapping[str, NDArray[Any]]

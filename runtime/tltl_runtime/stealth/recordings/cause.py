@@ -13,10 +13,7 @@ from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import Snapshot, places, touches
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltlc.automaton.text import label_text
-from tltlc.core.record import record
-from tltlc.expression.tree import Signal, nodes
-from tltlc.resolve.spec import Atom
+from tltlc.api import Atom, expressions, label_text, record
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
 
@@ -97,7 +94,9 @@ def _broken(episode: Episode) -> list[tuple[str, bool]]:
 
 
 def _reads_health(atom: Atom) -> bool:
-    return any(isinstance(node, Signal) and node.name == "health" for node in nodes(atom.expression))
+    return any(
+        isinstance(node, expressions.Signal) and node.name == "health" for node in expressions.nodes(atom.expression)
+    )
 
 
 def _limit(episode: Episode) -> Cause:

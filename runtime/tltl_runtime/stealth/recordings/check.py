@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.versions import versions
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor import Monitor
+from tltlc.api import Diagnostic, Monitor, TltlError
 
 _Difference = tuple[str, object, object]
 """The name of what differs, the recorded value, and the recomputed value."""

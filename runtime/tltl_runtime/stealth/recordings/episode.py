@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.snapshot import Snapshot
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import EMPTY, record
-from tltlc.monitor import RewardOptions
+from tltlc.api import EMPTY, Fspa, RewardOptions, record
 
 
 @record

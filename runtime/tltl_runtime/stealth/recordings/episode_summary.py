@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.automaton.text import label_text
+from tltlc.api import label_text
 
 
 def summary_of(episode: Episode, index: int = 0) -> EpisodeSummary:

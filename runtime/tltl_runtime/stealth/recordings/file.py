@@ -21,22 +21,12 @@ from tltl_runtime.stealth.recordings.numpy_archive import ArchiveError, read_arr
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltlc.automaton.fspa import Fspa
-from tltlc.backends import emit
-from tltlc.core.record import record, replace
-from tltlc.core.source import SourceFile
-from tltlc.io.files import read_bytes
-from tltlc.io.json_text import loads
-from tltlc.io.limits import RECORDED_TEXTS, RECORDING
-from tltlc.io.resources import bounded
-from tltlc.io.writing import write_file
-from tltlc.monitor import RewardOptions
-from tltlc.pipeline import read_artefact
+from tltlc.api import Fspa, RewardOptions, SourceFile, compiler, fileio, record, replace
 
 SUFFIX: Final = ".episode.npz"
 FORMAT: Final = "tltl-episode"
 VERSION: Final = 1
-MAX_BYTES: Final = RECORDING.size
+MAX_BYTES: Final = fileio.limits.RECORDING.size
 """The greatest size of a file, and of its unpacked arrays: 256 MiB.
 
 That is about half a million decisions.
@@ -112,10 +102,10 @@ def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
         TltlError: TLT0005, the file cannot be written.
         ValueError: the shapes of the episode's arrays do not fit its level and its automaton.
     """
-    write_file(Path(path), to_bytes(episode))
+    fileio.write_file(Path(path), to_bytes(episode))
 
 
-@bounded()
+@fileio.bounded()
 def read_episode(path: str | os.PathLike[str]) -> Episode:
     """Read an episode from a file.
 
@@ -125,13 +115,13 @@ def read_episode(path: str | os.PathLike[str]) -> Episode:
             TLT0604, its artefact is invalid.
     """
     name = os.fspath(path)
-    return from_bytes(read_bytes(path, name, MAX_BYTES), name)
+    return from_bytes(fileio.read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(episode: Episode) -> bytes:
     """Return the bytes that :func:`write_episode` writes."""
     meta = json.dumps(to_json(_meta(episode)), ensure_ascii=False, allow_nan=False)
-    (artefact,) = emit("json", episode.fspa).values()
+    (artefact,) = compiler.emit("json", episode.fspa).values()
     texts = {"meta": meta, "artefact": str(artefact)}
     arrays: dict[str, Any] = {name: np.frombuffer(text.encode(), dtype=np.uint8) for name, text in texts.items()}
     arrays |= to_arrays(episode, _modes(episode))
@@ -144,7 +134,7 @@ def from_bytes(data: bytes, name: str) -> Episode:
     """Decode an episode; messages call it ``name``. Raises the errors of :func:`read_episode`."""
     members = _members(data, name)
     meta = _read_meta(members, name)
-    fspa = read_artefact(SourceFile(f"{name}/artefact", _text(members, "artefact", name)))
+    fspa = compiler.read_artefact(SourceFile(f"{name}/artefact", _text(members, "artefact", name)))
     arrays = _read_arrays(members, meta.level, fspa, name)
     _check_indices(arrays, meta, fspa, name)
     return Episode(
@@ -216,7 +206,7 @@ def _members(data: bytes, name: str) -> dict[str, bytes]:
 def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     text = _text(members, "meta", name)
     try:
-        document = loads(text, RECORDED_TEXTS["meta"])
+        document = fileio.parse_json(text, fileio.limits.RECORDED_TEXTS["meta"])
     except (ValueError, RecursionError):
         raise _REFUSALS.broken(name, "`meta` is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
@@ -235,7 +225,7 @@ def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
     data = _array(members, array, name)
     if data.dtype != np.uint8 or data.ndim != 1:
         raise _REFUSALS.broken(name, f"the array `{array}` holds no bytes")
-    limit = RECORDED_TEXTS[array]
+    limit = fileio.limits.RECORDED_TEXTS[array]
     if data.size > limit.size or np.count_nonzero(data == ord(",")) >= (limit.values or 0):
         most = f"{limit.size >> 20} MiB or {limit.values:,} values"
         raise _REFUSALS.broken(name, f"the array `{array}` holds more than {most}")

@@ -12,11 +12,9 @@ from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.episode_summary import seen_steps, summary_of
 from tltl_runtime.support.number_text import column, number, share
-from tltlc.automaton.fspa import Notation
-from tltlc.automaton.text import label_text
-from tltlc.resolve.spec import ValueType
+from tltlc.api import Notation, label_text, specs
 
-_UNITS: Final[dict[ValueType, str]] = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad"}
+_UNITS: Final[dict[specs.ValueType, str]] = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad"}
 _INSTANT: Final = 1e-6
 """Times that differ by no more than this many seconds are equal."""
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.core.record import record
+from tltlc.api import record
 
 
 @record

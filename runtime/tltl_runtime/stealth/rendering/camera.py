@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Level, Point
-from tltlc.core.record import record
+from tltlc.api import record
 
 View = Literal["third_person", "top_down", "overview"]
 VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")

@@ -20,8 +20,7 @@ from tltl_runtime.stealth.rendering.interpolation import between
 from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
-from tltlc.automaton.fspa import Notation
-from tltlc.automaton.text import label_text
+from tltlc.api import Notation, label_text
 
 View = Literal["third_person", "top_down", "overview", "plan"]
 

@@ -10,9 +10,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.cause import Cause, Kind
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import formula_text, label_text
-from tltlc.core.record import record, replace
+from tltlc.api import Fspa, formula_text, label_text, record, replace
 
 Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
 """The meaning of a line or bar, which a screen shows by colour."""

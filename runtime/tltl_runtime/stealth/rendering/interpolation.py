@@ -6,7 +6,7 @@ from math import pi
 
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.snapshot import Snapshot
-from tltlc.core.record import replace
+from tltlc.api import replace
 
 
 def between(before: Snapshot, after: Snapshot, share: float) -> Snapshot:

@@ -21,8 +21,7 @@ from tltl_runtime.stealth.capabilities.reach import Reach
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.level import Box, Enemy, Level, Point
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.automaton.fspa import Fspa, Notation
-from tltlc.automaton.text import label_text
+from tltlc.api import Fspa, Notation, label_text
 
 SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
 """Colours by kind of solid; :data:`BARRIERS` has the colours of barriers."""

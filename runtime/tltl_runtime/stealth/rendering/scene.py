@@ -22,7 +22,7 @@ from tltl_runtime.stealth.world.bodies import UPRIGHT
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import around
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltlc.core.record import record
+from tltlc.api import record
 
 Colour = tuple[float, float, float]
 """Red, green and blue, in [0, 1]."""

@@ -25,7 +25,7 @@ from tltl_runtime.stealth.rendering.plan import (
     state_colour,
     state_label,
 )
-from tltlc.automaton.fspa import Fspa
+from tltlc.api import Fspa
 
 _FAINTEST: Final = 0.12
 """The opacity of one trajectory among very many."""

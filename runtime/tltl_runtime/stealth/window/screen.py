@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.rendering.camera import VIEWS, View, check_size
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.api import TltlError
 
 if TYPE_CHECKING:
     import numpy as np

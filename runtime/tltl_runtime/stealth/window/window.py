@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.rendering.hud import Hud, Tone
 from tltl_runtime.support.quiet_stderr import silence
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record
 
 NO_WINDOW: Final = "TLT0830"
 """The error code for a window that cannot be opened."""

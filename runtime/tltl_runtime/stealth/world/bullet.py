@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 
 from tltl_runtime.support.quiet_stderr import silence
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def _missing() -> TltlError:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:

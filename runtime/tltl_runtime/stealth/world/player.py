@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from math import atan2, sqrt
 
 from tltl_runtime.stealth.level import Point
-from tltlc.core.record import record
+from tltlc.api import record
 
 Action = tuple[int, int, int, int, int]
 

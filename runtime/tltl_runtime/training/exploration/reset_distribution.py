@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.vector.errors import Playing, WorkerError
-from tltlc.core.record import record, replace
+from tltlc.api import record, replace
 
 Actions = list[list[int]]
 

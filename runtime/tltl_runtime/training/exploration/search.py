@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.training.exploration.reset_distribution import Actions, Episodes, Start
 from tltl_runtime.vector import WorkerVectorEnv
-from tltlc.core.record import record
+from tltlc.api import record
 
 _KEPT = 0.9
 """The probability that a branch keeps its choice in the next decision.

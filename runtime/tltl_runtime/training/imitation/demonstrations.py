@@ -17,10 +17,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import SUFFIX, file_stem, new_path, read_episode, to_bytes
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import may_be_file
-from tltlc.io.writing import write_files
+from tltlc.api import Diagnostic, TltlError, fileio, record
 
 PLAYER: Final = "expert"
 """The name of the scripted expert in recordings."""
@@ -79,7 +76,7 @@ class Demonstrations:
         if not self._why_none(episode):
             recording = to_bytes(episode)
             path = new_path(self.folder, file_stem(episode), recording)
-            write_files(self.folder, {path.name: recording})
+            fileio.write_files(self.folder, {path.name: recording})
             self._played.append((episode.player, episode.seed))
         return Tried(episode, path, self.count)
 
@@ -108,7 +105,7 @@ def recordings(folder: Path) -> list[Path]:
 
     Pipes and devices are left out.
     """
-    return sorted(filter(may_be_file, folder.glob(f"*{SUFFIX}")))
+    return sorted(filter(fileio.may_be_file, folder.glob(f"*{SUFFIX}")))
 
 
 def unreadable(error: TltlError) -> str:

@@ -10,7 +10,7 @@ from rsl_rl.utils import resolve_class
 from torch import Tensor, nn
 from torch.nn.functional import one_hot, softplus
 
-from tltlc.core.record import record
+from tltlc.api import record
 
 Decisions = tuple[Mapping[str, Tensor], Tensor]
 """Observations by key, each [n, ...], and actions [n, branches]."""

@@ -25,8 +25,7 @@ from tltl_runtime.training.imitation.demonstrations import (
     recordings,
     unreadable,
 )
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record
 
 _Sensed = Mapping[str, NDArray[Any]]
 

@@ -11,7 +11,7 @@ from torch import distributed
 
 from tltl_runtime.vector.cores import cores as usable_cores
 from tltl_runtime.vector.cores import started
-from tltlc.core.record import record
+from tltlc.api import record
 
 T = TypeVar("T")
 

@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 from tltl_runtime.training.run.run import Run
 from tltl_runtime.training.run.settings import Ppo
-from tltlc.core.record import record, replace
-from tltlc.monitor.reward import terminal_penalty
+from tltlc.api import monitors, record, replace
 
 
 @record
@@ -50,4 +49,6 @@ def dearer(run: Run) -> Callable[[int], float] | None:
     if limit is None or run.settings.imitates or not run.settings.reward.rises:
         return None
     whole = replace(options, terminal_penalty="undiscounted")
-    return lambda steps: terminal_penalty(limit, steps, whole) - terminal_penalty(limit, steps, options)
+    return lambda steps: (
+        monitors.terminal_penalty(limit, steps, whole) - monitors.terminal_penalty(limit, steps, options)
+    )

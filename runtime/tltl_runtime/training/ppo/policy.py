@@ -13,7 +13,7 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.run import Run
 from tltl_runtime.training.run.versions import versions
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def card_of(run: Run, env: TrainingEnv) -> Card:

@@ -11,8 +11,7 @@ from torch import Tensor
 
 from tltl_runtime.training.ppo.distributed import Peers
 from tltl_runtime.training.runner import Iteration, Runner
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record, replace
 
 Own = Mapping[str, Tensor]
 """The own state of a process: see :class:`~tltl_runtime.training.run.checkpoint.Checkpoint`."""

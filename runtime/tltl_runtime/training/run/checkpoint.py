@@ -18,12 +18,7 @@ from tltl_runtime.training.run.report import StopReason
 from tltl_runtime.training.run.run import resume_command
 from tltl_runtime.training.run.settings import Stop
 from tltl_runtime.training.run.torch_archive import TorchArchiveError, read_torch
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_bytes
-from tltlc.io.limits import CHECKPOINT
-from tltlc.io.resources import bounded
-from tltlc.io.writing import write_file
+from tltlc.api import Diagnostic, TltlError, fileio, record
 
 FORMAT: Final = "tltl-checkpoint"
 VERSION: Final = 5
@@ -101,10 +96,10 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             content[name] = {field: getattr(value, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
-    write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True, over_inputs=True)
+    fileio.write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True, over_inputs=True)
 
 
-@bounded()
+@fileio.bounded()
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
     """Read a checkpoint; return None if there is no such file.  Nothing in the file is executed.
 
@@ -117,9 +112,9 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
     """
     if not path.exists():
         return None
-    data = read_bytes(path, str(path), CHECKPOINT.size)
-    if len(data) > CHECKPOINT.size:
-        raise damaged(path, f"it is larger than {CHECKPOINT.size >> 20} MiB")
+    data = fileio.read_bytes(path, str(path), fileio.limits.CHECKPOINT.size)
+    if len(data) > fileio.limits.CHECKPOINT.size:
+        raise damaged(path, f"it is larger than {fileio.limits.CHECKPOINT.size >> 20} MiB")
     content = _content(data, path)
     if type(content.get("version")) is not int or content["version"] != VERSION:
         raise _other_version(path, content.get("version"))

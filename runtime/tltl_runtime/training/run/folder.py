@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tltl_runtime.support import folder_lock as held_folder
 from tltl_runtime.training.run.run import WRITABLE
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.api import Diagnostic
 
 
 def held(folder: Path) -> AbstractContextManager[None]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.training.run.run import Initial, resume_command
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def initial_of(path: Path, policy: Policy) -> Initial:

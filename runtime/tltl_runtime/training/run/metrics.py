@@ -14,13 +14,7 @@ from torch.utils.tensorboard import SummaryWriter
 
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.report import Report, Window
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import label_text
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import reading_error, reason
-from tltlc.io.json_text import loads
-from tltlc.io.limits import MEASUREMENTS, TRACE_LINE
-from tltlc.io.writing import write_file
+from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text
 
 METRICS: Final = "metrics.jsonl"
 
@@ -110,13 +104,13 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
     """
     try:
         with path.open("rb") as file:
-            data = file.read(MEASUREMENTS.size + 1)
+            data = file.read(fileio.limits.MEASUREMENTS.size + 1)
     except FileNotFoundError:
         return []
     except OSError as error:
-        raise reading_error(str(path), error) from None
-    if len(data) > MEASUREMENTS.size:
-        title = f"`{path}` is larger than {MEASUREMENTS.size >> 20} MiB"
+        raise fileio.reading_error(str(path), error) from None
+    if len(data) > fileio.limits.MEASUREMENTS.size:
+        title = f"`{path}` is larger than {fileio.limits.MEASUREMENTS.size >> 20} MiB"
         raise TltlError([Diagnostic("TLT0004", title, help="move it away: the training then goes on without it")])
     text = data.decode(errors="replace")
     return [measured for line in text.splitlines() if (measured := _measured(line)) is not None]
@@ -128,7 +122,7 @@ def truncate(path: Path, iteration: int) -> None:
     Raises TltlError, TLT0001, TLT0004 or TLT0005.
     """
     kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
-    write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
+    fileio.write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
 
 
 def _line(measured: Mapping[str, Any]) -> str:
@@ -138,7 +132,7 @@ def _line(measured: Mapping[str, Any]) -> str:
 def _measured(line: str) -> dict[str, Any] | None:
     """Parse a line; return None if it is invalid or lacks a field that is read."""
     try:
-        measured = loads(line, TRACE_LINE)
+        measured = fileio.parse_json(line, fileio.limits.TRACE_LINE)
     except (ValueError, RecursionError):
         return None
     if not isinstance(measured, dict) or not measured.keys() >= _READ:
@@ -176,5 +170,5 @@ def _scalars(measured: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 def _unwritable(path: Path, error: OSError) -> TltlError:
-    title = f"cannot write `{path}`: {reason(error)}"
+    title = f"cannot write `{path}`: {fileio.reason(error)}"
     return TltlError([Diagnostic("TLT0005", title, help=_ADVICE)])

@@ -23,10 +23,7 @@ from tltl_runtime.training.run.metrics import METRICS, OF_THE_WINDOW, means, rea
 from tltl_runtime.training.run.report import Report, StopReason
 from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
 from tltl_runtime.training.run.versions import versions
-from tltlc.core.record import record, replace
-from tltlc.io.json_text import load
-from tltlc.io.limits import REPORT
-from tltlc.io.writing import write_files
+from tltlc.api import fileio, record, replace
 
 _VERSION: Final = 1
 _MOST_POINTS: Final = 200
@@ -47,7 +44,7 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     write_policy(run.folder / POLICY, Policy(replace(policy.card, training=document), policy.weights()), WRITABLE)
     text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
     title = f"{run.fspa.name} on {document['level']} {run.variant}, seed {run.seed}"
-    write_files(
+    fileio.write_files(
         run.folder,
         {CURVE: draw_curve(title, document["curve"]), RECORD: text},
         WRITABLE,
@@ -148,7 +145,7 @@ def recorded_end(folder: Path) -> StopReason | None:
 def _recorded(folder: Path) -> dict[str, Any] | None:
     """Return the record in a folder; None if it is missing or damaged and must be written again."""
     try:
-        document = load(folder / RECORD, REPORT)
+        document = fileio.load_json(folder / RECORD, fileio.limits.REPORT)
         from_json(_Ended, {name: document[name] for name in ("end", "steps", "seconds")}, RECORD)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None

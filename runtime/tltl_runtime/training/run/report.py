@@ -8,7 +8,7 @@ from typing import Literal
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.imitation.imitation_data import Imitated
 from tltl_runtime.training.runner import Iteration
-from tltlc.core.record import record
+from tltlc.api import record
 
 StopReason = Literal["met", "steps", "minutes"]
 

@@ -8,7 +8,7 @@ import torch
 from rsl_rl.utils import resolve_callable
 
 from tltl_runtime.training.ppo.distributed import peers
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def class_of(setting: str, name: str, base: type) -> Any:

@@ -22,16 +22,7 @@ from tltl_runtime.support.number_text import listed
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.training.imitation.demonstrations import recordings
 from tltl_runtime.training.run.settings import Settings, read_settings
-from tltlc.automaton.fspa import Fspa
-from tltlc.backends import emit
-from tltlc.core.record import record, replace
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import MAX_ARTEFACT_BYTES, read_bytes, read_source
-from tltlc.io.json_text import loads
-from tltlc.io.limits import ARTEFACT
-from tltlc.io.writing import write_files
-from tltlc.pipeline import read_artefact
+from tltlc.api import Diagnostic, Fspa, SourceFile, TltlError, compiler, fileio, record, replace
 
 RUN: Final = "run.json"
 CHECKPOINT: Final = "checkpoint.pt"
@@ -110,7 +101,7 @@ def write_run(run: Run) -> None:
 
     Raises TltlError, TLT0005.
     """
-    (artefact,) = emit("json", run.fspa).values()
+    (artefact,) = compiler.emit("json", run.fspa).values()
     # Paths are absolute, because the training may be resumed from another folder.
     level = str(level_path(run.level).absolute()) if run.level.endswith(".toml") else run.level
     document = {
@@ -125,7 +116,7 @@ def write_run(run: Run) -> None:
         "artefact": json.loads(artefact),
     }
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
-    write_files(run.folder, {RUN: text}, WRITABLE, durable=True, over_inputs=True)
+    fileio.write_files(run.folder, {RUN: text}, WRITABLE, durable=True, over_inputs=True)
 
 
 def read_run(folder: Path) -> Run:
@@ -143,7 +134,7 @@ def read_run(folder: Path) -> Run:
     if "artefact" not in document:
         raise _unfit(source, "it lacks 'artefact'")
     artefact = json.dumps(document["artefact"])
-    return Run(folder=folder, fspa=read_artefact(SourceFile(f"{source.name}/artefact", artefact)), **values)
+    return Run(folder=folder, fspa=compiler.read_artefact(SourceFile(f"{source.name}/artefact", artefact)), **values)
 
 
 def read_place(folder: Path) -> tuple[str, str]:
@@ -165,9 +156,9 @@ def read_level_hash(folder: Path) -> str | None:
 
 
 def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
-    source = read_source(folder / RUN, max_bytes=MAX_ARTEFACT_BYTES)
+    source = fileio.read_source(folder / RUN, max_bytes=fileio.MAX_ARTEFACT_BYTES)
     try:
-        document = loads(source.text, ARTEFACT)
+        document = fileio.parse_json(source.text, fileio.limits.ARTEFACT)
     except (ValueError, RecursionError):
         raise _unfit(source, "it is no JSON") from None
     if not isinstance(document, dict) or document.get("format") != _FORMAT:
@@ -248,7 +239,7 @@ def named_trainings(folder: Path) -> str:
 
 def _content_hash(folder: Path) -> str:
     """Return the SHA-256, in hexadecimal, of the recordings in a folder and of their names."""
-    contents = {path.name: read_bytes(path, str(path), MAX_BYTES) for path in recordings(folder)}
+    contents = {path.name: fileio.read_bytes(path, str(path), MAX_BYTES) for path in recordings(folder)}
     hashes = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
     return hashlib.sha256(json.dumps(hashes, sort_keys=True).encode()).hexdigest()
 

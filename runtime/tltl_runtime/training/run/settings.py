@@ -13,11 +13,7 @@ from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.training.exploration.search import Exploration
 from tltl_runtime.training.run.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltl_runtime.training.run.settings_file import read_values
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import read_source
-from tltlc.monitor import RewardOptions
-from tltlc.monitor.reward import Mode, TerminalPenalty, Termination
+from tltlc.api import Diagnostic, RewardOptions, TltlError, fileio, monitors, record, replace
 
 DEFAULTS: Final = Path(__file__).with_name("settings.toml")
 
@@ -94,9 +90,9 @@ class Reward:
     changes to the undiscounted one as the pass rate rises from one half to 1.
     """
 
-    mode: Mode
-    termination: Termination
-    terminal_penalty: TerminalPenalty
+    mode: monitors.Mode
+    termination: monitors.Termination
+    terminal_penalty: monitors.TerminalPenalty
     penalty_schedule: PenaltySchedule
     gamma: float
 
@@ -191,9 +187,9 @@ def read_settings(path: Path | None = None) -> Settings:
         TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an
             unknown key (TLT0861) or an invalid value (TLT0862).
     """
-    values = read_values(read_source(DEFAULTS))
+    values = read_values(fileio.read_source(DEFAULTS))
     if path is not None:
-        given = read_values(read_source(path))
+        given = read_values(fileio.read_source(path))
         values = {name: {**known, **given.get(name, {})} for name, known in values.items()}
     ppo, rollout = Ppo(**values["ppo"]), Rollout(**values["rollout"])
     if ppo.minibatches > rollout.envs * rollout.steps:

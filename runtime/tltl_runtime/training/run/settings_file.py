@@ -11,10 +11,7 @@ from tltl_runtime.policies.network import MAX_KERNEL, MAX_LAYERS, MAX_STRIDE, MA
 from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.training.run.choices import EntropySchedule, Method, PenaltySchedule, Pool
-from tltlc.core.record import record
-from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor.reward import MODES, TerminalPenalty, Termination
+from tltlc.api import Diagnostic, SourceFile, TltlError, monitors, record
 
 
 @record
@@ -150,9 +147,9 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "terminal": Number(0.0, 1_000.0),
     },
     "reward": {
-        "mode": OneOf(MODES),
-        "termination": OneOf(get_args(Termination)),
-        "terminal_penalty": OneOf(get_args(TerminalPenalty)),
+        "mode": OneOf(monitors.MODES),
+        "termination": OneOf(get_args(monitors.Termination)),
+        "terminal_penalty": OneOf(get_args(monitors.TerminalPenalty)),
         "penalty_schedule": OneOf(get_args(PenaltySchedule)),
     },
     "stop": {

@@ -38,7 +38,7 @@ from tltl_runtime.training.run.run import (
 )
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError
 
 
 def begun(run: Run, resume: bool) -> Checkpoint | None:

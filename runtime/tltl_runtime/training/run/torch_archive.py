@@ -16,7 +16,7 @@ from typing import Any, Final
 import torch
 from torch import Tensor
 
-from tltlc.io.limits import CHECKPOINT
+from tltlc.api import fileio
 
 _GLOBALS: Final = {
     "collections OrderedDict",
@@ -102,8 +102,8 @@ def _check_calls(pickled: bytes) -> None:
     marks: list[int] = []
     memo: dict[int, str] = {}
     for count, (opcode, argument, _) in enumerate(pickletools.genops(pickled)):
-        if count > _OPCODES * (CHECKPOINT.values or 0):
-            raise TorchArchiveError(f"it holds more than {CHECKPOINT.values:,} values")
+        if count > _OPCODES * (fileio.limits.CHECKPOINT.values or 0):
+            raise TorchArchiveError(f"it holds more than {fileio.limits.CHECKPOINT.values:,} values")
         if opcode.proto > _PROTOCOL or opcode.name in ("INST", "OBJ", "EXT1", "EXT2", "EXT4"):
             raise TorchArchiveError("it holds more than plain data")
         if opcode.name == "GLOBAL" and argument not in _GLOBALS:
@@ -161,18 +161,18 @@ def _check_values(content: object) -> None:
     """
     level: list[object] = [content]
     count = 0
-    for _ in range(CHECKPOINT.depth or 0):
+    for _ in range(fileio.limits.CHECKPOINT.depth or 0):
         following: list[object] = []
         for value in level:
             count += 1
             _check_tensor(value)
             following += _inside(value)
-            if count + len(following) > (CHECKPOINT.values or 0):
-                raise TorchArchiveError(f"it holds more than {CHECKPOINT.values:,} values")
+            if count + len(following) > (fileio.limits.CHECKPOINT.values or 0):
+                raise TorchArchiveError(f"it holds more than {fileio.limits.CHECKPOINT.values:,} values")
         if not following:
             return
         level = following
-    raise TorchArchiveError(f"it nests deeper than {CHECKPOINT.depth} levels")
+    raise TorchArchiveError(f"it nests deeper than {fileio.limits.CHECKPOINT.depth} levels")
 
 
 def _check_tensor(value: object) -> None:

@@ -33,7 +33,7 @@ from tltl_runtime.training.run.settings import algorithm_name, rsl_config
 from tltl_runtime.training.run.setup import begun, demonstrated, environments, initial_policy, prepared
 from tltl_runtime.training.run.training_files import Keeping
 from tltl_runtime.training.runner import Iteration, Runner
-from tltlc.core.record import replace
+from tltlc.api import replace
 
 
 def train(

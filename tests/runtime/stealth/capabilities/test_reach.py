@@ -6,6 +6,7 @@ In the physics, the player never gets to a place that counts as unreachable.
 from __future__ import annotations
 
 from contextlib import closing
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -229,11 +230,12 @@ def test_a_level_that_takes_too_long_is_rejected(monkeypatch: pytest.MonkeyPatch
     (warning,) = reach_warnings(level, fspa)
     assert warning.code == "TLT0814"
     assert "the way ends at `box_0`" in (warning.help or "")
-    monkeypatch.setattr("tltl_runtime.stealth.capabilities.feasible.WORK", {"cells of reachable space": 1000})
+    limited = SimpleNamespace(limits=SimpleNamespace(WORK={"cells of reachable space": 1000}))
+    monkeypatch.setattr("tltl_runtime.stealth.capabilities.feasible.fileio", limited)
     (warning,) = reach_warnings(level, fspa)
     # Only the search for the obstacle exceeds its limit.
     assert (warning.code, warning.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
-    monkeypatch.setattr("tltl_runtime.stealth.capabilities.reach.WORK", {"cells of reachable space": 1000})
+    monkeypatch.setattr("tltl_runtime.stealth.capabilities.reach.fileio", limited)
     with pytest.raises(TltlError, match="TLT0006: it takes too long to find out what can be reached in `room:v0`"):
         reachable(level)
     # A player gets a warning, and can play.

@@ -12,11 +12,7 @@ from markupsafe import Markup
 
 from tltl_runtime.regression.report.page.markup import element, short
 from tltl_runtime.regression.report.page.traffic import Traffic
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import label_text
-from tltlc.backends import Options, emit
-from tltlc.core.record import record, replace
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.api import Diagnostic, Fspa, TltlError, compiler, label_text, record, replace
 
 _LAYOUT_LIMIT_S: Final = 10.0
 """The time limit, in seconds, of each attempt to lay out an automaton."""
@@ -47,7 +43,11 @@ def drawn(fspa: Fspa) -> Drawn:
     diagnostics: list[Diagnostic] = []
     try:
         # The page already shows the description of the spec.
-        files = emit("svg", replace(fspa, doc=""), Options(layout_limit_s=_LAYOUT_LIMIT_S, report=diagnostics.append))
+        files = compiler.emit(
+            "svg",
+            replace(fspa, doc=""),
+            compiler.BackendOptions(layout_limit_s=_LAYOUT_LIMIT_S, report=diagnostics.append),
+        )
     except TltlError as error:
         return Drawn(None, tuple(_sentence(diagnostic) for diagnostic in error.diagnostics))
     ((name, content),) = files.items()

@@ -12,7 +12,7 @@ from tltl_runtime.regression.report.page.level_map import map_data
 from tltl_runtime.regression.report.page.packing import across, down, runs
 from tltl_runtime.regression.report.page.recorded import recorded
 from tltl_runtime.stealth.level import Box
-from tltlc.automaton.text import label_text
+from tltlc.api import label_text
 
 _FINE_CM: Final = 5
 """The resolution of trajectories, in centimetres.  There are many, and at this resolution a step takes one letter."""

@@ -10,7 +10,7 @@ from tltl_runtime.regression.report.page.contents import ReportedCase
 from tltl_runtime.regression.report.page.level_map import level_map, map_key
 from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.stealth.level import Level
-from tltlc.core.record import replace
+from tltlc.api import replace
 
 
 def case_maps(case: ReportedCase, level: Level) -> Markup:

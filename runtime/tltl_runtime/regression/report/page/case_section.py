@@ -20,8 +20,7 @@ from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.summary import NOT_RUN, badge
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import formula_text
+from tltlc.api import Fspa, formula_text
 
 _KEY: Final = (
     "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "

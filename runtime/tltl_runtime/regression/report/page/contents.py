@@ -9,8 +9,7 @@ from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.automaton.fspa import Fspa
-from tltlc.core.record import EMPTY, record
+from tltlc.api import EMPTY, Fspa, record
 
 
 @record

@@ -9,7 +9,7 @@ from typing import Final
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.path_points import EVERY, places_along
 from tltl_runtime.stealth.level import Box
-from tltlc.core.record import record
+from tltlc.api import record
 
 TIME_CELL: Final = 0.5
 """The side of a cell, in metres, for time spent."""

@@ -9,7 +9,7 @@ from typing import Final
 
 from tltl_runtime.regression.report.page.plan import Plan, Rect
 from tltl_runtime.stealth.level import Level, Region
-from tltlc.core.record import record, replace
+from tltlc.api import record, replace
 
 _LETTER: Final = 25
 _LINE: Final = 48

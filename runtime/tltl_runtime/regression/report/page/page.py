@@ -19,7 +19,7 @@ from tltl_runtime.regression.report.page.style import colours
 from tltl_runtime.regression.report.page.summary import summary
 from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.stealth.rendering.plan import state_colour
-from tltlc.automaton.fspa import Fspa
+from tltlc.api import Fspa
 
 _FOLDER: Final = Path(__file__).parent
 _SCRIPTS: Final = ("packing.js", "level_map.js", "player.js", "report.js")

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from tltl_runtime.regression.report.page.markup import element, joined
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.automaton.fspa import Fspa
+from tltlc.api import Fspa
 
 _SPEEDS: Final = (1, 2, 4)
 _KEYS: Final = "Space plays and pauses, the arrows step, Home and End jump."

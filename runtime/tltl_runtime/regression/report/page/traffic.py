@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from tltl_runtime.regression.explain.account import Account
-from tltlc.core.record import record
+from tltlc.api import record
 
 
 @record

@@ -12,8 +12,7 @@ from typing import NamedTuple, Protocol
 import torch
 from torch import Tensor
 
-from tltlc.automaton.fspa import Fspa
-from tltlc.monitor.reward import RewardOptions
+from tltlc.api import Fspa, RewardOptions
 
 
 class BatchTransition(NamedTuple):

@@ -8,16 +8,14 @@ from torch import Tensor
 from tltl_runtime.spec.batch.guards import PrimeSets
 from tltl_runtime.spec.batch.reward_modes import BatchTransition
 from tltl_runtime.spec.batch.rewards import approach
-from tltlc.automaton.fspa import Fspa
-from tltlc.monitor.reward import RewardOptions
-from tltlc.monitor.tables import tables
+from tltlc.api import Fspa, RewardOptions, monitors
 
 
 class Reward:
     """Success, shaped with progress as the potential. The memory is the potential before the step, [N]."""
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
-        scalar = tables(fspa)
+        scalar = monitors.tables(fspa)
         primes = [tuple(prime for edge in improving for prime in edge.guard.primes) for improving in scalar.improving]
         self._improving = PrimeSets(primes, len(fspa.atoms), device, -1.0)
         self._base = torch.tensor(scalar.base_progress, dtype=dtype, device=device)

@@ -7,8 +7,7 @@ from torch import Tensor
 
 from tltl_runtime.spec.batch.guards import PrimeSets
 from tltl_runtime.spec.batch.reward_modes import BatchTransition
-from tltlc.automaton.fspa import Fspa
-from tltlc.monitor.reward import RewardOptions
+from tltlc.api import Fspa, RewardOptions
 
 
 class Reward:

@@ -1,0 +1,129 @@
+"""What programs that build on the compiler use of it, such as the runtime.
+
+Import names from here, and nothing else from inside ``tltlc``: modules move, these names stay. The
+classes are listed below. Functions are grouped in modules:
+
+- ``cli``: options, reports and exit codes of commands
+- ``compiler``: compile specs, read artefacts, write pictures and monitors
+- ``expressions``: arithmetic over signals and params
+- ``fileio``: read and write files, with diagnostics for what goes wrong, and the limits of their sizes
+- ``monitors``: rewards, the tables of Algorithm 1, and the checks of samples
+- ``ranges``: the values that an expression can take
+- ``specs``: types of signals, and the standard library
+- ``syntax``: the syntax tree of a ``.tltl`` file
+
+Importing this package loads nothing else. Each name is loaded on first use.
+"""
+
+# Type checkers treat this as true. Importing it from `typing` would add some milliseconds to each start.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from tltlc.api import cli as cli
+    from tltlc.api import compiler as compiler
+    from tltlc.api import expressions as expressions
+    from tltlc.api import fileio as fileio
+    from tltlc.api import monitors as monitors
+    from tltlc.api import ranges as ranges
+    from tltlc.api import specs as specs
+    from tltlc.api import syntax as syntax
+    from tltlc.automaton.fspa import Fspa as Fspa
+    from tltlc.automaton.fspa import Implicant as Implicant
+    from tltlc.automaton.fspa import Notation as Notation
+    from tltlc.automaton.fspa import State as State
+    from tltlc.automaton.text import formula_text as formula_text
+    from tltlc.automaton.text import label_text as label_text
+    from tltlc.core.record import EMPTY as EMPTY
+    from tltlc.core.record import MissingFieldsError as MissingFieldsError
+    from tltlc.core.record import record as record
+    from tltlc.core.record import replace as replace
+    from tltlc.core.source import SourceFile as SourceFile
+    from tltlc.core.source import Span as Span
+    from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
+    from tltlc.diagnostics.diagnostic import Label as Label
+    from tltlc.diagnostics.diagnostic import Severity as Severity
+    from tltlc.diagnostics.diagnostic import TltlError as TltlError
+    from tltlc.diagnostics.formats.github import workflow_command as workflow_command
+    from tltlc.monitor import Monitor as Monitor
+    from tltlc.monitor import MonitorError as MonitorError
+    from tltlc.monitor import RewardOptions as RewardOptions
+    from tltlc.monitor import Step as Step
+    from tltlc.resolve.spec import Atom as Atom
+    from tltlc.resolve.spec import Signal as Signal
+    from tltlc.resolve.spec import Spec as Spec
+
+_HOMES = {
+    "Atom": "tltlc.resolve.spec",
+    "Diagnostic": "tltlc.diagnostics.diagnostic",
+    "EMPTY": "tltlc.core.record",
+    "Fspa": "tltlc.automaton.fspa",
+    "Implicant": "tltlc.automaton.fspa",
+    "Label": "tltlc.diagnostics.diagnostic",
+    "MissingFieldsError": "tltlc.core.record",
+    "Monitor": "tltlc.monitor",
+    "MonitorError": "tltlc.monitor",
+    "Notation": "tltlc.automaton.fspa",
+    "RewardOptions": "tltlc.monitor",
+    "Severity": "tltlc.diagnostics.diagnostic",
+    "Signal": "tltlc.resolve.spec",
+    "SourceFile": "tltlc.core.source",
+    "Span": "tltlc.core.source",
+    "Spec": "tltlc.resolve.spec",
+    "State": "tltlc.automaton.fspa",
+    "Step": "tltlc.monitor",
+    "TltlError": "tltlc.diagnostics.diagnostic",
+    "formula_text": "tltlc.automaton.text",
+    "label_text": "tltlc.automaton.text",
+    "record": "tltlc.core.record",
+    "replace": "tltlc.core.record",
+    "workflow_command": "tltlc.diagnostics.formats.github",
+}
+
+__all__ = [
+    "EMPTY",
+    "Atom",
+    "Diagnostic",
+    "Fspa",
+    "Implicant",
+    "Label",
+    "MissingFieldsError",
+    "Monitor",
+    "MonitorError",
+    "Notation",
+    "RewardOptions",
+    "Severity",
+    "Signal",
+    "SourceFile",
+    "Span",
+    "Spec",
+    "State",
+    "Step",
+    "TltlError",
+    "cli",
+    "compiler",
+    "expressions",
+    "fileio",
+    "formula_text",
+    "label_text",
+    "monitors",
+    "ranges",
+    "record",
+    "replace",
+    "specs",
+    "syntax",
+    "workflow_command",
+]
+
+
+def __getattr__(name: str) -> object:
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module 'tltlc.api' has no attribute {name!r}")
+    from importlib import import_module
+
+    value: object = getattr(import_module(home), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

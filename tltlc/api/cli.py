@@ -1,0 +1,26 @@
+"""Options, reports and exit codes of commands."""
+
+from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.exits import CLEAN, status_of
+from tltlc.interfaces.cli.inputs import Input, open_input
+from tltlc.interfaces.cli.numbers import FiniteRange, WholeRange
+from tltlc.interfaces.cli.paths import OutputPath, is_stdout
+from tltlc.interfaces.cli.report import Report, show
+from tltlc.interfaces.cli.settings import Settings
+from tltlc.io.child_interrupts import raise_if_interrupted
+
+__all__ = [
+    "CLEAN",
+    "FiniteRange",
+    "Input",
+    "OutputPath",
+    "Report",
+    "Settings",
+    "WholeRange",
+    "exits",
+    "is_stdout",
+    "open_input",
+    "raise_if_interrupted",
+    "show",
+    "status_of",
+]

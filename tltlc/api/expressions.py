@@ -1,0 +1,19 @@
+"""Arithmetic over signals and params."""
+
+from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS, evaluate
+from tltlc.expression.json import to_json
+from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
+
+__all__ = [
+    "MULTIPLIED_EXPONENTS",
+    "Condition",
+    "Const",
+    "Expression",
+    "Op",
+    "Param",
+    "Signal",
+    "When",
+    "evaluate",
+    "nodes",
+    "to_json",
+]

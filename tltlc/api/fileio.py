@@ -1,0 +1,60 @@
+"""Read and write files, with diagnostics for what goes wrong, and the limits of their sizes."""
+
+from tltlc.io import limits
+from tltlc.io.archive import Archive, unpack
+from tltlc.io.files import (
+    MAX_ARTEFACT_BYTES,
+    descriptor_of,
+    exists,
+    is_dir,
+    is_file,
+    may_be_file,
+    read_bytes,
+    read_source,
+    reading_error,
+    reason,
+)
+from tltlc.io.json_text import load as load_json
+from tltlc.io.json_text import loads as parse_json
+from tltlc.io.locking import try_lock
+from tltlc.io.project import FILE_NAME as PROJECT_FILE
+from tltlc.io.project import project_for
+from tltlc.io.resources import bounded
+from tltlc.io.spec_file import is_plain_name
+from tltlc.io.spec_file import read as read_spec_file
+from tltlc.io.spec_file import split as split_spec_name
+from tltlc.io.temporary import temporary_folder
+from tltlc.io.toml_text import parse as parse_toml
+from tltlc.io.writing import check_not_read, remove_file, replaced, write_file, write_files
+
+__all__ = [
+    "MAX_ARTEFACT_BYTES",
+    "PROJECT_FILE",
+    "Archive",
+    "bounded",
+    "check_not_read",
+    "descriptor_of",
+    "exists",
+    "is_dir",
+    "is_file",
+    "is_plain_name",
+    "limits",
+    "load_json",
+    "may_be_file",
+    "parse_json",
+    "parse_toml",
+    "project_for",
+    "read_bytes",
+    "read_source",
+    "read_spec_file",
+    "reading_error",
+    "reason",
+    "remove_file",
+    "replaced",
+    "split_spec_name",
+    "temporary_folder",
+    "try_lock",
+    "unpack",
+    "write_file",
+    "write_files",
+]

@@ -1,0 +1,15 @@
+"""The values that an expression can take."""
+
+from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
+from tltlc.resolve.range_proof.interval import Interval, UndefinedError
+from tltlc.resolve.range_proof.region import Region, Variable, bound
+
+__all__ = [
+    "Interval",
+    "Region",
+    "TooManyCasesError",
+    "UndefinedError",
+    "Variable",
+    "bound",
+    "cases",
+]
