@@ -17,7 +17,7 @@ from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.mine.confirm import confirmed
 from tltlc.tools.mine.evidence import Evidence
-from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.vocabulary import of_columns
 
 SECTION = "mine"
@@ -67,7 +67,7 @@ def _ours(given: Evidence, wanted: Fspa, min_support: float) -> Record:
     """The time from letters in memory to proposals that automata have confirmed, and the rank of the planted spec."""
     begun = time.perf_counter()
     words = of_columns(dict.fromkeys(given.atoms(), True))
-    search = Search(given, Options(min_support=min_support))
+    search = SpecSearch(given, MiningOptions(min_support=min_support))
     for _ in search.run():
         pass
     found = confirmed(search.ranked(), given, words, CompileOptions(), _TOP)

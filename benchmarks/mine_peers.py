@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from benchmarks.measure import run
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 Values = tuple[int, ...]
 """Of a formula its truth at every sample of every trace: a number per trace, the first sample its lowest bit."""
@@ -88,7 +88,7 @@ def _formulas(evidence: Evidence) -> Iterator[tuple[str, Values]]:
                     yield from new(f"({left} U {right})", tuple(_until(one, other) for one, other in both), size)
 
 
-def _mask(trace: Recorded, atom: str) -> int:
+def _mask(trace: LabelledTrace, atom: str) -> int:
     return sum(1 << place for place, letter in enumerate(trace.letters) if atom in letter)
 
 
@@ -123,7 +123,7 @@ def scarlet(evidence: Evidence, timeout_s: float) -> Learned:
     return Learned(_renamed(found[-1], atoms) if found else None, made.wall_ms / 1e3, len(found))
 
 
-def _line(trace: Recorded, atoms: tuple[str, ...]) -> str:
+def _line(trace: LabelledTrace, atoms: tuple[str, ...]) -> str:
     return ";".join(",".join(str(int(atom in letter)) for atom in atoms) for letter in trace.letters)
 
 

@@ -12,7 +12,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.monitor.guards import holds
 from tltlc.pipeline import compile_source
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 ATOMS: Final = tuple(f"p{number}" for number in range(8))
 _OFTEN: Final = 0.15
@@ -107,8 +107,8 @@ def evidence(spec: Planted, traces: int, counterexamples: int, seed: int, noise:
     return Evidence(_recorded("good", good), _recorded("bad", bad))
 
 
-def _recorded(name: str, walks: Sequence[tuple[Letter, ...]]) -> tuple[Recorded, ...]:
-    return tuple(Recorded(f"{name} {number}", walk) for number, walk in enumerate(walks, start=1))
+def _recorded(name: str, walks: Sequence[tuple[Letter, ...]]) -> tuple[LabelledTrace, ...]:
+    return tuple(LabelledTrace(f"{name} {number}", walk) for number, walk in enumerate(walks, start=1))
 
 
 class _Walker:

@@ -20,7 +20,7 @@ from benchmarks.store import ROOT
 from tests.resolve import test_predicate_check as inline_tests
 from tltlc.core.record import record
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import ArithmeticOp, Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import ArithmeticOp, Condition, Const, Expression, Op, SignalValue, When
 from tltlc.grammar.parser import parse
 from tltlc.io.files import read_source
 from tltlc.resolve import range_proof, spec
@@ -28,7 +28,7 @@ from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolution
 from tltlc.resolve.range_proof import check, continuity, elimination, exact, jumps, proof, witness
 from tltlc.resolve.range_proof.proof import holds_at_once
-from tltlc.resolve.range_proof.region import Region
+from tltlc.resolve.range_proof.region import ConstrainedBox
 
 FOLDERS: Final = {"standard library": "stdlib_predicates", "examples": "examples", "tests": "tests"}
 SEED: Final = 1
@@ -129,7 +129,7 @@ def _sampled(expression: Expression, choose: random.Random) -> list[float]:
 
 def _expression(choose: random.Random, depth: int) -> Expression:
     if depth == 0 or choose.random() < 0.15:
-        return Signal(choose.choice("xyz")) if choose.random() < 0.7 else Const(float(choose.randint(-3, 3)))
+        return SignalValue(choose.choice("xyz")) if choose.random() < 0.7 else Const(float(choose.randint(-3, 3)))
     inside = [_expression(choose, depth - 1) for _ in range(3)]
     if choose.random() < 0.15:
         return When(((Condition("<", (inside[0], Const(1.0))), inside[1]),), inside[2])
@@ -150,7 +150,7 @@ def count_decisions(questions: Sequence[Question]) -> Counter[str]:
         "the modules of sympy's proofs keep the plain function"
     )
 
-    def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = 300) -> bool:
+    def proves_within(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int = 300) -> bool:
         method = _proving_method(value, region, low, high, parts)
         decisions.update([method] if method else [])
         return method is not None
@@ -178,7 +178,7 @@ def count_decisions(questions: Sequence[Question]) -> Counter[str]:
     return decisions
 
 
-def _proving_method(value: Expression, region: Region, low: float, high: float, parts: int) -> str | None:
+def _proving_method(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int) -> str | None:
     """The first method that proves a bound, in the order of ``proof.proves_within``."""
     if holds_at_once(value, region, low, high):
         return "intervals"
@@ -210,7 +210,7 @@ def _nothing(*_: object) -> None:
     return None
 
 
-def _same_region(_: Expression, region: Region) -> Region:
+def _same_region(_: Expression, region: ConstrainedBox) -> ConstrainedBox:
     return region
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.logic.formula import FALSE, always, and_, atom, eventually, then
 from tltlc.resolve import spec
 
@@ -37,7 +37,7 @@ def cover_and_hide() -> Fspa:
         params=(spec.Param("level_size", "length", 20.0, 2.0, 10_000.0),),
         atoms=(
             *(spec.Atom("near", near(f"distance({entity})"), "", (entity,)) for entity in ("s1", "s2", "exit")),
-            spec.Atom(p, Signal("health"), "The character has health left."),
+            spec.Atom(p, SignalValue("health"), "The character has health left."),
         ),
         exclusive=((0, 1, 2),),
         states=(
@@ -67,7 +67,7 @@ def cover_and_hide() -> Fspa:
 
 def near(distance: str, close: float = 1.0, far: str = "level_size") -> Expression:
     """Closeness, Eq. 2 of the paper: 1 at the target, 0 at distance ``close``, -1 from distance ``far`` on."""
-    d, reach, one = Signal(distance), Param(far), Const(1.0)
+    d, reach, one = SignalValue(distance), ParamValue(far), Const(1.0)
     share = Op("/", (Op("-", (reach, d)), Op("-", (reach, Const(close)))))
     return When(
         (

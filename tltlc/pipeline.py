@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from tltlc.automaton.fspa import Fspa
     from tltlc.grammar.tree import Module
-    from tltlc.resolve.spec import Program, Spec
+    from tltlc.resolve.spec import ResolvedFile, Spec
 
 
 @record
@@ -54,7 +54,7 @@ class Compiled:
     ``diagnostics`` contains no errors, and none that a comment in the file allows.
     """
 
-    program: Program
+    program: ResolvedFile
     automata: tuple[Fspa, ...]
     diagnostics: tuple[Diagnostic, ...]
 
@@ -100,7 +100,7 @@ class Session:
         return self.syntax_errors + self.resolution.diagnostics
 
     @cached_property
-    def program(self) -> Program:
+    def program(self) -> ResolvedFile:
         """The specs and tests.
 
         Errors: :class:`TltlError` with the diagnostics of parsing, or of parsing and resolution.

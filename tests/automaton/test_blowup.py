@@ -16,13 +16,15 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, next_, until, weak_next
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 
 
 def with_parts(*formulas: Formula) -> Spec:
     """Return a spec with one part for each formula; a part spans one character of the source."""
     spec = spec_from_formula(and_(*formulas))
-    return replace(spec, parts=tuple(Part(formula, spec.source, Span(i, i + 1)) for i, formula in enumerate(formulas)))
+    return replace(
+        spec, parts=tuple(Conjunct(formula, spec.source, Span(i, i + 1)) for i, formula in enumerate(formulas))
+    )
 
 
 def error(spec: Spec, budget: int) -> TltlError:
@@ -64,7 +66,7 @@ def record_measured_parts(monkeypatch: pytest.MonkeyPatch) -> list[Span]:
     measured: list[Span] = []
     size = blowup._size
 
-    def counted(part: Part, spec: Spec) -> blowup.Size | None:
+    def counted(part: Conjunct, spec: Spec) -> blowup.Size | None:
         measured.append(part.span)
         return size(part, spec)
 

@@ -10,7 +10,7 @@ import pytest
 
 import tltlc
 from tltlc.automaton.diagrams import Diagrams
-from tltlc.automaton.finite.readback import Writer
+from tltlc.automaton.finite.readback import ObligationWriter
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.after_automaton import After
@@ -112,13 +112,13 @@ def test_long_bounds_need_no_deep_stack(bound) -> None:  # type: ignore[no-untyp
 
 def test_labels_of_long_bounds_are_not_searched_for_redundant_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     searched: set[int] = set()
-    support = Writer.support
+    support = ObligationWriter.support
 
-    def watched(writer: Writer, obligation: int) -> list[int]:
+    def watched(writer: ObligationWriter, obligation: int) -> list[int]:
         searched.add(obligation)
         return support(writer, obligation)
 
-    monkeypatch.setattr(Writer, "support", watched)
+    monkeypatch.setattr(ObligationWriter, "support", watched)
     labels = [str(state.label) for state in compiled("F[0,300] b", "finite").states]
     assert {f"F[0,{steps}] b" for steps in range(2, 301)} <= set(labels)
     assert len(searched) < 150

@@ -11,12 +11,12 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.finite.contradiction import contradiction
 from tltlc.core.record import replace
 from tltlc.logic.formula import Formula, and_
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 
 
 def spec_of(parts: list[Formula], exclusive: tuple[tuple[str, ...], ...] = ()) -> Spec:
     spec = spec_from_formula(and_(*parts), exclusive=exclusive)
-    return replace(spec, parts=tuple(Part(part, spec.source, spec.name_span) for part in parts))
+    return replace(spec, parts=tuple(Conjunct(part, spec.source, spec.name_span) for part in parts))
 
 
 def is_unsatisfiable(parts: list[Formula]) -> bool:

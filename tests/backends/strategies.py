@@ -10,7 +10,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, Guard, Text
 from tltlc.automaton.infinite.build import build_infinite
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.logic.text.parser import FormulaParser
 from tltlc.resolve import spec
 
@@ -80,7 +80,7 @@ def expressions() -> st.SearchStrategy[Expression]:
     """Expressions with every operator, over the signals and the parameter of the Cover and Hide fixture."""
     leaves = st.one_of(
         st.builds(Const, finite()),
-        st.sampled_from([Signal("distance(s1)"), Signal("health"), Param("level_size")]),
+        st.sampled_from([SignalValue("distance(s1)"), SignalValue("health"), ParamValue("level_size")]),
     )
     return st.recursive(leaves, _operations, max_leaves=10)
 
@@ -124,7 +124,7 @@ def hostile_automata(draw: st.DrawFn) -> Fspa:
         tags=(draw(hostile_texts),),
         signals=(spec.Signal(signal, "number", -1.0, 1.0, draw(hostile_texts)), fspa.signals[3]),
         params=(spec.Param(draw(hostile_texts.filter(bool)), "number", 1.0, None, None, draw(hostile_texts)),),
-        atoms=tuple(spec.Atom(name, Signal(signal), draw(hostile_texts)) for name in names),
+        atoms=tuple(spec.Atom(name, SignalValue(signal), draw(hostile_texts)) for name in names),
         states=states,
         edges=edges,
     )

@@ -26,7 +26,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
@@ -116,7 +116,7 @@ def test_values_of_atoms_agree_with_the_monitor(compiler: str, tmp_path: Path, d
                 params=tuple(
                     spec.Param(name, "number", value, None, None) for name, value in zip(PARAMS, params, strict=True)
                 ),
-                atoms=(spec.Atom("a", data.draw(expressions())), spec.Atom("b", Signal(SIGNALS[0]))),
+                atoms=(spec.Atom("a", data.draw(expressions())), spec.Atom("b", SignalValue(SIGNALS[0]))),
             )
         )
         rows = data.draw(st.lists(st.tuples(numbers, numbers), min_size=3, max_size=3))
@@ -127,7 +127,7 @@ def test_values_of_atoms_agree_with_the_monitor(compiler: str, tmp_path: Path, d
 @compilers
 def test_special_cases_agree_with_the_monitor(compiler: str, tmp_path: Path) -> None:
     number, holds = spec.Signal("x", "number", None, None), spec.Signal("open", "bool", 0.0, 1.0)
-    x = Signal("x")
+    x = SignalValue("x")
     deep: Expression = x
     for _ in range(100):
         deep = Op("*", (Const(0.5), Op("+", (Op("^", (deep, Const(2.0))), Const(0.25)))))
@@ -138,7 +138,7 @@ def test_special_cases_agree_with_the_monitor(compiler: str, tmp_path: Path) -> 
     fspas: list[tuple[Fspa, list[Sample]]] = [
         *[(build(spec_from_formula(formula)), empty) for formula in (f.TRUE, f.FALSE, f.next_(f.TRUE))],
         (replace(build(spec_from_formula(f.next_(f.TRUE))), judge="limit", limit_steps=2), [{}, {}, {}]),
-        (one_atom(Op("-", (Signal("open"), Const(0.5))), holds), [{"open": 0.0}, {"open": 1.0}, {"open": 0.5}]),
+        (one_atom(Op("-", (SignalValue("open"), Const(0.5))), holds), [{"open": 0.0}, {"open": 1.0}, {"open": 0.5}]),
         (one_atom(Const(-0.5), holds), [{"open": 0.0}]),
         (one_atom(Op("/", (Const(1.0), x)), number), [{"x": 4.0}, {"x": 0.0}]),
         (one_atom(Op("sqrt", (x,)), number), [{"x": 0.25}, {"x": -0.0}, {"x": -1.0}]),
@@ -210,7 +210,7 @@ def test_hostile_names_stay_distinct(compiler: str, tmp_path: Path) -> None:
         doc="ends in ??/",
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
-        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (SignalValue(name), Const(0.0))), name) for name in names),
     )
     programs = programs_of(tmp_path, compiler, [fspa])
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
@@ -237,7 +237,7 @@ def test_names_of_macros_are_avoided(compiler: str, tmp_path: Path) -> None:
         build(spec_from_formula(f.eventually(f.atom("p")))),
         name="all",
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0) for name in names),
-        atoms=(spec.Atom("p", Op("min", tuple(map(Signal, names)))),),
+        atoms=(spec.Atom("p", Op("min", tuple(map(SignalValue, names)))),),
     )
     text = header_of(fspa)
     assert not [name for name in names if f"double {name};" in text]

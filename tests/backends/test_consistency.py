@@ -16,7 +16,7 @@ from tltlc.artefact import consistency, guards
 from tltlc.artefact.consistency import problems
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State
 from tltlc.core.record import replace
-from tltlc.expression.tree import Param, Signal
+from tltlc.expression.tree import ParamValue, SignalValue
 
 SAFE = Guard("alive", (((3, True),),))
 
@@ -44,8 +44,8 @@ def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
     [
         (changed("signals", 1, base="health", arguments=()), "two signals are named `health`"),
         (changed("atoms", 1, base="alive", arguments=()), "two atoms are named `alive`"),
-        (changed("atoms", 3, expression=Signal("mana")), "there is no signal `mana`"),
-        (changed("atoms", 3, expression=Param("mana")), "there is no param `mana`"),
+        (changed("atoms", 3, expression=SignalValue("mana")), "there is no signal `mana`"),
+        (changed("atoms", 3, expression=ParamValue("mana")), "there is no param `mana`"),
         (changed("signals", 3, low=2.0), "the range of `health` is empty"),
         (changed("params", 0, value=1.0), "the value of `level_size` lies outside its range"),
         (changed("states", 1, id=0), "state 1 has the id 0"),

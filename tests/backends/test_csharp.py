@@ -26,7 +26,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Op, Signal
+from tltlc.expression.tree import Const, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
@@ -76,7 +76,7 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
         fspa,
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
-        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (SignalValue(name), Const(0.0))), name) for name in names),
     )
     programs = Programs(*RUNNERS, tmp_path, [fspa])
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]

@@ -15,7 +15,7 @@ from tltlc.automaton.text import label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
 from tltlc.backends.drawing.folding import marked
-from tltlc.backends.drawing.texts import Guards, arrows, visible, wrapped
+from tltlc.backends.drawing.texts import GuardNotation, arrows, visible, wrapped
 from tltlc.core.record import replace
 
 
@@ -206,5 +206,5 @@ def test_operators_inside_names_of_atoms_are_kept() -> None:
     atoms = tuple(
         replace(a, base=n, arguments=()) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True)
     )
-    guards = Guards(replace(fspa, atoms=atoms), "unicode")
+    guards = GuardNotation(replace(fspa, atoms=atoms), "unicode")
     assert guards.text("!x! & (a & b | !true_love) -> true") == "¬x! ∧ (a & b ∨ ¬true_love) ⇒ ⊤"

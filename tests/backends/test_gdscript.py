@@ -38,7 +38,7 @@ from tltlc.backends.godot import source
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import number
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
@@ -124,7 +124,7 @@ def test_values_of_atoms_agree_with_the_monitor(tmp_path: Path, data: st.DataObj
             params=tuple(
                 spec.Param(name, "number", value, None, None) for name, value in zip(PARAMS, params, strict=True)
             ),
-            atoms=(spec.Atom("a", data.draw(expressions())), spec.Atom("b", Signal(SIGNALS[0]))),
+            atoms=(spec.Atom("a", data.draw(expressions())), spec.Atom("b", SignalValue(SIGNALS[0]))),
         )
         rows = data.draw(st.lists(st.tuples(numbers, numbers), min_size=3, max_size=3))
         cases.append((fspa, [dict(zip(SIGNALS, row, strict=True)) for row in rows]))
@@ -132,7 +132,7 @@ def test_values_of_atoms_agree_with_the_monitor(tmp_path: Path, data: st.DataObj
 
 
 NUMBER = spec.Signal("x", "number", None, None)
-X = Signal("x")
+X = SignalValue("x")
 
 
 @runs
@@ -153,7 +153,7 @@ def test_special_cases_agree_with_the_monitor(tmp_path: Path) -> None:
     fspas: list[tuple[Fspa, list[Sample]]] = [
         *decided,
         (replace(build(spec_from_formula(f.next_(f.TRUE))), judge="limit", limit_steps=2), [{}, {}, {}]),
-        (one_atom(Op("-", (Signal("open"), Const(0.5))), holds), [{"open": 0.0}, {"open": 1.0}]),
+        (one_atom(Op("-", (SignalValue("open"), Const(0.5))), holds), [{"open": 0.0}, {"open": 1.0}]),
         (one_atom(Const(-0.5), holds), [{"open": 0.0}]),
         (one_atom(Op("/", (Const(1.0), X)), NUMBER), [{"x": 4.0}, {"x": 0.0}]),
         (one_atom(Op("sqrt", (X,)), NUMBER), [{"x": 0.25}, {"x": -0.0}, {"x": -1.0}]),
@@ -258,7 +258,7 @@ def awkward() -> Fspa:
         fspa,
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
-        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (SignalValue(name), Const(0.0))), name) for name in names),
     )
 
 

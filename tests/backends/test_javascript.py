@@ -23,7 +23,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Op, Signal
+from tltlc.expression.tree import Const, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
@@ -123,7 +123,7 @@ def awkward(all_names: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
         doc="*/ ends in \\",
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
-        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (SignalValue(name), Const(0.0))), name) for name in names),
     )
     return fspa, [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
 
@@ -141,7 +141,7 @@ def test_docs_cannot_close_a_comment_of_the_types(tmp_path: Path) -> None:
 def test_numbers_are_printed_as_c_prints_them(tmp_path: Path) -> None:
     """The robustness of an edge equals the signal to the last digit; ties are rounded to even."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
-    fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", Signal("x")),))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", SignalValue("x")),))
     values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
     values += [math.sin(number) * 10.0**-power for power in (0, 3, 5, 9, 99, 310) for number in range(60)]
     samples = [{"x": value} for value in values if abs(value) <= 1]
@@ -213,7 +213,7 @@ def test_module(tmp_path: Path) -> None:
 
 def test_a_boolean_is_a_bool_and_a_number(tmp_path: Path) -> None:
     """As in Python, true counts as 1; no other type is accepted as a number."""
-    expression = Op("-", (Op("*", (Signal("x"), Signal("seen"))), Const(0.5)))
+    expression = Op("-", (Op("*", (SignalValue("x"), SignalValue("seen"))), Const(0.5)))
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
     signals = (spec.Signal("x", "number", None, None), spec.Signal("seen", "bool", 0.0, 1.0))
     written(replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),)), tmp_path)

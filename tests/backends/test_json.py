@@ -20,7 +20,7 @@ from tltlc.backends.json import read
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression.python import compile_expressions
-from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.io.limits import ARITHMETIC, Limit
 from tltlc.resolve.spec import Atom
 from tltlc.tools.diff.relation import different_atoms
@@ -215,7 +215,7 @@ def test_a_value_is_on_one_line_if_and_only_if_it_fits(value: object) -> None:
     assert (text.count("\n") == 3) == one_line
 
 
-X: Expression = Signal("health")
+X: Expression = SignalValue("health")
 BELOW = Condition("<", (X, Const(0.5)))
 
 

@@ -20,7 +20,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
@@ -111,7 +111,7 @@ def test_many_signals_and_long_guards(interpreter: str, tmp_path: Path) -> None:
 @interpreters
 def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
     """A predicate has more parts than a function may have local variables."""
-    x: Expression = Signal("x")
+    x: Expression = SignalValue("x")
     total: Expression = Const(0.0)
     for part in range(300):
         case = When(((Condition(">", (x, Const(part / 300))), Op("*", (x, Const(0.001)))),), Const(-0.001))
@@ -131,7 +131,7 @@ def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("within", [False, True])
 def test_deeply_nested_cases(interpreter: str, tmp_path: Path, within: bool) -> None:
     """Cases nest deeper than the blocks that a parser allows, with and without a computation after the inner value."""
-    x = Signal("x")
+    x = SignalValue("x")
     value: Expression = Const(0.5)
     for depth in range(300):
         value = When(((Condition(">", (x, Const(depth / 300))), value),), Const(depth / -300))
@@ -151,7 +151,7 @@ def test_deeply_nested_cases(interpreter: str, tmp_path: Path, within: bool) -> 
 def test_tanh(interpreter: str, tmp_path: Path) -> None:
     """Newer versions of Lua have no tanh; the replacement in the module keeps signs and small values."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
-    atom = spec.Atom("p", Op("tanh", (Signal("x"),)))
+    atom = spec.Atom("p", Op("tanh", (SignalValue("x"),)))
     fspa = replace(fspa, signals=(spec.Signal("x", "number", None, None),), atoms=(atom,))
     sizes = [0.0, 1e-300, 1e-9, 0.1, 0.25, 0.4999, 0.5, 0.5001, 0.75, 1.0, 3.0, 19.0, 25.0, 1e3, 1e308]
     samples = [{"x": sign * size} for size in sizes for sign in (-1.0, 1.0)]
@@ -166,7 +166,7 @@ def test_tanh(interpreter: str, tmp_path: Path) -> None:
 def test_numbers_are_printed_as_c_prints_them(interpreter: str, tmp_path: Path) -> None:
     """The robustness of an edge equals the signal to the last digit; ties are rounded to even."""
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
-    fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", Signal("x")),))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", SignalValue("x")),))
     values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
     values += [math.sin(number) * 10.0**-power for power in (0, 3, 5, 9, 99, 310) for number in range(60)]
     samples = [{"x": value} for value in values if abs(value) <= 1]

@@ -24,7 +24,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import emit
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Op, Signal
+from tltlc.expression.tree import Const, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
@@ -78,7 +78,7 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
         fspa,
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
-        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (SignalValue(name), Const(0.0))), name) for name in names),
     )
     programs = Programs(*RUNNERS, tmp_path, [fspa])
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
@@ -149,7 +149,7 @@ def test_library(tmp_path: Path) -> None:
 @pytest.mark.parametrize("edition", ["2018", "2021"])
 def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
     """With and without functions that `core` lacks, in crates that deny many lints."""
-    x = Signal("x")
+    x = SignalValue("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
     written(replace(one_atom(value, spec.Signal("x", "number", None, None)), name="much"), tmp_path)
     assert "It needs `core` alone." in written(cover_and_hide(), tmp_path)
@@ -199,7 +199,7 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
 
 def test_program_of_any_edition(tmp_path: Path) -> None:
     """The program uses every function that `core` lacks."""
-    x = Signal("x")
+    x = SignalValue("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
     fspa = one_atom(value, spec.Signal("x", "number", None, None))
     written(fspa, tmp_path)

@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.docs.blocks import DOCS, ROOT
 from tltlc.backends import targets
 from tltlc.io.limits import TRACE_LINE
-from tltlc.monitor.trace_rows import Lines, Table, cell_number, read_rows
+from tltlc.monitor.trace_rows import TraceLines, TraceTable, cell_number, read_rows
 from tltlc.monitor.traces import read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.conformance import odd_traces
@@ -25,8 +25,8 @@ def cells(outcome: str) -> list[str]:
 
 
 def number(cell: str) -> float | None:
-    trace = read_rows(Lines(io.BytesIO(f"x\n{cell}\n".encode()), "trace"))
-    assert isinstance(trace, Table)
+    trace = read_rows(TraceLines(io.BytesIO(f"x\n{cell}\n".encode()), "trace"))
+    assert isinstance(trace, TraceTable)
     ((cell_text,),) = trace.rows
     return cell_number(cell_text)
 

@@ -17,26 +17,26 @@ def read(text: str) -> tree.Expr:
 def brackets(expression: tree.Expr) -> str:
     """Return the expression with brackets around every operator, which show its structure."""
     match expression:
-        case tree.Number(value=value, unit=unit):
+        case tree.NumberExpr(value=value, unit=unit):
             return f"{value:g}{unit or ''}"
         case tree.Constant(value=constant):
             return "true" if constant else "false"
-        case tree.Name(name=name):
+        case tree.NameExpr(name=name):
             return name
-        case tree.Call(name=name, arguments=arguments):
+        case tree.CallExpr(name=name, arguments=arguments):
             shown = ", ".join((f"{item.name}=" if item.name else "") + brackets(item.value) for item in arguments)
             return f"{name}({shown})"
         case tree.Unary(op=op, operand=operand, bound=bound):
             limits = "" if bound is None else f"[{brackets(bound.low) if bound.low else ''},{brackets(bound.high)}]"
             return f"({op}{limits} {brackets(operand)})"
-        case tree.Binary(op=op, left=left, right=right):
+        case tree.BinaryExpr(op=op, left=left, right=right):
             return f"({brackets(left)} {op} {brackets(right)})"
-        case tree.Group(inner=inner):
+        case tree.GroupExpr(inner=inner):
             return f"<{brackets(inner)}>"
         case tree.Quantified(all=all_, variable=variable, entities=entities, body=body):
             names = " ".join(entity.name for entity in entities)
             return f"({'all' if all_ else 'any'} {variable} {names}: {brackets(body)})"
-        case tree.When(cases=cases, otherwise=otherwise):
+        case tree.WhenExpr(cases=cases, otherwise=otherwise):
             shown = " ".join(f"{brackets(case.condition)}: {brackets(case.value)}" for case in cases)
             return f"(when {shown} otherwise {brackets(otherwise)})"
     raise AssertionError(expression)

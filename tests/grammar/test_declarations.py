@@ -48,12 +48,12 @@ def test_signals_and_params() -> None:
     assert [(item.name, item.type) for item in distance.parameters] == [("target", "entity")]
     assert distance.doc == "How far away."
     assert distance.interval is not None
-    assert isinstance(distance.interval.high, tree.Number)
+    assert isinstance(distance.interval.high, tree.NumberExpr)
     assert distance.interval.high.value == inf
     assert speed.type is None
     (param,) = (item for item in read(TEXT) if isinstance(item, tree.ParamDecl))
     assert (param.name, param.type) == ("level_size", "length")
-    assert isinstance(param.value, tree.Number)
+    assert isinstance(param.value, tree.NumberExpr)
     assert (param.value.value, param.value.unit) == (20, "m")
 
 
@@ -62,7 +62,7 @@ def test_infinity_has_a_sign() -> None:
     assert isinstance(signal, tree.SignalDecl)
     assert signal.interval is not None
     assert isinstance(signal.interval.low, tree.Unary)
-    assert isinstance(signal.interval.low.operand, tree.Number)
+    assert isinstance(signal.interval.low.operand, tree.NumberExpr)
     assert signal.interval.low.operand.value == inf
 
 
@@ -70,7 +70,7 @@ def test_predicate() -> None:
     near, _ = (item for item in read(TEXT) if isinstance(item, tree.PredicateDecl))
     assert near.doc == "Closeness to `target`:\n1 at it, -1 far away."
     assert [item.name for item in near.parameters] == ["target", "close", "far"]
-    assert isinstance(near.body, tree.When)
+    assert isinstance(near.body, tree.WhenExpr)
     assert len(near.body.cases) == 2
 
 
@@ -81,7 +81,7 @@ def test_spec() -> None:
     kinds = [clause.kind for clause in block.clauses]
     assert kinds == ["level", "limit", "judge", "semantics", "tag", "reach", "keep", "avoid", "require", "require"]
     by_kind = {clause.kind: clause for clause in block.clauses}
-    assert isinstance(by_kind["judge"].value, tree.Name)
+    assert isinstance(by_kind["judge"].value, tree.NameExpr)
     assert by_kind["judge"].value.name == "limit"
     assert isinstance(by_kind["tag"].value, tuple)
     assert [name.name for name in by_kind["tag"].value] == ["paper", "stealth"]

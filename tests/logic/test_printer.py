@@ -170,7 +170,7 @@ _BINARY: dict[str, Callable[[Formula, Formula], Formula]] = {
 
 def _from_tree(expr: tree.Expr, source: SourceFile) -> Formula:
     match expr:
-        case tree.Group():
+        case tree.GroupExpr():
             return _from_tree(expr.inner, source)
         case tree.Constant():
             return TRUE if expr.value else FALSE
@@ -179,7 +179,7 @@ def _from_tree(expr: tree.Expr, source: SourceFile) -> Formula:
             return bounded_formula(expr.op, last, _from_tree(expr.operand, source))
         case tree.Unary() if expr.op in _UNARY:
             return _UNARY[expr.op](_from_tree(expr.operand, source))
-        case tree.Binary() if expr.op in _BINARY:
+        case tree.BinaryExpr() if expr.op in _BINARY:
             return _BINARY[expr.op](_from_tree(expr.left, source), _from_tree(expr.right, source))
         case _:
             return f.atom(source.slice(expr.span))

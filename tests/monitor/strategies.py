@@ -11,7 +11,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.infinite.build import build_infinite
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 
 SIGNALS, PARAMS = ("x", "y(a, b)"), ("p", 'q"')
 
@@ -21,7 +21,9 @@ numbers = st.sampled_from([0.0, -0.0, 1.0, -1.0, 2.0, 3.0, 0.5, 0.1, -2.5, 1e3, 
     allow_nan=False, allow_infinity=False, width=64
 )
 _leaves = (
-    st.builds(Const, numbers) | st.builds(Signal, st.sampled_from(SIGNALS)) | st.builds(Param, st.sampled_from(PARAMS))
+    st.builds(Const, numbers)
+    | st.builds(SignalValue, st.sampled_from(SIGNALS))
+    | st.builds(ParamValue, st.sampled_from(PARAMS))
 )
 
 

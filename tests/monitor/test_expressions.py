@@ -14,7 +14,7 @@ from tltlc.expression import python as expression_python
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.json import from_json, to_json
 from tltlc.expression.python import compile_expressions
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 
 FAILURES = (ZeroDivisionError, OverflowError, ValueError)
 
@@ -59,7 +59,7 @@ def test_closeness_halfway(close: float, ratio: float) -> None:
     assert value == pytest.approx(-0.75, abs=1e-6)
 
 
-x = Signal("x")
+x = SignalValue("x")
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_an_expression_without_a_value_is_an_error(expression: Expression, error
 def test_deep_expressions(op: str) -> None:
     """The arithmetic of a spec may be 100 operators deep, on either side."""
     for left in (True, False):
-        expression: Expression = Param("p")
+        expression: Expression = ParamValue("p")
         for _ in range(100):
             pair = (expression, x) if left else (x, expression)
             if op == "when":
@@ -138,6 +138,6 @@ def test_the_size_of_the_source_is_linear_in_the_atoms(monkeypatch: pytest.Monke
 
     monkeypatch.setattr(expression_python, "compile", compiled, raising=False)
     names = [f"x{number}" for number in range(500)]
-    functions = compile_expressions([Op("neg", (Signal(name),)) for name in names], names, {})
+    functions = compile_expressions([Op("neg", (SignalValue(name),)) for name in names], names, {})
     assert [function(range(500)) for function in functions] == [-number for number in range(500)]
     assert len(texts[0]) < 500 * 100

@@ -13,7 +13,7 @@ from tests.monitor.strategies import atom_traces, automata, values
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Expression, Op, Signal
+from tltlc.expression.tree import Const, Expression, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.logic.oracle import holds as oracle
 from tltlc.monitor import Monitor, MonitorError
@@ -124,9 +124,9 @@ def test_reset() -> None:
 
 
 def test_unused_signals_and_other_number_types_are_accepted() -> None:
-    monitor = Monitor(with_atom(Signal("x")))
+    monitor = Monitor(with_atom(SignalValue("x")))
     assert monitor.step({"x": True, "y": math.nan}).accepting
-    assert Monitor(with_atom(Signal("x"))).step({"x": 1}).accepting
+    assert Monitor(with_atom(SignalValue("x"))).step({"x": 1}).accepting
 
 
 # --- invalid samples ------------------------------------------------------------------------------
@@ -154,7 +154,7 @@ def test_unusable_values_are_named(value: object, remark: str) -> None:
 
 
 def test_a_bool_is_true_or_false() -> None:
-    fspa = replace(with_atom(Signal("x")), signals=(spec.Signal("x", "bool", 0.0, 1.0),))
+    fspa = replace(with_atom(SignalValue("x")), signals=(spec.Signal("x", "bool", 0.0, 1.0),))
     monitor = Monitor(fspa)
     assert rejection(monitor, {"x": 0.5}) == ("TLT0612", "step 1: the signal `x` is 0.5, not true or false")
     assert not monitor.step({"x": False}).accepting
@@ -176,7 +176,7 @@ def test_values_out_of_range_are_clamped_and_reported_once() -> None:
 @pytest.mark.parametrize(
     ("expression", "remark"),
     [
-        (Op("/", (Const(1.0), Signal("x"))), "divides by zero"),
+        (Op("/", (Const(1.0), SignalValue("x"))), "divides by zero"),
         (Op("exp", (Const(1e4),)), "is too large to compute"),
         (Op("*", (Const(1e300), Const(1e300))), "is too large to compute"),
         (Op("sqrt", (Const(-1.0),)), "takes a root or power that does not exist"),
@@ -187,12 +187,12 @@ def test_an_atom_without_a_value_is_named(expression: Expression, remark: str) -
 
 
 def test_an_atom_out_of_its_range_is_clamped() -> None:
-    monitor = Monitor(with_atom(Op("*", (Const(3.0), Signal("x")))))
+    monitor = Monitor(with_atom(Op("*", (Const(3.0), SignalValue("x")))))
     assert monitor.step({"x": -1.0}).robustness == 1.0
     assert monitor.step({"x": 1.0}).robustness == 1.0
     (notice,) = monitor.notices
     assert (notice.code, notice.title) == ("TLT0616", "step 1: the atom `p` is -3, outside [-1, 1]: it counts as -1")
-    rounded = Monitor(with_atom(Op("+", (Const(1e-15), Signal("x")))))
+    rounded = Monitor(with_atom(Op("+", (Const(1e-15), SignalValue("x")))))
     assert (rounded.step({"x": 1.0}).robustness, rounded.notices) == (1.0, [])
 
 
@@ -207,7 +207,7 @@ def test_exclusive_atoms_that_hold_at_once_are_named() -> None:
 
 @pytest.mark.parametrize("sample", [(math.nan,), (math.inf,), (1.5,), (), (1.0, 1.0)])
 def test_invalid_values_of_atoms_are_rejected(sample: tuple[float, ...]) -> None:
-    monitor = Monitor(with_atom(Signal("x")))
+    monitor = Monitor(with_atom(SignalValue("x")))
     with pytest.raises(ValueError, match="1 values in"):
         monitor.step_atoms(sample)
     assert monitor.steps == 0

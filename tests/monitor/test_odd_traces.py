@@ -22,29 +22,29 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import TRACE_LINE
 from tltlc.monitor.traces import read_trace
 from tltlc.tools.conformance.corpus import CASES
-from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, SIGNALS, VALUES, Odd
+from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, SIGNALS, VALUES, OddTrace
 from tltlc.tools.mine.columns import columns
 
 ONE = ((0.5, 1.0),)
 
 
-def _object(line: bytes, x: float = 0.5) -> Odd:
+def _object(line: bytes, x: float = 0.5) -> OddTrace:
     """Return a trace whose second object is ``line``, with ``x`` as the value of its signal ``x``."""
-    return Odd(b'{"x": 0.5, "seen": 1}\n' + line + b"\n", (*ONE, (x, 1.0)))
+    return OddTrace(b'{"x": 0.5, "seen": 1}\n' + line + b"\n", (*ONE, (x, 1.0)))
 
 
-def _bad(line: bytes) -> Odd:
+def _bad(line: bytes) -> OddTrace:
     """Return a trace whose second object is ``line``, which is an error."""
-    return Odd(b'{"x": 0.5, "seen": 1}\n' + line + b'\n{"x": 0.5, "seen": 1}\n', ONE, 2)
+    return OddTrace(b'{"x": 0.5, "seen": 1}\n' + line + b'\n{"x": 0.5, "seen": 1}\n', ONE, 2)
 
 
-OBJECTS: Mapping[str, Odd] = {
+OBJECTS: Mapping[str, OddTrace] = {
     "objects": _object(b'{"seen": true, "x": -0.25}', -0.25),
-    "blanks": Odd(b'\n \t{ "x" :\t0.5, "seen": true } \r\n\r\n \n{"x": 0.5, "seen": 1}', (*ONE, *ONE)),
-    "a byte order mark": Odd(b'\xef\xbb\xbf{"x": 0.5, "seen": 1}\n', ONE),
+    "blanks": OddTrace(b'\n \t{ "x" :\t0.5, "seen": true } \r\n\r\n \n{"x": 0.5, "seen": 1}', (*ONE, *ONE)),
+    "a byte order mark": OddTrace(b'\xef\xbb\xbf{"x": 0.5, "seen": 1}\n', ONE),
     "a byte order mark later": _bad(b'\xef\xbb\xbf{"x": 0.5, "seen": 1}'),
     "no-break space": _bad('\u00a0{"x": 0.5, "seen": 1}'.encode()),
-    "no-break space first": Odd('\u00a0{"x": 0.5, "seen": 1}'.encode(), line=1),
+    "no-break space first": OddTrace('\u00a0{"x": 0.5, "seen": 1}'.encode(), line=1),
     "other keys": _object(b'{"x": 0.5, "seen": 1, "note": "\\u00e9\\n", "inner": {"x": [1, {"seen": null}]}, "": 1}'),
     "a carriage return alone": _bad(b'{"x": 0.5,\r "seen": 1}'),
     "two carriage returns": _bad(b'{"x": 0.5, "seen": 1}\r\r'),
@@ -87,8 +87,8 @@ OBJECTS: Mapping[str, Odd] = {
     "single quotes": _bad(b"{'x': 0.5, 'seen': 1}"),
     "a comment": _bad(b'{"x": 0.5, "seen": 1} // once'),
     "an object that is cut off": _bad(b'{"x": 0.5, "se'),
-    "an object on several lines": Odd(b'{"x": 0.5,\n"seen": 1}\n', line=1),
-    "a carriage return between objects": Odd(b'{"x": 0.5, "seen": 1}\r{"x": 0.5, "seen": 1}\n', line=1),
+    "an object on several lines": OddTrace(b'{"x": 0.5,\n"seen": 1}\n', line=1),
+    "a carriage return between objects": OddTrace(b'{"x": 0.5, "seen": 1}\r{"x": 0.5, "seen": 1}\n', line=1),
     "32 levels": _object(b'{"x": 0.5, "seen": 1, "a": ' + b"[" * 31 + b"]" * 31 + b"}"),
     "33 levels": _bad(b'{"x": 0.5, "seen": 1, "a": ' + b"[" * 32 + b"]" * 32 + b"}"),
     "many lists that do not nest": _object(b'{"x": 0.5, "seen": 1, "a": [' + b"[], " * 99 + b"[]]}"),
@@ -101,17 +101,19 @@ OBJECTS: Mapping[str, Odd] = {
 
 _FOLDED = (b"-" * 63 + b"\n") * (TRACE_LINE.size // 64)
 
-LARGE: Mapping[str, Odd] = {
-    "a row of the greatest length": Odd(b"x,seen\n0.5" + b" " * (TRACE_LINE.size - 6) + b",1\r\n0.5,1\n", (*ONE, *ONE)),
-    "a row that is a byte too long": Odd(b"x,seen\n0.5" + b" " * (TRACE_LINE.size - 5) + b",1\r\n", line=2),
-    "a row of many lines": Odd(b'x,seen,\n0.5,1,"' + b"-" * 56 + _FOLDED[64:] + b'"\n', ONE),
-    "a row of too many lines": Odd(b'x,seen,\n0.5,1,"' + b"-" * 57 + _FOLDED[64:] + b'"\n', line=2),
-    "a quote that is not closed, and much after it": Odd(b'x,seen\n0.5,1\n"' + b"0.5,1\n" * 300_000, ONE, 3),
-    "many digits and a letter": Odd(b"x,seen\n" + b"1" * 200_000 + b"x,1\n", line=2),
-    "many cells in quotes": Odd(b"x,seen" + b',"a"' * 200_000 + b"\n0.5,1" + b',"a"' * 200_000 + b"\n", ONE),
+LARGE: Mapping[str, OddTrace] = {
+    "a row of the greatest length": OddTrace(
+        b"x,seen\n0.5" + b" " * (TRACE_LINE.size - 6) + b",1\r\n0.5,1\n", (*ONE, *ONE)
+    ),
+    "a row that is a byte too long": OddTrace(b"x,seen\n0.5" + b" " * (TRACE_LINE.size - 5) + b",1\r\n", line=2),
+    "a row of many lines": OddTrace(b'x,seen,\n0.5,1,"' + b"-" * 56 + _FOLDED[64:] + b'"\n', ONE),
+    "a row of too many lines": OddTrace(b'x,seen,\n0.5,1,"' + b"-" * 57 + _FOLDED[64:] + b'"\n', line=2),
+    "a quote that is not closed, and much after it": OddTrace(b'x,seen\n0.5,1\n"' + b"0.5,1\n" * 300_000, ONE, 3),
+    "many digits and a letter": OddTrace(b"x,seen\n" + b"1" * 200_000 + b"x,1\n", line=2),
+    "many cells in quotes": OddTrace(b"x,seen" + b',"a"' * 200_000 + b"\n0.5,1" + b',"a"' * 200_000 + b"\n", ONE),
 }
 
-ODD: Mapping[str, Odd] = {**LINES, **CELLS, **VALUES, **MORE_VALUES, **OBJECTS, **LARGE}
+ODD: Mapping[str, OddTrace] = {**LINES, **CELLS, **VALUES, **MORE_VALUES, **OBJECTS, **LARGE}
 
 
 @cache

@@ -27,7 +27,7 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import emit
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Expression, Op, Signal
+from tltlc.expression.tree import Const, Expression, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.logic import oracle
 from tltlc.monitor import Monitor, MonitorError
@@ -122,7 +122,7 @@ def test_values_of_atoms_agree_with_the_monitor(
         build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b"))))),
         signals=(spec.Signal(SIGNALS[0], "number", None, 2.0), spec.Signal(SIGNALS[1], "number", -3.0, None)),
         params=tuple(spec.Param(name, "number", value, None, None) for name, value in zip(PARAMS, params, strict=True)),
-        atoms=(spec.Atom("a", expression), spec.Atom("b", Signal(SIGNALS[0]))),
+        atoms=(spec.Atom("a", expression), spec.Atom("b", SignalValue(SIGNALS[0]))),
     )
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
     for _ in range(3):
@@ -158,7 +158,7 @@ def test_missing_signals_agree_with_the_monitor() -> None:
 
 def test_bools_agree_with_the_monitor() -> None:
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
-    atom = spec.Atom("p", Op("-", (Op("*", (Const(2.0), Signal("x"))), Const(1.0))))
+    atom = spec.Atom("p", Op("-", (Op("*", (Const(2.0), SignalValue("x"))), Const(1.0))))
     fspa = replace(fspa, signals=(spec.Signal("x", "bool", 0.0, 1.0),), atoms=(atom,))
     generated = module_of(fspa).Monitor()
     monitor = Monitor(fspa)
@@ -204,7 +204,7 @@ def test_a_spec_without_atoms(formula: f.Formula) -> None:
 
 @pytest.mark.parametrize("depth", [100])
 def test_deep_arithmetic(depth: int) -> None:
-    expression: Expression = Signal("x")
+    expression: Expression = SignalValue("x")
     for _ in range(depth):
         expression = Op("*", (Const(0.5), Op("+", (Op("^", (expression, Const(2.0))), Const(0.25)))))
     fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
@@ -243,7 +243,7 @@ def test_hostile_names_stay_distinct() -> None:
         fspa,
         signals=tuple(spec.Signal(name, "number", -1.0, 1.0) for name in names),
         params=tuple(spec.Param(name, "number", 0.0, None, None) for name in names),
-        atoms=tuple(spec.Atom(name, Signal(name)) for name in names),
+        atoms=tuple(spec.Atom(name, SignalValue(name)) for name in names),
     )
     module = module_of(fspa)
     for name in names:

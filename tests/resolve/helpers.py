@@ -10,17 +10,17 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
-from tltlc.resolve.spec import Program, Spec
+from tltlc.resolve.spec import ResolvedFile, Spec
 
 
-def resolved(text: str, name: str = "<test>", **options: object) -> tuple[Program, tuple[Diagnostic, ...]]:
+def resolved(text: str, name: str = "<test>", **options: object) -> tuple[ResolvedFile, tuple[Diagnostic, ...]]:
     """Resolve a text that parses, and return the program and all diagnostics of the resolution."""
     module, errors = parse(SourceFile(name, text))
     assert errors == ()
     return resolve(module, ResolveOptions(**options))  # type: ignore[arg-type]
 
 
-def good(text: str, name: str = "<test>", **options: object) -> Program:
+def good(text: str, name: str = "<test>", **options: object) -> ResolvedFile:
     """Return the program of a text without diagnostics."""
     program, diagnostics = resolved(text, name, **options)
     assert diagnostics == ()

@@ -175,17 +175,17 @@ def test_nested_predicates_are_limited() -> None:
 
 
 def test_very_long_numbers_stop_a_proof() -> None:
-    from tltlc.expression.tree import Const, Op, Signal
+    from tltlc.expression.tree import Const, Op, SignalValue
     from tltlc.resolve.range_proof.elimination import GiveUpError
     from tltlc.resolve.range_proof.exact import _Translation
     from tltlc.resolve.range_proof.normal_form import TooLargeError, quotient
-    from tltlc.resolve.range_proof.region import Region
+    from tltlc.resolve.range_proof.region import ConstrainedBox
 
     for exponent, compute, error in (
         (12.0, quotient, TooLargeError),
-        (8.0, _Translation(Region({Signal("x"): (0.0, 1.0)}, {})).term, GiveUpError),
+        (8.0, _Translation(ConstrainedBox({SignalValue("x"): (0.0, 1.0)}, {})).term, GiveUpError),
     ):
-        power = Op("*", (Const(1e300), Signal("x")))
+        power = Op("*", (Const(1e300), SignalValue("x")))
         for _ in range(8):
             power = Op("^", (power, Const(exponent)))
         with pytest.raises(error):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from tests.resolve.helpers import codes, only, resolved, value
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.python import compile_expressions
-from tltlc.expression.tree import LEAST, Const, Expression, Signal, nodes
+from tltlc.expression.tree import LEAST, Const, Expression, SignalValue, nodes
 from tltlc.resolve import units
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.values import Quantity, constant
@@ -25,7 +25,7 @@ THREE = st.tuples(FINITE, FINITE, FINITE).map(sorted).filter(lambda ends: ends[0
 
 
 def varying(name: str, low: float, high: float) -> Quantity:
-    return Quantity(Signal(name), units.PLAIN, low, high, name)
+    return Quantity(SignalValue(name), units.PLAIN, low, high, name)
 
 
 def around(number: float, low: float, high: float) -> list[float]:

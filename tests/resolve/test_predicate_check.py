@@ -11,12 +11,18 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.resolve import spec
-from tltlc.resolve.range_proof import Finding, check_predicate
+from tltlc.resolve.range_proof import RangeProblem, check_predicate
 
-D, X, Y, H, OPEN = Signal("distance(s1)"), Signal("x"), Signal("y"), Signal("health"), Signal("open")
-FAR, CLOSE = Param("far"), Param("close")
+D, X, Y, H, OPEN = (
+    SignalValue("distance(s1)"),
+    SignalValue("x"),
+    SignalValue("y"),
+    SignalValue("health"),
+    SignalValue("open"),
+)
+FAR, CLOSE = ParamValue("far"), ParamValue("close")
 SIGNALS = {
     "distance(s1)": spec.Signal("distance(s1)", "length", 0.0, None),
     "x": spec.Signal("x", "number", -1.0, 1.0),
@@ -52,7 +58,7 @@ def near(close: Expression, far: Expression) -> Expression:
     )
 
 
-def check(expression: Expression, low: float = -1.0, high: float = 1.0) -> tuple[Finding, ...]:
+def check(expression: Expression, low: float = -1.0, high: float = 1.0) -> tuple[RangeProblem, ...]:
     return check_predicate(expression, SIGNALS, PARAMS, low, high)
 
 
@@ -72,7 +78,7 @@ def test_near_is_in_range_for_an_unbounded_far() -> None:
 
 def test_near_with_far_below_close_divides_by_zero_and_jumps() -> None:
     wrong, jump = check(near(Const(3.0), FAR))
-    assert wrong == Finding(
+    assert wrong == RangeProblem(
         "range_wrong",
         "with distance(s1) = 3, far = 3 the value divides by zero",
         {"distance(s1)": 3.0, "far": 3.0},
@@ -239,7 +245,7 @@ def test_proved_ranges_hold_and_wrong_ones_fail_at_the_witness(
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(LEAVES, EXPRESSIONS, EXPRESSIONS, st.sampled_from([X, H]), st.integers(0, 10**6))
 def test_values_agree_across_borders_unless_a_jump_is_found(
-    at: Expression, inside: Expression, outside: Expression, variable: Signal, seed: int
+    at: Expression, inside: Expression, outside: Expression, variable: SignalValue, seed: int
 ) -> None:
     expression = When(((cond(variable, "<", at), inside),), outside)
     findings = {finding.kind: finding for finding in check(expression, -1e3, 1e3)}

@@ -9,13 +9,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.resolve.test_predicate_check import CLOSE, FAR, D, H, X, Y, near, op, value_at
-from tltlc.expression.tree import Const, Expression, Param, Signal
+from tltlc.expression.tree import Const, Expression, ParamValue, SignalValue
 from tltlc.resolve.range_proof.cases import Constraint, cases
 from tltlc.resolve.range_proof.continuity import meetings
 from tltlc.resolve.range_proof.exact import proves_all, proves_within_exactly
 from tltlc.resolve.range_proof.interval import EVERYTHING
-from tltlc.resolve.range_proof.proof import Task
-from tltlc.resolve.range_proof.region import Region, Variable
+from tltlc.resolve.range_proof.proof import ProofGoal
+from tltlc.resolve.range_proof.region import ConstrainedBox, Variable
 
 BOX: dict[Variable, tuple[float, float]] = {
     D: (0.0, float("inf")),
@@ -28,7 +28,7 @@ BOX: dict[Variable, tuple[float, float]] = {
 
 
 def proves(value: Expression, low: float, high: float, *constraints: Constraint) -> bool:
-    region = Region(BOX, {}).where(constraints)
+    region = ConstrainedBox(BOX, {}).where(constraints)
     assert region is not None
     return proves_within_exactly(value, constraints, region, low, high)
 
@@ -38,7 +38,7 @@ def test_each_case_of_near_and_each_border_are_proved(close: Expression) -> None
     expression = near(close, FAR)
     for case in cases(expression):
         assert proves(case.value, -1.0, 1.0, *case.constraints)
-    borders = list(meetings(cases(expression), Region(BOX, {}), frozenset()))
+    borders = list(meetings(cases(expression), ConstrainedBox(BOX, {}), frozenset()))
     assert len(borders) == 2
     if close != CLOSE:
         for meeting in borders:
@@ -79,11 +79,11 @@ def test_false_bounds_are_not_proved(value: Expression, low: float, high: float)
 
 
 def test_min_does_not_hide_a_division_by_zero() -> None:
-    task = Task(op("min", 1, op("/", 1, op("-", H, 0.123456))), (), -1e12, 1.0)
-    assert not proves_all([task], Region(BOX, {}))
+    task = ProofGoal(op("min", 1, op("/", 1, op("-", H, 0.123456))), (), -1e12, 1.0)
+    assert not proves_all([task], ConstrainedBox(BOX, {}))
 
 
-NAMES: list[Signal | Param] = [X, H, FAR, CLOSE, D, Y]
+NAMES: list[SignalValue | ParamValue] = [X, H, FAR, CLOSE, D, Y]
 SMALL = st.one_of(st.integers(-4, 4).map(lambda n: Const(n / 2)), st.sampled_from([X, H, CLOSE, Y]))
 RATIONAL = st.recursive(
     SMALL,
@@ -102,7 +102,7 @@ def test_a_proof_holds_at_every_sample(
     value: Expression, limit: Expression | None, low: int, width: int, seed: int
 ) -> None:
     constraints = () if limit is None else (Constraint(limit, False),)
-    region = Region(BOX, {}).where(constraints)
+    region = ConstrainedBox(BOX, {}).where(constraints)
     if region is None or not proves_within_exactly(value, constraints, region, low, low + width):
         return
     random_ = random.Random(seed)

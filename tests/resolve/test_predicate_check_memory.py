@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.resolve.range_proof import memory
 
 YES, NO = memory.Answer(True, 7), memory.Answer(False, 8)
@@ -76,9 +76,9 @@ def test_the_cache_folder_depends_on_the_environment(monkeypatch: pytest.MonkeyP
 
 
 def ask(name: str, high: float, value: float = 2.0) -> str:
-    signal, param = Signal(name), Param("p")
+    signal, param = SignalValue(name), ParamValue("p")
     expression: Expression = Op("*", (Op("-", (signal, param)), Const(value)))
-    box: dict[Signal | Param, tuple[float, float]] = {signal: (0.0, high), param: (0.0, 1.0)}
+    box: dict[SignalValue | ParamValue, tuple[float, float]] = {signal: (0.0, high), param: (0.0, 1.0)}
     return memory.question("range", expression, box, frozenset(), -1.0, 1.0)
 
 

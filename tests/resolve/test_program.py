@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.resolve.helpers import codes, formula, good, only, resolved
-from tltlc.resolve.spec import Expect, Signal, Step
+from tltlc.resolve.spec import Expect, Signal, TestSample
 
 COVER_AND_HIDE = """
 import stealth
@@ -101,8 +101,8 @@ def test_a_test_block() -> None:
     """
     (test,) = good(text).tests
     assert (test.title, test.spec) == ("t", "s")
-    assert test.items[0] == Step(3, frozenset({"alive"}))
-    assert test.items[2] == Step(1, frozenset())
+    assert test.items[0] == TestSample(3, frozenset({"alive"}))
+    assert test.items[2] == TestSample(1, frozenset())
     expectations = [item for item in test.items if isinstance(item, Expect)]
     assert [(e.kind, e.value, e.comparison) for e in expectations] == [
         ("verdict", "pending", None),

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.resolve.helpers import codes
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import ArithmeticOp, Const, Op, Signal
+from tltlc.expression.tree import ArithmeticOp, Const, Op, SignalValue
 from tltlc.resolve.ranges import range_of
 
 COUNTS: dict[ArithmeticOp, int] = {"+": 3, "-": 2, "*": 3, "/": 2, "neg": 1, "min": 2, "max": 2, "abs": 1, "sqrt": 1}
@@ -33,7 +33,7 @@ def value(expression: Op, values: dict[str, float]) -> float:
 def test_the_value_of_an_operation_is_in_its_range(op: ArithmeticOp, data: st.DataObject) -> None:
     drawn = [data.draw(ranges()) for _ in range(COUNTS[op])]
     values = {f"x{index}": number for index, (_, number) in enumerate(drawn)}
-    result = value(Op(op, tuple(map(Signal, values))), values)
+    result = value(Op(op, tuple(map(SignalValue, values))), values)
     assume(result == result)
     low, high = range_of(op, tuple(bounds for bounds, _ in drawn))
     assert low <= result <= high
@@ -42,7 +42,7 @@ def test_the_value_of_an_operation_is_in_its_range(op: ArithmeticOp, data: st.Da
 @given(st.integers(-4, 5), ranges())
 def test_the_value_of_a_power_is_in_its_range(exponent: int, drawn: tuple[tuple[float, float], float]) -> None:
     bounds, base = drawn
-    result = value(Op("^", (Signal("x"), Const(float(exponent)))), {"x": base})
+    result = value(Op("^", (SignalValue("x"), Const(float(exponent)))), {"x": base})
     low, high = range_of("^", (bounds, (float(exponent), float(exponent))))
     assert low <= result <= high
 

@@ -40,7 +40,7 @@ from tltl_runtime.stealth.recordings.summary import summary as episode_summary
 from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.ppo.windows import Windows
-from tltl_runtime.training.run.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics, truncate
 from tltl_runtime.training.run.record import ended_as, record_so_far, recorded_end
 from tltl_runtime.training.run.run import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
@@ -333,7 +333,7 @@ def _content(folder: Path) -> tuple[bytes, dict[str, Any]]:
         processes=({"cpu": torch.get_rng_state()},),
         window=((True, 1.0, 30, 2, False),),
         unbroken=0,
-        best=Best((0.5, 1.0, -2.0), weights, 64),
+        best=BestPolicy((0.5, 1.0, -2.0), weights, 64),
         met=False,
         standstill=(0.5, 128),
     )

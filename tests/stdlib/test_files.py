@@ -16,7 +16,7 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import PredicateDecl, SignalDecl
 from tltlc.logic.oracle import holds
-from tltlc.resolve.spec import Expect, Program, Spec, Step
+from tltlc.resolve.spec import Expect, ResolvedFile, Spec, TestSample
 
 ROOT = Path(__file__).parents[2]
 LIBRARIES = sorted(path for path in (ROOT / "stdlib_predicates").glob("*.tltl") if "_tests" not in path.name)
@@ -24,7 +24,7 @@ TESTS = sorted((ROOT / "stdlib_predicates").glob("*_tests.tltl"))
 EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
 
 
-def _program(path: Path) -> Program:
+def _program(path: Path) -> ResolvedFile:
     return good(path.read_text(encoding="utf-8"), str(path))
 
 
@@ -50,7 +50,7 @@ def test_the_test_blocks_agree_with_the_oracle(path: Path) -> None:
     for test in program.tests:
         trace: list[frozenset[str]] = []
         for item in test.items:
-            if isinstance(item, Step):
+            if isinstance(item, TestSample):
                 trace += [item.holds] * item.times
             elif item.kind == "verdict":
                 assert _agrees(str(item.value), specs[test.spec], trace), (test.title, item)

@@ -6,16 +6,16 @@ from tltlc.interfaces.cli.inputs import Input, open_input
 from tltlc.interfaces.cli.numbers import FiniteRange, WholeRange
 from tltlc.interfaces.cli.paths import OutputPath, is_stdout
 from tltlc.interfaces.cli.report import Report, show
-from tltlc.interfaces.cli.settings import Settings
+from tltlc.interfaces.cli.settings import CompileSettings
 from tltlc.io.child_interrupts import raise_if_interrupted
 
 __all__ = [
     "CLEAN",
+    "CompileSettings",
     "FiniteRange",
     "Input",
     "OutputPath",
     "Report",
-    "Settings",
     "WholeRange",
     "exits",
     "is_stdout",

@@ -2,7 +2,7 @@
 
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS, evaluate
 from tltlc.expression.json import to_json
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When, nodes
 
 __all__ = [
     "MULTIPLIED_EXPONENTS",
@@ -10,8 +10,8 @@ __all__ = [
     "Const",
     "Expression",
     "Op",
-    "Param",
-    "Signal",
+    "ParamValue",
+    "SignalValue",
     "When",
     "evaluate",
     "nodes",

@@ -2,11 +2,11 @@
 
 from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
 from tltlc.resolve.range_proof.interval import Interval, UndefinedError
-from tltlc.resolve.range_proof.region import Region, Variable, bound
+from tltlc.resolve.range_proof.region import ConstrainedBox, Variable, bound
 
 __all__ = [
+    "ConstrainedBox",
     "Interval",
-    "Region",
     "TooManyCasesError",
     "UndefinedError",
     "Variable",

@@ -1,17 +1,27 @@
 """The syntax tree of a ``.tltl`` file."""
 
 from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Call, ClockDecl, Declaration, EntityDecl, Expr, Import, Name, SignalDecl, SpecDecl
+from tltlc.grammar.tree import (
+    CallExpr,
+    ClockDecl,
+    Declaration,
+    EntityDecl,
+    Expr,
+    Import,
+    NameExpr,
+    SignalDecl,
+    SpecDecl,
+)
 from tltlc.grammar.walk import expressions, parts
 
 __all__ = [
-    "Call",
+    "CallExpr",
     "ClockDecl",
     "Declaration",
     "EntityDecl",
     "Expr",
     "Import",
-    "Name",
+    "NameExpr",
     "SignalDecl",
     "SpecDecl",
     "expressions",

@@ -9,7 +9,7 @@ from tltlc.artefact.guards import guard_problems
 from tltlc.artefact.locations import Path
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.core.record import record
-from tltlc.expression.tree import Param, Signal, nodes
+from tltlc.expression.tree import ParamValue, SignalValue, nodes
 from tltlc.resolve import spec
 
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
@@ -54,9 +54,9 @@ def _names(fspa: Fspa) -> Iterator[Problem]:
             known[kind].add(item.name)
     for index, atom in enumerate(fspa.atoms):
         for node in nodes(atom.expression):
-            if isinstance(node, Signal) and node.name not in known["signals"]:
+            if isinstance(node, SignalValue) and node.name not in known["signals"]:
                 yield Problem(("atoms", index, "expression"), f"there is no signal `{node.name}`")
-            elif isinstance(node, Param) and node.name not in known["params"]:
+            elif isinstance(node, ParamValue) and node.name not in known["params"]:
                 yield Problem(("atoms", index, "expression"), f"there is no param `{node.name}`")
 
 

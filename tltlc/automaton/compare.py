@@ -13,7 +13,7 @@ from tltlc.automaton.diagrams import LEAF, Diagrams, at_most_one
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of
-from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_marks
+from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, pair_marks
 from tltlc.automaton.infinite.products import Both, Leaf, conditions, telling_apart
 from tltlc.automaton.work import DEFAULT_WORK, Work
 from tltlc.core.record import record
@@ -132,7 +132,7 @@ class _Product:
         part = telling_apart([(0, 0)], leaves, [(these, those)], self._work)
         return None if part is None else self._through(part, these, those)
 
-    def _through(self, part: Edges, these: Sequence[Clause], those: Sequence[Clause]) -> Trace:
+    def _through(self, part: Edges, these: Sequence[MarkClause], those: Sequence[MarkClause]) -> Trace:
         """Return a lasso whose cycle stays in a part of the product that the first accepts and the second rejects.
 
         The cycle takes every mark that decides this: the ``inf`` marks of a clause of

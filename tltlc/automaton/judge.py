@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from tltlc.logic.bounded import bounded, with_bounds
 from tltlc.logic.formula import Formula, and_
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.resolve.spec import Judge, Part
+from tltlc.resolve.spec import Conjunct, Judge
 
 
-def judge_of(parts: Iterable[Part]) -> Judge:
+def judge_of(parts: Iterable[Conjunct]) -> Judge:
     """Return when to judge a spec over finite traces with these parts and no ``judge`` clause."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 

@@ -18,7 +18,7 @@ from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, remark
 from tltlc.program.template import filled
-from tltlc.program.tree import FAILING, Assign, Binary, Comment, If, Statement, Variable
+from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, Statement, Variable
 from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Param, Signal
 
@@ -84,7 +84,7 @@ class _CSharp(Printer):
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; additions and subtractions use ``+=`` and ``-=``."""
         match statement:
-            case Assign(name, Binary("+" | "-" as op, Variable(left), right)) if left == name:
+            case Assign(name, BinaryNumber("+" | "-" as op, Variable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
         return super().assignment(statement)
 
@@ -209,7 +209,7 @@ class _Source:
     def _value(self, index: int) -> tuple[Statement, ...]:
         """Return the statements that declare and compute an atom's value."""
         program_ = self._program
-        return (Comment(program_.remarks[index]), *defined(program_.atoms[index], program_.values[index]))
+        return (CommentLine(program_.remarks[index]), *defined(program_.atoms[index], program_.values[index]))
 
     def _check(self) -> list[str]:
         """Return code that checks exclusive atoms."""

@@ -24,7 +24,19 @@ from tltlc.program.names import call, in_docstring, literal, number
 from tltlc.program.printer import Printer
 from tltlc.program.shallow import shallow
 from tltlc.program.template import filled
-from tltlc.program.tree import FAILING, Assign, Binary, Call, Comment, Declare, Expression, If, Int, Statement, Type
+from tltlc.program.tree import (
+    FAILING,
+    Assign,
+    BinaryNumber,
+    CommentLine,
+    Declare,
+    Expression,
+    If,
+    Int,
+    NumericCall,
+    Statement,
+    Type,
+)
 from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Signal
 
@@ -108,10 +120,10 @@ class _Python(Printer):
         several, and the first of equal arguments counts either way.
         """
         match node:
-            case Call("min" | "max" as function):
-                return super()._written(Call(function, tuple(_arguments(node))))
-            case Call("divide", (left, right)):
-                return super()._written(Binary("/", left, right))
+            case NumericCall("min" | "max" as function):
+                return super()._written(NumericCall(function, tuple(_arguments(node))))
+            case NumericCall("divide", (left, right)):
+                return super()._written(BinaryNumber("/", left, right))
         return super()._written(node)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
@@ -119,10 +131,10 @@ class _Python(Printer):
         return super().call("pow" if function == "power" else function, arguments)
 
 
-def _arguments(node: Call) -> list[Expression]:
+def _arguments(node: NumericCall) -> list[Expression]:
     """Return the arguments of ``f(f(a, b), c)`` as ``a, b, c``."""
     first, second = node.args
-    before = _arguments(first) if isinstance(first, Call) and first.function == node.function else [first]
+    before = _arguments(first) if isinstance(first, NumericCall) and first.function == node.function else [first]
     return [*before, second]
 
 
@@ -183,7 +195,7 @@ class _Source:
     def _function(self, state: int) -> str:
         """Return the function of a state."""
         lines = call(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
-        lines += self._printer.lines([Comment(str(self._fspa.states[state].label))], depth=1)
+        lines += self._printer.lines([CommentLine(str(self._fspa.states[state].label))], depth=1)
         body = shallow(self._program.states[state], self._names)
         match body:
             case (If(cases, otherwise),):

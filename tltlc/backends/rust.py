@@ -19,7 +19,7 @@ from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, remark
 from tltlc.program.template import filled
-from tltlc.program.tree import FAILING, Assign, Binary, Comment, Declare, Type, Variable
+from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, Declare, Type, Variable
 from tltlc.program.uses import read
 from tltlc.resolve.spec import Param, Signal
 
@@ -71,7 +71,7 @@ class _Rust(Printer):
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; additions and subtractions use ``+=`` and ``-=``."""
         match statement:
-            case Assign(name, Binary("+" | "-" as op, Variable(left), right)) if left == name:
+            case Assign(name, BinaryNumber("+" | "-" as op, Variable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
         return super().assignment(statement)
 
@@ -214,7 +214,7 @@ class _Source:
         program_ = self._program
         self._printer.atom = index
         statements = defined(program_.atoms[index], program_.values[index], changes=False)
-        return self._printer.lines((Comment(program_.remarks[index]), *statements), depth)
+        return self._printer.lines((CommentLine(program_.remarks[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
         """Return code for the atoms that only this state reads, and for the bools that these read."""

@@ -13,7 +13,7 @@ FORMATS: Final = ("text", "json", "sarif", "github")
 """All formats; each is the name of a module with a function ``render``."""
 
 
-class Renderer(Protocol):
+class RenderFunction(Protocol):
     """The type of the function ``render`` of a format."""
 
     def __call__(self, diagnostics: Sequence[Diagnostic], *, color: bool) -> str:
@@ -27,5 +27,5 @@ def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool 
     """
     if format not in FORMATS:
         raise ValueError(f"no format {format!r}: one of {', '.join(FORMATS)}")
-    renderer = cast(Renderer, import_module(f"tltlc.diagnostics.formats.{format}").render)
+    renderer = cast(RenderFunction, import_module(f"tltlc.diagnostics.formats.{format}").render)
     return renderer([shortened(diagnostic) for diagnostic in diagnostics], color=color)

@@ -14,7 +14,7 @@ from functools import reduce
 from operator import add, ge, gt, le, lt, mul, neg, sub, truediv
 from typing import Final
 
-from tltlc.expression.tree import Condition, Const, Expression, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When
 
 MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
 """The constant exponents that mean a product, with the number of its factors."""
@@ -33,9 +33,9 @@ def evaluate(expression: Expression, signals: Mapping[str, float], params: Mappi
     """
     if isinstance(expression, Const):
         return expression.value
-    if isinstance(expression, Signal):
+    if isinstance(expression, SignalValue):
         return float(signals[expression.name])
-    if isinstance(expression, Param):
+    if isinstance(expression, ParamValue):
         return float(params[expression.name])
     if isinstance(expression, When):
         for condition, value in expression.cases:

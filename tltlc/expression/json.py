@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 
 
 def to_json(expression: Expression | Condition) -> dict[str, Any]:
     """Return the JSON object of an expression: ``{"op": "+", "args": […]}``, ``{"signal": "health"}``, …"""
     if isinstance(expression, Const):
         return {"const": expression.value}
-    if isinstance(expression, Signal):
+    if isinstance(expression, SignalValue):
         return {"signal": expression.name}
-    if isinstance(expression, Param):
+    if isinstance(expression, ParamValue):
         return {"param": expression.name}
     if isinstance(expression, When):
         cases = [[to_json(condition), to_json(value)] for condition, value in expression.cases]
@@ -26,9 +26,9 @@ def from_json(node: dict[str, Any]) -> Expression:
     if "const" in node:
         return Const(float(node["const"]))
     if "signal" in node:
-        return Signal(node["signal"])
+        return SignalValue(node["signal"])
     if "param" in node:
-        return Param(node["param"])
+        return ParamValue(node["param"])
     if "when" in node:
         cases = tuple((_condition(condition), from_json(value)) for condition, value in node["when"])
         return When(cases, from_json(node["otherwise"]))

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final, cast
 
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When, nodes
 
 INDENT: Final = "    "
 
@@ -49,9 +49,9 @@ def _function(
     index: int, expression: Expression, places: Mapping[str, int], constants: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield the lines of the function ``atomINDEX`` and of the functions that it calls."""
-    signals = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, Signal)}
-    params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, Param)}
-    writer = Writer(signals, params, f"_{index}_")
+    signals = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, SignalValue)}
+    params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, ParamValue)}
+    writer = PythonWriter(signals, params, f"_{index}_")
     body = writer.assignment("value", expression, INDENT)
     yield from writer.parts
     yield f"def atom{index}(sample):"
@@ -60,7 +60,7 @@ def _function(
     yield f"{INDENT}return value"
 
 
-class Writer:
+class PythonWriter:
     """Writes expressions as Python; ``signals`` and ``params`` map names to Python variables in scope.
 
     ``parts`` collects the source of helper functions ``PREFIXpart0``, …, for deep expressions. Local
@@ -90,9 +90,9 @@ class Writer:
         """Return the text of an expression, in brackets if it binds more loosely than ``room``."""
         if isinstance(node, Const):
             return _bracketed(repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, room)
-        if isinstance(node, Signal):
+        if isinstance(node, SignalValue):
             return self._signals[node.name]
-        if isinstance(node, Param):
+        if isinstance(node, ParamValue):
             return self._params[node.name]
         if depth > _MAX_DEPTH:
             return self._part(node)
@@ -122,7 +122,7 @@ class Writer:
         factors = MULTIPLIED_EXPONENTS.get(exponent.value, 0) if isinstance(exponent, Const) else 0
         if not factors:
             return f"pow({self._text(base, _CASES, depth)}, {self._text(exponent, _CASES, depth)})", _UNIT
-        if isinstance(base, (Signal, Param)):
+        if isinstance(base, (SignalValue, ParamValue)):
             return " * ".join([self._text(base, _UNIT, depth)] * factors), _PRODUCT
         # Nested powers need different variables, since the base of a power may contain another power.
         self._powers += 1

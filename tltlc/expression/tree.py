@@ -26,14 +26,14 @@ class Const:
 
 
 @record
-class Signal:
+class SignalValue:
     """The current value of a signal, by its full name, e.g. ``distance(s1)``; a bool counts as 0 or 1."""
 
     name: str
 
 
 @record
-class Param:
+class ParamValue:
     """The value of a param."""
 
     name: str
@@ -66,7 +66,7 @@ class When:
     otherwise: Expression
 
 
-Expression = Union[Const, Signal, Param, Op, When]
+Expression = Union[Const, SignalValue, ParamValue, Op, When]
 
 
 def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:

@@ -61,13 +61,13 @@ class Builder:
 
     # --- declarations ---------------------------------------------------------------------------
 
-    def make_import(self, span: Span, target: Token, rest: tuple[tree.Name, ...] | str | None) -> tree.Import:
+    def make_import(self, span: Span, target: Token, rest: tuple[tree.NameExpr, ...] | str | None) -> tree.Import:
         is_path = target.type == "STRING"
         text = target.text[1:-1] if is_path else target.text
         names = rest if isinstance(rest, tuple) else None
         return tree.Import(text, is_path, names, rest if isinstance(rest, str) else None, target.span, span)
 
-    def make_import_names(self, _span: Span, names: tuple[tree.Name, ...]) -> tuple[tree.Name, ...]:
+    def make_import_names(self, _span: Span, names: tuple[tree.NameExpr, ...]) -> tuple[tree.NameExpr, ...]:
         return names
 
     def make_import_alias(self, _span: Span, _as: Token, name: Token) -> str:
@@ -88,7 +88,7 @@ class Builder:
     ) -> tree.SignalDecl:
         return self.make_signal(span, name, parameters, None, interval)
 
-    def make_entities(self, span: Span, _entity: Token, names: tuple[tree.Name, ...]) -> tree.EntityDecl:
+    def make_entities(self, span: Span, _entity: Token, names: tuple[tree.NameExpr, ...]) -> tree.EntityDecl:
         return tree.EntityDecl(names, self._doc(span), span)
 
     def make_param(
@@ -96,7 +96,7 @@ class Builder:
     ) -> tree.ParamDecl:
         return tree.ParamDecl(name.text, type_, interval, value, self._doc(span), name.span, span)
 
-    def make_clock(self, span: Span, value: tree.Number) -> tree.ClockDecl:
+    def make_clock(self, span: Span, value: tree.NumberExpr) -> tree.ClockDecl:
         return tree.ClockDecl(value, span)
 
     def make_predicate(
@@ -138,16 +138,16 @@ class Builder:
         clause = tree.Clause("require", formula, "", name.span, formula.span)
         return tree.SpecDecl(name.text, (clause,), False, self._doc(span), name.span, span)
 
-    def make_clause(self, span: Span, keyword: Token, value: Expr | tuple[tree.Name, ...] | Token) -> tree.Clause:
+    def make_clause(self, span: Span, keyword: Token, value: Expr | tuple[tree.NameExpr, ...] | Token) -> tree.Clause:
         if isinstance(value, Token):
-            value = tree.Name(value.text, value.span)
+            value = tree.NameExpr(value.text, value.span)
         return tree.Clause(keyword.text, value, self._doc(span), keyword.span, span)
 
     def make_judge(self, span: Span, keyword: Token, _at: Token, value: Token) -> tree.Clause:
         return self.make_clause(span, keyword, value)
 
     def make_test(self, span: Span, title: Token, _for: Token, spec: Token, *items: tree.TestStep) -> tree.TestDecl:
-        name = tree.Name(spec.text, spec.span)
+        name = tree.NameExpr(spec.text, spec.span)
         return tree.TestDecl(title.text[1:-1], name, items, self._doc(span), span)
 
     def make_step(
@@ -166,7 +166,7 @@ class Builder:
         return tree.TestExpect("verdict", verdict.text, None, span)
 
     def make_expect_number(
-        self, span: Span, _expect: Token, name: Token, comparator: Token, number: tree.Number
+        self, span: Span, _expect: Token, name: Token, comparator: Token, number: tree.NumberExpr
     ) -> tree.TestExpect:
         if name.text != "progress":
             self._error("TLT0108", f"a test cannot expect a number of `{name.text}`", name.span, TEST_ITEMS["expect"])
@@ -185,32 +185,34 @@ class Builder:
     def make_expressions(self, _span: Span, *expressions: Expr) -> tuple[Expr, ...]:
         return expressions
 
-    def make_names(self, _span: Span, *names: tree.Name) -> tuple[tree.Name, ...]:
+    def make_names(self, _span: Span, *names: tree.NameExpr) -> tuple[tree.NameExpr, ...]:
         return names
 
-    def make_binary(self, span: Span, left: Expr, operator: Token, right: Expr) -> tree.Binary:
-        return tree.Binary(OPERATORS[operator.type], left, right, operator.span, span)
+    def make_binary(self, span: Span, left: Expr, operator: Token, right: Expr) -> tree.BinaryExpr:
+        return tree.BinaryExpr(OPERATORS[operator.type], left, right, operator.span, span)
 
     def make_unary(self, span: Span, operator: Token, operand: Expr) -> tree.Unary:
         return tree.Unary(OPERATORS[operator.type], operand, None, operator.span, span)
 
-    def make_temporal(self, span: Span, operator: Token, bound: tree.Bound | None, operand: Expr) -> tree.Unary:
+    def make_temporal(
+        self, span: Span, operator: Token, bound: tree.TemporalInterval | None, operand: Expr
+    ) -> tree.Unary:
         return tree.Unary(OPERATORS[operator.type], operand, bound, operator.span, span)
 
-    def make_word_bound(self, span: Span, _word: Token, high: tree.Number) -> tree.Bound:
-        return tree.Bound(None, high, span, words=True)
+    def make_word_bound(self, span: Span, _word: Token, high: tree.NumberExpr) -> tree.TemporalInterval:
+        return tree.TemporalInterval(None, high, span, words=True)
 
-    def make_bracket_bound(self, span: Span, low: tree.Number, high: tree.Number) -> tree.Bound:
-        return tree.Bound(low, high, span, words=False)
+    def make_bracket_bound(self, span: Span, low: tree.NumberExpr, high: tree.NumberExpr) -> tree.TemporalInterval:
+        return tree.TemporalInterval(low, high, span, words=False)
 
     def make_quantified(
-        self, span: Span, word: Token, variable: Token, _in: Token, entities: tuple[tree.Name, ...], body: Expr
+        self, span: Span, word: Token, variable: Token, _in: Token, entities: tuple[tree.NameExpr, ...], body: Expr
     ) -> tree.Quantified:
         return tree.Quantified(word.type == "ALL", variable.text, entities, body, span)
 
-    def make_when(self, span: Span, *cases_and_otherwise: tree.WhenCase | Expr) -> tree.When:
+    def make_when(self, span: Span, *cases_and_otherwise: tree.WhenCase | Expr) -> tree.WhenExpr:
         *cases, otherwise = cases_and_otherwise
-        return tree.When(tuple(cases), otherwise, span)  # type: ignore[arg-type]
+        return tree.WhenExpr(tuple(cases), otherwise, span)  # type: ignore[arg-type]
 
     def make_case(self, span: Span, condition: Expr, value: Expr) -> tree.WhenCase:
         return tree.WhenCase(condition, value, span)
@@ -221,11 +223,11 @@ class Builder:
     def make_false(self, span: Span, _false: Token) -> tree.Constant:
         return tree.Constant(False, span)
 
-    def make_group(self, span: Span, inner: Expr) -> tree.Group:
-        return tree.Group(inner, span)
+    def make_group(self, span: Span, inner: Expr) -> tree.GroupExpr:
+        return tree.GroupExpr(inner, span)
 
-    def make_call(self, span: Span, name: Token, *arguments: tree.Argument) -> tree.Call:
-        return tree.Call(name.text, arguments, name.span, span)
+    def make_call(self, span: Span, name: Token, *arguments: tree.Argument) -> tree.CallExpr:
+        return tree.CallExpr(name.text, arguments, name.span, span)
 
     def make_argument(self, span: Span, value: Expr) -> tree.Argument:
         return tree.Argument(None, value, span)
@@ -233,15 +235,15 @@ class Builder:
     def make_keyword_argument(self, span: Span, name: Token, value: Expr) -> tree.Argument:
         return tree.Argument(name.text, value, span)
 
-    def make_name(self, span: Span, name: Token) -> tree.Name:
-        return tree.Name(name.text, span)
+    def make_name(self, span: Span, name: Token) -> tree.NameExpr:
+        return tree.NameExpr(name.text, span)
 
-    def make_number(self, span: Span, number: Token, unit: Token | None) -> tree.Number:
+    def make_number(self, span: Span, number: Token, unit: Token | None) -> tree.NumberExpr:
         value = float(number.text)
         if isinf(value):
             self._error("TLT0109", "this number is too large", number.span, "write `inf` where a range has no end")
         # `step` and `steps` are the same unit.
-        return tree.Number(value, unit and ("steps" if unit.text == "step" else unit.text), span)
+        return tree.NumberExpr(value, unit and ("steps" if unit.text == "step" else unit.text), span)
 
     make_quantity = make_number
 
@@ -256,8 +258,8 @@ class Builder:
 
 def _infinite(limit: Expr) -> Expr:
     """Return the end of a range, with the name ``inf`` converted to a number."""
-    if isinstance(limit, tree.Name) and limit.name == "inf":
-        return tree.Number(inf, None, limit.span)
+    if isinstance(limit, tree.NameExpr) and limit.name == "inf":
+        return tree.NumberExpr(inf, None, limit.span)
     if isinstance(limit, tree.Unary) and limit.op == "-":
         return replace(limit, operand=_infinite(limit.operand))
     return limit

@@ -56,7 +56,7 @@ def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Ite
             yield from _check_bound(source, part, part.bound)
 
 
-def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> Iterator[Diagnostic]:
+def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.TemporalInterval) -> Iterator[Diagnostic]:
     # The span may contain a comment after the word.
     word = next(word for word in _BOUND_OPERATORS if source.slice(bound.span).startswith(word))
     if formula.op in _BOUND_OPERATORS[word]:
@@ -84,7 +84,7 @@ def check_clause(source: SourceFile, clause: tree.Clause) -> Iterator[Diagnostic
         return
     if clause.kind in _FORMULA_CLAUSES:
         yield from check_formula(source, clause.value, in_reach=clause.kind == "reach")
-    elif clause.kind in ("judge", "semantics") and isinstance(clause.value, tree.Name):
+    elif clause.kind in ("judge", "semantics") and isinstance(clause.value, tree.NameExpr):
         words, form = (JUDGE, "judge at") if clause.kind == "judge" else (SEMANTICS, "semantics")
         yield from _check_word(source, clause.value.name, clause.value.span, words, form)
 

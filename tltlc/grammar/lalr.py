@@ -7,7 +7,7 @@ from typing import Any
 
 from tltlc.core.source import Span
 from tltlc.grammar.lexer import BAD, END, Token
-from tltlc.grammar.tables import Tables
+from tltlc.grammar.tables import ParserTables
 
 
 class UnexpectedTokenError(Exception):
@@ -19,7 +19,7 @@ class UnexpectedTokenError(Exception):
         self.states = states
 
 
-def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) -> Any:
+def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: object) -> Any:
     """Return what the builder makes of the tokens, parsed as a ``start``; raises UnexpectedTokenError.
 
     A reduction by a rule with the action ``name`` calls ``builder.make_name(span, *kept values)``.
@@ -62,7 +62,7 @@ def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) ->
     raise AssertionError("the tokens do not end with $END")
 
 
-def reached(tables: Tables, start: str, tokens: Sequence[Token]) -> list[int]:
+def reached(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[int]:
     """Return the parser's stack after tokens that can be parsed as the beginning of a ``start``.
 
     The next token may still change the stack: some reductions wait for it.
@@ -74,12 +74,12 @@ def reached(tables: Tables, start: str, tokens: Sequence[Token]) -> list[int]:
     raise AssertionError("no text has a token of type BAD")
 
 
-def accepted(tables: Tables, states: Sequence[int]) -> set[str]:
+def accepted(tables: ParserTables, states: Sequence[int]) -> set[str]:
     """Return the terminals that may follow where the parser has this stack of states."""
     return {terminal for terminal in tables.actions[states[-1]] if _accepts(tables, list(states), terminal)}
 
 
-def _accepts(tables: Tables, states: list[int], terminal: str) -> bool:
+def _accepts(tables: ParserTables, states: list[int], terminal: str) -> bool:
     ends = tables.ends.values()
     while True:
         action = tables.actions[states[-1]].get(terminal)
@@ -94,7 +94,7 @@ def _accepts(tables: Tables, states: list[int], terminal: str) -> bool:
             return True
 
 
-def _kind(tables: Tables, state: int, tokens: Sequence[Token], index: int) -> str:
+def _kind(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
     """Return the type of a token in this state: an unreserved word is a name where a name can stand.
 
     If both can stand, it is the word if a number follows (``F within 20 steps p``).

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from tltlc.core.source import Span
-from tltlc.grammar.tables import Tables, load
+from tltlc.grammar.tables import ParserTables, load
 from tltlc.grammar.tree import Comment
 
 MAX_TOKENS: Final = 1 << 17
@@ -84,7 +84,7 @@ def tokenize(text: str) -> Tokens:
 @lru_cache(maxsize=1)
 def _pattern() -> re.Pattern[str]:
     """Return one pattern for all tokens; the name of the group that matched last is the token's type."""
-    tables: Tables = load()
+    tables: ParserTables = load()
     patterns = tables.patterns
     signs = "|".join(re.escape(sign) for sign in sorted(tables.signs, key=len, reverse=True))
     # Signs that Unicode counts as letters (𝒰) end a name. Any other letter beyond ASCII makes the whole word bad.

@@ -24,7 +24,7 @@ STARTS = ("module", "declaration", "clause", "test_item", "expression")
 
 
 @record
-class Rule:
+class GrammarRule:
     """What a reduction does: pop ``size`` values and pass those of ``keep`` to the builder's method ``action``.
 
     ``keep`` contains positions among the popped values: ``-1`` for an absent optional part, and
@@ -39,7 +39,7 @@ class Rule:
 
 
 @record
-class Tables:
+class ParserTables:
     """The tables of the parser and the lexer.
 
     ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce).
@@ -47,7 +47,7 @@ class Tables:
     its terminal. ``soft`` does so for the words that are names where a name can stand.
     """
 
-    rules: tuple[Rule, ...]
+    rules: tuple[GrammarRule, ...]
     actions: tuple[dict[str, int], ...]
     gotos: tuple[dict[str, int], ...]
     starts: dict[str, int]
@@ -60,7 +60,7 @@ class Tables:
 
 
 @lru_cache(maxsize=1)
-def load() -> Tables:
+def load() -> ParserTables:
     """Return the tables of the current grammar: from the shipped file if its checksum matches, else built with lark."""
     grammar = _read(GRAMMAR)
     try:
@@ -124,7 +124,7 @@ def _breadth_first(table: Any) -> dict[int, int]:
 
 
 def _action(rule: Any) -> tuple[str, list[int]]:
-    """Return the builder's method for a lark rule, and which values it keeps (see :class:`Rule`)."""
+    """Return the builder's method for a lark rule, and which values it keeps (see :class:`GrammarRule`)."""
     absent = [len(run) for run in "".join(str(int(b)) for b in rule.options.empty_indices).split("0")]
     if not rule.options.empty_indices:
         absent = [0] * (len(rule.expansion) + 1)
@@ -189,9 +189,9 @@ def _read(path: str) -> bytes:
         return file.read()
 
 
-def _from_json(data: dict[str, Any]) -> Tables:
-    return Tables(
-        rules=tuple(Rule(origin, size, action, tuple(keep)) for origin, size, action, keep in data["rules"]),
+def _from_json(data: dict[str, Any]) -> ParserTables:
+    return ParserTables(
+        rules=tuple(GrammarRule(origin, size, action, tuple(keep)) for origin, size, action, keep in data["rules"]),
         actions=tuple(data["rows"][row] for row in data["actions"]),
         gotos=tuple(data["gotos"]),
         starts=data["starts"],

@@ -25,7 +25,7 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
     pending = [(formula, in_reach)]
     while pending:
         part, lenient = pending.pop()
-        if isinstance(part, tree.Binary) and part.op == "then":
+        if isinstance(part, tree.BinaryExpr) and part.op == "then":
             sequence = operands(part, "then")
             for position in range(len(sequence)):
                 yield from _check_operand(source, sequence, position, lenient)
@@ -66,7 +66,7 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
 
 def _leading(operand: Expr) -> tree.Unary | None:
     """Return the temporal operator that begins an operand, or None; brackets hide it."""
-    while isinstance(operand, tree.Binary):
+    while isinstance(operand, tree.BinaryExpr):
         operand = operand.left
     while isinstance(operand, tree.Unary) and operand.op == "not":
         operand = operand.operand
@@ -77,9 +77,9 @@ def _is_plain(operand: Expr) -> bool:
     """Whether an operand is an atom, a negated atom, a constant or in brackets."""
     if isinstance(operand, tree.Unary) and operand.op == "not":
         operand = operand.operand
-    if isinstance(operand, tree.Binary):
+    if isinstance(operand, tree.BinaryExpr):
         return operand.op in _COMPARISONS
-    return isinstance(operand, (tree.Name, tree.Call, tree.Group, tree.Constant, tree.Number))
+    return isinstance(operand, (tree.NameExpr, tree.CallExpr, tree.GroupExpr, tree.Constant, tree.NumberExpr))
 
 
 def _readings(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
@@ -89,7 +89,7 @@ def _readings(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) ->
     if isinstance(operand, tree.Unary):
         operator = source.slice(Span(operand.span.start, operand.operand.span.start)).strip()
         inner, head, tail = operand.operand, f"{operator} ", ""
-    elif isinstance(operand, tree.Binary):
+    elif isinstance(operand, tree.BinaryExpr):
         operator = source.slice(operand.op_span)
         left, right = _text(source, operand.left), _text(source, operand.right)
         inner = operand.left if last else operand.right
@@ -143,7 +143,7 @@ def _lacks_brackets(operand: Expr, lenient: bool) -> bool:
 
 def _half(operand: Expr, last: bool) -> Expr | None:
     """Return the operand of a unary or binary operator that stands beside the `then`."""
-    if isinstance(operand, tree.Binary):
+    if isinstance(operand, tree.BinaryExpr):
         return operand.left if last else operand.right
     return operand.operand if isinstance(operand, tree.Unary) and not last else None
 

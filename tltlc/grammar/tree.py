@@ -16,7 +16,7 @@ from tltlc.core.source import SourceFile, Span
 
 
 @record
-class Number:
+class NumberExpr:
     """A number with its unit (``m``, ``%``, ``steps``, …) or None; ``inf`` is a number, too."""
 
     value: float
@@ -33,7 +33,7 @@ class Constant:
 
 
 @record
-class Name:
+class NameExpr:
     """A name without brackets after it; may contain dots."""
 
     name: str
@@ -50,7 +50,7 @@ class Argument:
 
 
 @record
-class Call:
+class CallExpr:
     """``name(arguments)``: a predicate, a signal of an entity, a ``let`` or a function."""
 
     name: str
@@ -60,11 +60,11 @@ class Call:
 
 
 @record
-class Bound:
+class TemporalInterval:
     """``[low, high]`` of a temporal operator, in samples or seconds; ``low`` is None for ``within`` and ``for``."""
 
-    low: Number | None
-    high: Number
+    low: NumberExpr | None
+    high: NumberExpr
     span: Span
     words: bool
     """True for ``within 20 steps``, ``for 20 steps``, ``after 3 steps``, False for ``F[0,20]``."""
@@ -76,13 +76,13 @@ class Unary:
 
     op: str
     operand: Expr
-    bound: Bound | None
+    bound: TemporalInterval | None
     op_span: Span
     span: Span
 
 
 @record
-class Binary:
+class BinaryExpr:
     """An infix operator between two operands."""
 
     op: str
@@ -93,7 +93,7 @@ class Binary:
 
 
 @record
-class Group:
+class GroupExpr:
     """An expression in round brackets; it is kept because ``then`` requires them."""
 
     inner: Expr
@@ -106,7 +106,7 @@ class Quantified:
 
     all: bool
     variable: str
-    entities: tuple[Name, ...]
+    entities: tuple[NameExpr, ...]
     body: Expr
     span: Span
 
@@ -121,7 +121,7 @@ class WhenCase:
 
 
 @record
-class When:
+class WhenExpr:
     """A case distinction; only in predicates."""
 
     cases: tuple[WhenCase, ...]
@@ -129,7 +129,7 @@ class When:
     span: Span
 
 
-Expr = Union[Number, Constant, Name, Call, Unary, Binary, Group, Quantified, When]
+Expr = Union[NumberExpr, Constant, NameExpr, CallExpr, Unary, BinaryExpr, GroupExpr, Quantified, WhenExpr]
 
 # --- declarations -----------------------------------------------------------------------------
 
@@ -140,7 +140,7 @@ class Import:
 
     target: str
     is_path: bool
-    names: tuple[Name, ...] | None
+    names: tuple[NameExpr, ...] | None
     alias: str | None
     target_span: Span
     span: Span
@@ -183,7 +183,7 @@ class SignalDecl:
 class EntityDecl:
     """``entity a, b``."""
 
-    names: tuple[Name, ...]
+    names: tuple[NameExpr, ...]
     doc: str
     span: Span
 
@@ -205,7 +205,7 @@ class ParamDecl:
 class ClockDecl:
     """``clock 20 Hz`` or ``clock 0.05 s``."""
 
-    value: Number
+    value: NumberExpr
     span: Span
 
 
@@ -252,7 +252,7 @@ class Clause:
     """
 
     kind: str
-    value: Expr | tuple[Name, ...]
+    value: Expr | tuple[NameExpr, ...]
     doc: str
     keyword_span: Span
     span: Span
@@ -298,7 +298,7 @@ class TestDecl:
     """``test "…" for SPEC { step … expect … }``."""
 
     title: str
-    spec: Name
+    spec: NameExpr
     items: tuple[Union[TestStep, TestExpect], ...]
     doc: str
     span: Span

@@ -53,9 +53,9 @@ def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> li
     while pending:
         part = pending.pop()
         inner = part
-        while through_brackets and isinstance(inner, tree.Group):
+        while through_brackets and isinstance(inner, tree.GroupExpr):
             inner = inner.inner
-        if isinstance(inner, tree.Binary) and inner.op == op:
+        if isinstance(inner, tree.BinaryExpr) and inner.op == op:
             pending += (inner.right, inner.left)
         else:
             chain.append(part)
@@ -72,16 +72,16 @@ def children(expression: Expr) -> Iterator[Expr]:
     match expression:
         case tree.Unary():
             yield expression.operand
-        case tree.Binary():
+        case tree.BinaryExpr():
             yield expression.left
             yield expression.right
-        case tree.Group():
+        case tree.GroupExpr():
             yield expression.inner
-        case tree.Call():
+        case tree.CallExpr():
             yield from (argument.value for argument in expression.arguments)
         case tree.Quantified():
             yield expression.body
-        case tree.When():
+        case tree.WhenExpr():
             for case in expression.cases:
                 yield case.condition
                 yield case.value

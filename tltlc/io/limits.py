@@ -47,7 +47,7 @@ class Connections:
 
 
 @record
-class Process:
+class ProcessLimit:
     """The resources of a process: ``memory`` in bytes, ``work_s`` in seconds of processor time."""
 
     memory: int
@@ -55,7 +55,7 @@ class Process:
 
 
 @record
-class Arithmetic:
+class ArithmeticLimit:
     """The limits of an expression: ``depth`` counts nested operators, including functions, conditions and ``when``.
 
     ``compared`` is the depth of an atom that compares two such expressions. ``parts`` counts the
@@ -67,7 +67,7 @@ class Arithmetic:
     parts: int
 
 
-ARITHMETIC: Final = Arithmetic(depth=100, compared=110, parts=500)
+ARITHMETIC: Final = ArithmeticLimit(depth=100, compared=110, parts=500)
 """The arithmetic of an atom. All code that walks expressions recursively, Python's compiler included, copes with it."""
 
 SOURCE: Final = Limit(size=1 << 20)
@@ -167,10 +167,10 @@ UNPACKED_NAME: Final = Limit(size=255)
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""
 
-PLAYGROUND_CHILD: Final = Process(memory=2 << 30, work_s=60)
+PLAYGROUND_CHILD: Final = ProcessLimit(memory=2 << 30, work_s=60)
 """A process that answers one request to the playground."""
 
-COMMAND: Final = Process(memory=4 << 30, work_s=120)
+COMMAND: Final = ProcessLimit(memory=4 << 30, work_s=120)
 """The resources of a command that reads files and ends by itself; `tltlc --max-cpu --max-memory` sets others.
 
 This is the last bound: the limits of :data:`WORK` stop the work long before.

@@ -16,14 +16,14 @@ from types import FrameType
 from typing import NoReturn
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.limits import Process
+from tltlc.io.limits import ProcessLimit
 
 _AGAIN_S = 1.0
 """Seconds between two signals. Python drops an exception that a handler raises in, for example, a destructor; then the
 next signal ends the command.
 """
 
-_permitted: list[Process] = []
+_permitted: list[ProcessLimit] = []
 """The resources of the command that this process runs; empty if the process runs none."""
 
 _active: list[bool] = []
@@ -34,7 +34,7 @@ class OutOfTimeError(BaseException):
     """The processor time is used up. It is a BaseException, so that no ``except Exception`` catches it."""
 
 
-def permit(process: Process) -> None:
+def permit(process: ProcessLimit) -> None:
     """Make this process a command with these resources; 0 means no bound."""
     _permitted[:] = [process]
 
@@ -136,7 +136,7 @@ def _memory(size: int) -> Iterator[None]:
 
 def exhausted(error: BaseException) -> TltlError | None:
     """Return TLT0007 for OutOfTimeError, MemoryError and RecursionError, and None for other exceptions."""
-    permitted = _permitted[0] if _permitted else Process(memory=0, work_s=0)
+    permitted = _permitted[0] if _permitted else ProcessLimit(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
         title = f"the command was not done after {permitted.work_s} seconds of processor time"
         help_ = "make its input smaller, or permit more: `tltlc --max-cpu SECONDS COMMAND …`"

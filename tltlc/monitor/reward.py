@@ -8,7 +8,7 @@ from typing import Final, Literal, get_args
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.monitor.guards import robustness
-from tltlc.monitor.tables import Tables
+from tltlc.monitor.tables import MonitorTables
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
 MODES: Final[tuple[Mode, ...]] = get_args(Mode)
@@ -60,7 +60,7 @@ class RewardStep:
 
 
 def reward_step(
-    tables: Tables,
+    tables: MonitorTables,
     state: int,
     target: int,
     values: Sequence[float],
@@ -107,7 +107,7 @@ def reward_step(
 
 
 def step_progress(
-    tables: Tables, state: int, target: int, values: Sequence[float], step: int, options: RewardOptions
+    tables: MonitorTables, state: int, target: int, values: Sequence[float], step: int, options: RewardOptions
 ) -> float:
     """Return the progress of this step alone (``step progress``, lines 11 to 18), in [0, 1]."""
     if tables.fspa.judge == "limit" and options.termination == "entry":
@@ -118,13 +118,13 @@ def step_progress(
     return progress
 
 
-def approach(tables: Tables, state: int, values: Sequence[float]) -> float:
+def approach(tables: MonitorTables, state: int, values: Sequence[float]) -> float:
     """Return what line 14 adds: the nearness of the best improving edge, as a share of the spec's size."""
     nearest = max(robustness(edge.guard, values) for edge in tables.improving[state])
     return (1.0 + min(0.0, nearest)) / tables.fspa.spec_size
 
 
-def _share_survived(tables: Tables, target: int, step: int) -> float:
+def _share_survived(tables: MonitorTables, target: int, step: int) -> float:
     """Return the share of the limit that the episode has survived.
 
     A satisfied spec gives 1, a violated one 0. Without a limit, an undecided spec gives 0.
@@ -137,7 +137,7 @@ def _share_survived(tables: Tables, target: int, step: int) -> float:
     return min(step, limit) / limit
 
 
-def ends_episode(tables: Tables, state: int, target: int, options: RewardOptions) -> bool:
+def ends_episode(tables: MonitorTables, state: int, target: int, options: RewardOptions) -> bool:
     """Whether the step from ``state`` to ``target`` ends an episode, apart from the limit."""
     if options.termination == "paper":
         # Lines 12 to 21: the episode ends if the state did not change and no edge improves.
@@ -151,14 +151,14 @@ def ends_on_entry(fspa: Fspa, state: int) -> bool:
     return entered.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and entered.accepting)
 
 
-def _end(tables: Tables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
+def _end(tables: MonitorTables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
     """Return whether the episode ends, and whether it ends in success."""
     limit = tables.fspa.limit_steps
     done = ends_episode(tables, state, target, options) or (limit is not None and step >= limit)
     return done, done and tables.fspa.states[target].accepting
 
 
-def _succeeds_early(tables: Tables, target: int, options: RewardOptions) -> bool:
+def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
     """Whether an episode that is cut off here is a success. A spec judged at its limit succeeds
     only if it has no limit.
     """

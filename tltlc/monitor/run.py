@@ -11,7 +11,7 @@ from tltlc.monitor.monitor import Monitor, Step
 
 
 @record
-class Row:
+class RunStep:
     """One step of a run: its number, from 1, the monitor's result, and the values of the atoms, in order."""
 
     number: int
@@ -20,7 +20,7 @@ class Row:
 
 
 @record
-class Outcome:
+class TraceOutcome:
     """The judgement of a whole trace: whether its end is accepted, and the verdict of the last state."""
 
     accepted: bool
@@ -30,7 +30,7 @@ class Outcome:
     total_reward: float
 
 
-def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[Row]:
+def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[RunStep]:
     """Yield a row per sample as the samples come in; the monitor is reset before the first one.
 
     Raises:
@@ -39,7 +39,7 @@ def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Itera
     monitor.reset()
     for number, sample in enumerate(trace, start=1):
         step = monitor.step(sample)
-        yield Row(number, step, monitor.values)
+        yield RunStep(number, step, monitor.values)
 
 
 def header(fspa: Fspa) -> tuple[str, ...]:
@@ -47,22 +47,22 @@ def header(fspa: Fspa) -> tuple[str, ...]:
     return ("step", "state", "verdict", "progress", "reward", *(atom.name for atom in fspa.atoms))
 
 
-def cells(row: Row) -> tuple[str, ...]:
+def cells(row: RunStep) -> tuple[str, ...]:
     """Return a row as texts; numbers have 17 significant digits."""
     numbers = (row.step.progress, row.step.reward, *row.values)
     return (str(row.number), str(row.step.state), row.step.verdict, *(f"{number + 0.0:.17g}" for number in numbers))
 
 
-def outcome(rows: Iterable[Row]) -> Outcome:
+def outcome(rows: Iterable[RunStep]) -> TraceOutcome:
     """Return the judgement of a trace that ends with the last of the rows.
 
     Raises:
         ValueError: there are no rows.
     """
     total = 0.0
-    last: Row | None = None
+    last: RunStep | None = None
     for last in rows:
         total += last.step.reward
     if last is None:
         raise ValueError("a trace has at least one sample")
-    return Outcome(last.step.accepting, last.step.verdict, last.number, last.step.progress, total)
+    return TraceOutcome(last.step.accepting, last.step.verdict, last.number, last.step.progress, total)

@@ -7,7 +7,7 @@ from tltlc.core.record import record
 
 
 @record
-class Tables:
+class MonitorTables:
     """Per state, by its number: the edges that leave it, the improving ones among them, and its base progress.
 
     An edge improves if its target has a smaller distance than its source. ``base_progress`` is in
@@ -20,13 +20,13 @@ class Tables:
     base_progress: tuple[float, ...]
 
 
-def tables(fspa: Fspa) -> Tables:
+def tables(fspa: Fspa) -> MonitorTables:
     """Return the tables of an automaton."""
     edges: list[list[Edge]] = [[] for _ in fspa.states]
     for edge in fspa.edges:
         edges[edge.source].append(edge)
     improving = [[edge for edge in leaving if _improves(fspa, edge)] for leaving in edges]
-    return Tables(
+    return MonitorTables(
         fspa,
         tuple(map(tuple, edges)),
         tuple(map(tuple, improving)),

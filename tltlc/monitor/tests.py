@@ -12,7 +12,7 @@ from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.monitor.samples import MonitorError, shown
-from tltlc.resolve.spec import Expect, Program, Test
+from tltlc.resolve.spec import Expect, ResolvedFile, Test
 
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
@@ -33,7 +33,7 @@ class TestResult:
         return self.failure is None
 
 
-def run_tests(program: Program, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
+def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
     """Return the results of a program's tests, in order; tests of specs without an automaton are skipped."""
     by_name = {fspa.name: fspa for fspa in automata}
     return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)

@@ -29,7 +29,7 @@ class Stream(Protocol):
 
 
 @record
-class Table:
+class TraceTable:
     """A trace in CSV: its columns, and its rows as they are read, each as long as ``header``."""
 
     header: tuple[str, ...]
@@ -43,7 +43,7 @@ class Objects:
     rows: Iterator[dict[str, Any]]
 
 
-def read_rows(lines: Lines) -> Table | Objects | None:
+def read_rows(lines: TraceLines) -> TraceTable | Objects | None:
     """Return the trace as CSV or JSON lines; None if it is blank.
 
     Raises:
@@ -55,7 +55,7 @@ def read_rows(lines: Lines) -> Table | Objects | None:
     if first.lstrip(_BLANKS).startswith("{"):
         return Objects(_object(line, lines) for line in chain([first], _lines(lines)))
     header = _cells(first, lines)
-    return Table(tuple(header), _rows(lines, len(header)))
+    return TraceTable(tuple(header), _rows(lines, len(header)))
 
 
 def cell_number(cell: str) -> float | None:
@@ -67,7 +67,7 @@ def cell_number(cell: str) -> float | None:
     return 1.0 if word == "true" else 0.0 if word == "false" else None
 
 
-class Lines:
+class TraceLines:
     """The lines of a stream, decoded and checked; for messages, it remembers the start of the current row.
 
     ``name`` is the trace's name in messages. At most one row is kept in memory; a row has at most
@@ -145,7 +145,7 @@ class Lines:
         return Label(source, Span(offset + start, offset + max(start, end)), remark)
 
 
-def _lines(lines: Lines) -> Iterator[str]:
+def _lines(lines: TraceLines) -> Iterator[str]:
     while (line := lines.first_of_row()) is not None:
         yield line
 
@@ -153,7 +153,7 @@ def _lines(lines: Lines) -> Iterator[str]:
 # --- CSV ------------------------------------------------------------------------------------------
 
 
-def _rows(lines: Lines, count: int) -> Iterator[list[str]]:
+def _rows(lines: TraceLines, count: int) -> Iterator[list[str]]:
     for line in _lines(lines):
         cells = _cells(line, lines)
         if len(cells) != count:
@@ -162,7 +162,7 @@ def _rows(lines: Lines, count: int) -> Iterator[list[str]]:
         yield cells
 
 
-def _cells(line: str, lines: Lines) -> list[str]:
+def _cells(line: str, lines: TraceLines) -> list[str]:
     """Return the cells of a row that begins with this line; a quoted cell may continue on further lines."""
     if '"' not in line:
         line = line.removesuffix("\r")
@@ -183,12 +183,12 @@ def _cells(line: str, lines: Lines) -> list[str]:
     return cells
 
 
-def _check_returns(text: str, lines: Lines) -> None:
+def _check_returns(text: str, lines: TraceLines) -> None:
     if "\r" in text:
         raise lines.error("a carriage return stands alone", help="end lines with LF or CR LF")
 
 
-def _quoted(line: str, start: int, lines: Lines) -> tuple[str, str, int]:
+def _quoted(line: str, start: int, lines: TraceLines) -> tuple[str, str, int]:
     """Return a quoted cell whose text begins at ``start``, the line in which it ends, and the
     position of the comma or end after it.
     """
@@ -228,7 +228,7 @@ class _BadObjectError(ValueError):
     """A JSON object that a trace may not contain; the message says why."""
 
 
-def _object(line: str, lines: Lines) -> dict[str, Any]:
+def _object(line: str, lines: TraceLines) -> dict[str, Any]:
     assert TRACE_LINE.values is not None
     assert TRACE_LINE.depth is not None
     try:

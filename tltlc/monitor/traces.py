@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.samples import listed
-from tltlc.monitor.trace_rows import OBJECTS, Lines, Stream, Table, cell_number, read_rows
+from tltlc.monitor.trace_rows import OBJECTS, Stream, TraceLines, TraceTable, cell_number, read_rows
 from tltlc.resolve.spec import Signal
 
 Sample = dict[str, float]
@@ -26,10 +26,10 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
         TltlError: TLT0620 no sample, TLT0621 no column for a signal, TLT0622 a line that cannot be
             read. It is raised while iterating, when the reader gets there.
     """
-    lines = Lines(stream, name)
+    lines = TraceLines(stream, name)
     trace = read_rows(lines)
     samples: Iterator[Sample] = iter(())
-    if isinstance(trace, Table):
+    if isinstance(trace, TraceTable):
         columns = _columns(trace.header, lines, signals)
         samples = (_row_sample(row, columns, lines) for row in trace.rows)
     elif trace is not None:
@@ -44,7 +44,7 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
 # --- CSV ------------------------------------------------------------------------------------------
 
 
-def _columns(header: Sequence[str], at: Lines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
+def _columns(header: Sequence[str], at: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
     """Return the signals and the positions of their columns."""
     positions: dict[str, int] = {}
     twice = {name for position, name in enumerate(header) if positions.setdefault(name, position) != position}
@@ -75,7 +75,7 @@ def _suggestion(name: str, columns: Sequence[str]) -> str | None:
     return f"is the column `{squeezed[close[0]]}` meant?" if close else None
 
 
-def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], at: Lines) -> Sample:
+def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], at: TraceLines) -> Sample:
     sample = {}
     for signal, column in columns:
         value = cell_number(row[column])
@@ -111,7 +111,7 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 # --- JSON lines -----------------------------------------------------------------------------------
 
 
-def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], at: Lines) -> Sample:
+def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], at: TraceLines) -> Sample:
     sample = {}
     for signal in signals:
         given = object_.get(signal.name)

@@ -20,14 +20,14 @@ from tltlc.program.tree import (
     All,
     Any,
     Assign,
-    Binary,
-    Call,
+    BinaryNumber,
     Compare,
     Declare,
     Expression,
     If,
     Negate,
     Not,
+    NumericCall,
     Real,
     Statement,
     Type,
@@ -52,7 +52,7 @@ def defined(name: str, statements: Sequence[Statement], *, changes: bool = True)
     return (Declare(name, "real", None, changes), *statements)
 
 
-class Arithmetic:
+class ExpressionTranslator:
     """Translates expressions; ``signals`` and ``params`` map names to the names of variables.
 
     New variables are called ``PREFIX1``, ``PREFIX2`` and so on. The count continues over all calls
@@ -91,9 +91,9 @@ class Arithmetic:
         """Return the value of an expression; statements that must run first are appended to ``lines``."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
-        if isinstance(node, source.Signal):
+        if isinstance(node, source.SignalValue):
             return Variable(self._signals[node.name])
-        if isinstance(node, source.Param):
+        if isinstance(node, source.ParamValue):
             return Variable(self._params[node.name])
         if isinstance(node, source.When):
             name = self._declared("real", lines)
@@ -103,7 +103,7 @@ class Arithmetic:
             factors = MULTIPLIED_EXPONENTS.get(exponent.value)
             if factors:
                 base = self._named(self._argument(node.args[0], lines), lines)
-                return reduce(lambda left, right: Binary("*", left, right), [base] * factors)
+                return reduce(lambda left, right: BinaryNumber("*", left, right), [base] * factors)
         return self._operation(node, [self._argument(argument, lines) for argument in node.args])
 
     def _argument(self, node: source.Expression, lines: list[Statement]) -> Expression:
@@ -114,19 +114,19 @@ class Arithmetic:
         match node.op:
             case "+" | "-" | "*":
                 op = node.op
-                return reduce(lambda left, right: Binary(op, left, right), args)
+                return reduce(lambda left, right: BinaryNumber(op, left, right), args)
             case "/":
                 return reduce(_divided, args)
             case "neg":
                 return Negate(args[0])
             case "^":
-                return Call("power", tuple(args))
+                return NumericCall("power", tuple(args))
             case "clamp":
-                return Call("min", (Call("max", (args[0], args[1])), args[2]))
+                return NumericCall("min", (NumericCall("max", (args[0], args[1])), args[2]))
             case "min" | "max":
                 function = node.op
-                return reduce(lambda left, right: Call(function, (left, right)), args)
-        return Call(node.op, tuple(args))
+                return reduce(lambda left, right: NumericCall(function, (left, right)), args)
+        return NumericCall(node.op, tuple(args))
 
     # --- tests ------------------------------------------------------------------------------------
 
@@ -190,9 +190,9 @@ class Arithmetic:
 
     def _depth(self, node: Expression) -> int:
         match node:
-            case Binary(_, left, right) | Compare(_, left, right):
+            case BinaryNumber(_, left, right) | Compare(_, left, right):
                 return 1 + max(self._depth(left), self._depth(right))
-            case Call(_, args) | All(args) | Any(args):
+            case NumericCall(_, args) | All(args) | Any(args):
                 return 1 + max(map(self._depth, args))
             case Negate(operand) | Not(operand):
                 return 1 + self._depth(operand)
@@ -208,5 +208,5 @@ def _all_or_any(op: str, tests: list[Expression]) -> Expression:
 def _divided(left: Expression, right: Expression) -> Expression:
     """Return a quotient; a plain ``/`` where the divisor is a number other than 0, else ``divide``, which may fail."""
     if isinstance(right, Real) and right.value != 0.0:
-        return Binary("/", left, right)
-    return Call("divide", (left, right))
+        return BinaryNumber("/", left, right)
+    return NumericCall("divide", (left, right))

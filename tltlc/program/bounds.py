@@ -17,14 +17,14 @@ from tltlc.program.tree import (
     All,
     Any,
     Assign,
-    Binary,
-    Call,
+    BinaryNumber,
     Compare,
     Declare,
     Expression,
     If,
     Negate,
     Not,
+    NumericCall,
     Real,
     Statement,
     Variable,
@@ -176,16 +176,16 @@ class _Facts:
     def written(self, node: Expression) -> Expression:
         """Return the expression with plain ``/`` where the divisor is certainly not 0."""
         match node:
-            case Call("divide", (left, right)):
+            case NumericCall("divide", (left, right)):
                 left, right = self.written(left), self.written(right)
                 divisor = self.range(right)
                 if divisor is not None and divisor.without_zero():
-                    return Binary("/", left, right)
-                return Call("divide", (left, right))
-            case Call(function, args):
-                return Call(function, tuple(map(self.written, args)))
-            case Binary(op, left, right):
-                return Binary(op, self.written(left), self.written(right))
+                    return BinaryNumber("/", left, right)
+                return NumericCall("divide", (left, right))
+            case NumericCall(function, args):
+                return NumericCall(function, tuple(map(self.written, args)))
+            case BinaryNumber(op, left, right):
+                return BinaryNumber(op, self.written(left), self.written(right))
             case Compare(compared, left, right):
                 return Compare(compared, self.written(left), self.written(right))
             case Negate(operand):
@@ -216,25 +216,25 @@ class _Facts:
             case Negate(operand):
                 range_ = self.range(operand)
                 return range_ and Range(-range_.high, -range_.low)
-            case Binary("-", left, right):
+            case BinaryNumber("-", left, right):
                 return self._difference(left, right)
-            case Binary("/", left, right):
+            case BinaryNumber("/", left, right):
                 return self._quotient(left, right)
-            case Binary("*", left, right) if left == right:
+            case BinaryNumber("*", left, right) if left == right:
                 range_ = self.range(left)
                 return range_ and _square(range_)
-            case Binary(op, left, right):
+            case BinaryNumber(op, left, right):
                 return _ends(lambda x, y: x * y if op == "*" else x + y, self.range(left), self.range(right), op)
-            case Call("min" | "max" as function, (left, right)):
+            case NumericCall("min" | "max" as function, (left, right)):
                 first, second = self.range(left), self.range(right)
                 if first is None or second is None:
                     return None
                 pick = min if function == "min" else max
                 return Range(pick(first.low, second.low), pick(first.high, second.high))
-            case Call("abs", (operand,)):
+            case NumericCall("abs", (operand,)):
                 range_ = self.range(operand)
                 return range_ and _absolute(range_)
-            case Call("tanh", (operand,)):
+            case NumericCall("tanh", (operand,)):
                 # Some languages lack tanh and compute it from other functions, so rounding may exceed 1.
                 return Range(-2.0, 2.0) if self.range(operand) else None
         return None
@@ -257,7 +257,7 @@ class _Facts:
     def _at_most(self, left: Expression, right: Expression) -> bool:
         """Whether ``left <= right`` follows, for differences ``a - b`` and ``a - c`` with ``c <= b``."""
         match left, right:
-            case Binary("-", minuend, b), Binary("-", other_minuend, c) if minuend == other_minuend:
+            case BinaryNumber("-", minuend, b), BinaryNumber("-", other_minuend, c) if minuend == other_minuend:
                 b_range, c_range = self.range(b), self.range(c)
                 return (c, b) in self._ordered or bool(b_range and c_range and c_range.high <= b_range.low)
         return False

@@ -10,9 +10,9 @@ from tltlc.core.record import record
 from tltlc.monitor.reward import ends_on_entry
 from tltlc.monitor.tables import tables
 from tltlc.program import judge, states
-from tltlc.program.arithmetic import Arithmetic
+from tltlc.program.arithmetic import ExpressionTranslator
 from tltlc.program.bounds import Range, proven, within
-from tltlc.program.names import Names
+from tltlc.program.names import VariableNames
 from tltlc.program.tree import FAILING, Function, Statement
 from tltlc.program.uses import called, read
 from tltlc.resolve.spec import Signal
@@ -91,17 +91,17 @@ def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
     """Return the program of an automaton's monitor; no variable has a ``reserved`` name (of a
     language or a template).
     """
-    names = Names([*reserved, *_OWN])
+    names = VariableNames([*reserved, *_OWN])
     # Deeply nested predicates need a higher recursion limit.
     with recursion_room():
         return _program(fspa, names)
 
 
-def _program(fspa: Fspa, names: Names) -> Program:
+def _program(fspa: Fspa, names: VariableNames) -> Program:
     signals = {signal.name: names.give(signal.name) for signal in fspa.signals}
     params = {param.name: names.give(param.name, "param") for param in fspa.params}
     atoms = tuple(names.give(atom.name, "atom") for atom in fspa.atoms)
-    arithmetic = Arithmetic(signals, params, _prefix([*signals.values(), *params.values(), *atoms]))
+    arithmetic = ExpressionTranslator(signals, params, _prefix([*signals.values(), *params.values(), *atoms]))
     ranges = {name: _range(signal) for name, signal in zip(signals.values(), fspa.signals, strict=True)}
     ranges |= {name: within(param.low, param.high) for name, param in zip(params.values(), fspa.params, strict=True)}
     values = [

@@ -10,7 +10,7 @@ from tltlc.program.states import PROGRESS
 from tltlc.program.tree import (
     Any,
     Assign,
-    Binary,
+    BinaryNumber,
     Compare,
     Declare,
     Expression,
@@ -39,15 +39,15 @@ def judged(fspa: Fspa) -> tuple[Statement, ...]:
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
     lines.append(Declare(BEFORE, "real", Variable(BEST)))
     lines.append(If(((Compare(">", Variable(PROGRESS), Variable(BEST)), (Assign(BEST, Variable(PROGRESS)),)),)))
-    gained = Binary("-", Variable(BEST), Variable(BEFORE))
+    gained = BinaryNumber("-", Variable(BEST), Variable(BEFORE))
     if limit is None:
         going_on: tuple[Statement, ...] = (Assign(REWARD, gained), Assign(DONE, Variable(ENDS)))
     else:
         whole = Real(float(limit))
-        remaining = Binary("/", Binary("-", whole, Variable(STEPS_REAL)), whole)
+        remaining = BinaryNumber("/", BinaryNumber("-", whole, Variable(STEPS_REAL)), whole)
         going_on = (
-            Assign(REWARD, Binary("-", gained, Real(1 / limit))),
-            If(((Variable(VIOLATED), (Assign(REWARD, Binary("-", Variable(REWARD), remaining)),)),)),
+            Assign(REWARD, BinaryNumber("-", gained, Real(1 / limit))),
+            If(((Variable(VIOLATED), (Assign(REWARD, BinaryNumber("-", Variable(REWARD), remaining)),)),)),
             Assign(DONE, Any((Variable(ENDS), Compare(">=", steps, Int(limit))))),
         )
     lines.append(If(((Variable(DONE), (Assign(REWARD, zero),)),), going_on))
@@ -67,5 +67,5 @@ def _survived(limit: int | None) -> list[Statement]:
         return [Declare(PROGRESS, "real"), If(tuple(cases), (Assign(PROGRESS, Real(0.0)),))]
     cases.append((Variable(VIOLATED), (Assign(PROGRESS, Real(0.0)),)))
     cases.append((Compare(">=", Variable(STEPS), Int(limit)), (Assign(PROGRESS, Real(1.0)),)))
-    share = Binary("/", Variable(STEPS_REAL), Real(float(limit)))
+    share = BinaryNumber("/", Variable(STEPS_REAL), Real(float(limit)))
     return [Declare(PROGRESS, "real"), If(tuple(cases), (Assign(PROGRESS, share),))]

@@ -12,7 +12,7 @@ _LONGEST: Final = 40
 _WORDS: Final = {">": " over ", "<": " under ", "-": " minus ", "+": " plus ", "*": " times ", "/": " per "}
 
 
-class Names:
+class VariableNames:
     """Gives out unique variable names: short, readable ASCII, never one that is ``reserved``."""
 
     def __init__(self, reserved: Iterable[str]) -> None:

@@ -12,10 +12,9 @@ from tltlc.program.tree import (
     All,
     Any,
     Assign,
-    Binary,
+    BinaryNumber,
     Bool,
-    Call,
-    Comment,
+    CommentLine,
     Compare,
     Declare,
     Expression,
@@ -23,6 +22,7 @@ from tltlc.program.tree import (
     Int,
     Negate,
     Not,
+    NumericCall,
     Real,
     Statement,
     Type,
@@ -64,7 +64,7 @@ class Printer:
                 lines += self.branches(statement, depth)
                 continue
             indent = self.INDENT * depth
-            if isinstance(statement, Comment):
+            if isinstance(statement, CommentLine):
                 lines += [f"{indent}{line}" for line in self.comment(statement.text)]
             elif isinstance(statement, Declare):
                 lines.append(f"{indent}{self.declaration(statement)}")
@@ -168,10 +168,10 @@ class Printer:
                 return self.name(name), _UNIT
             case Negate(operand):
                 return f"-{self.text(operand, _UNIT)}", _SIGN
-            case Binary(op, left, right):
+            case BinaryNumber(op, left, right):
                 binding = _BINDING[op]
                 return f"{self.text(left, binding)} {op} {self.text(right, binding + 1)}", binding
-            case Call(function, args):
+            case NumericCall(function, args):
                 return self.call(function, [self.text(argument) for argument in args]), _UNIT
             case Compare(op, left, right):
                 return f"{self.text(left, _SUM)} {op} {self.text(right, _SUM)}", _COMPARISON

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import count
 from typing import Final
 
-from tltlc.program.tree import Assign, Call, Declare, Expression, If, Negate, Statement, Variable
+from tltlc.program.tree import Assign, Declare, Expression, If, Negate, NumericCall, Statement, Variable
 
 PART: Final = "part"
 """The prefix of new variables, which are numbered from 1."""
@@ -51,7 +51,7 @@ def _cut(value: Expression, lines: list[Statement], names: Iterator[str]) -> tup
     if isinstance(value, Negate):
         operand, depth = _cut(value.operand, lines, names)
         return Negate(operand), depth
-    if not isinstance(value, Call):
+    if not isinstance(value, NumericCall):
         return value, 0
     args, deepest = [], 0
     for argument in value.args:
@@ -62,4 +62,4 @@ def _cut(value: Expression, lines: list[Statement], names: Iterator[str]) -> tup
             cut, depth = Variable(name), 0
         args.append(cut)
         deepest = max(deepest, depth)
-    return Call(value.function, tuple(args)), deepest + 1
+    return NumericCall(value.function, tuple(args)), deepest + 1

@@ -7,22 +7,22 @@ from functools import reduce
 from typing import Final
 
 from tltlc.automaton.fspa import Edge, Guard, Implicant
-from tltlc.monitor.tables import Tables
+from tltlc.monitor.tables import MonitorTables
 from tltlc.program.clauses import shorter
 from tltlc.program.tree import (
     All,
     Any,
     Assign,
-    Binary,
+    BinaryNumber,
     Bool,
-    Call,
-    Comment,
+    CommentLine,
     Compare,
     Declare,
     Expression,
     If,
     Int,
     Negate,
+    NumericCall,
     Real,
     Statement,
     Variable,
@@ -37,13 +37,13 @@ NEAREST, OTHER = "nearest", "other"
 _ZERO: Final = Real(0.0)
 
 
-def of_state(tables: Tables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
+def of_state(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
     """Return the statements of a state; ``atoms`` are the variables of the atoms' values."""
     return _State(tables, state, atoms).statements()
 
 
 class _State:
-    def __init__(self, tables: Tables, state: int, atoms: Sequence[str]) -> None:
+    def __init__(self, tables: MonitorTables, state: int, atoms: Sequence[str]) -> None:
         self._tables, self._state, self._atoms = tables, state, atoms
         self._at_goal = tables.fspa.judge == "goal"
 
@@ -59,7 +59,7 @@ class _State:
     def _taken(self, edge: Edge) -> tuple[Statement, ...]:
         """Return the statements that run when an edge is taken."""
         improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
-        lines: list[Statement] = [Comment(edge.guard.text), Assign(TARGET, Int(edge.target))]
+        lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, Int(edge.target))]
         lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
         base = Real(self._tables.base_progress[edge.target])
         if not improving:
@@ -70,8 +70,10 @@ class _State:
         primes = [prime for candidate in improving for prime in candidate.guard.primes]
         lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
         # The improving guards are false, so their robustness is at most 0 and needs no cap.
-        share = Binary("/", Binary("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size)))
-        return (*lines, *self._progress(Binary("+", base, share) if base.value else share))
+        share = BinaryNumber(
+            "/", BinaryNumber("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size))
+        )
+        return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
     def _progress(self, value: Expression) -> list[Statement]:
         """Return the assignment of progress; none for a spec judged at its limit, whose progress is
@@ -155,4 +157,4 @@ def _fold(function: str, terms: Sequence[Expression]) -> Expression:
     """Return ``min`` or ``max`` of several terms; without terms, 1 (the ``min`` of no literals)."""
     if not terms:
         return Real(1.0)
-    return reduce(lambda left, right: Call("min" if function == "min" else "max", (left, right)), terms)
+    return reduce(lambda left, right: NumericCall("min" if function == "min" else "max", (left, right)), terms)

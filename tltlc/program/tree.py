@@ -48,7 +48,7 @@ class Bool:
 
 @record
 class Variable:
-    """A variable, by its name in the program; :class:`tltlc.program.names.Names` gives these names."""
+    """A variable, by its name in the program; :class:`tltlc.program.names.VariableNames` gives these names."""
 
     name: str
 
@@ -61,7 +61,7 @@ class Negate:
 
 
 @record
-class Binary:
+class BinaryNumber:
     """``left op right`` of two numbers."""
 
     op: Literal["+", "-", "*", "/"]
@@ -70,7 +70,7 @@ class Binary:
 
 
 @record
-class Call:
+class NumericCall:
     """A call of a numeric function."""
 
     function: Function
@@ -107,7 +107,7 @@ class Any:
     args: tuple[Expression, ...]
 
 
-Expression = Union[Real, Int, Bool, Variable, Negate, Binary, Call, Compare, Not, All, Any]
+Expression = Union[Real, Int, Bool, Variable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any]
 
 
 # --- statements -----------------------------------------------------------------------------------
@@ -143,10 +143,10 @@ class If:
 
 
 @record
-class Comment:
+class CommentLine:
     """A comment, which may contain any characters."""
 
     text: str
 
 
-Statement = Union[Declare, Assign, If, Comment]
+Statement = Union[Declare, Assign, If, CommentLine]

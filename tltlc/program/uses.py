@@ -8,8 +8,7 @@ from tltlc.program.tree import (
     All,
     Any,
     Assign,
-    Binary,
-    Call,
+    BinaryNumber,
     Compare,
     Declare,
     Expression,
@@ -17,6 +16,7 @@ from tltlc.program.tree import (
     If,
     Negate,
     Not,
+    NumericCall,
     Statement,
     Variable,
 )
@@ -29,7 +29,7 @@ def read(statements: Iterable[Statement]) -> frozenset[str]:
 
 def called(statements: Iterable[Statement]) -> frozenset[Function]:
     """Return the functions that are called."""
-    return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, Call))
+    return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, NumericCall))
 
 
 def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
@@ -39,9 +39,9 @@ def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
         node = stack.pop()
         yield node
         match node:
-            case Binary(_, left, right) | Compare(_, left, right):
+            case BinaryNumber(_, left, right) | Compare(_, left, right):
                 stack += (left, right)
-            case Call(_, args) | All(args) | Any(args):
+            case NumericCall(_, args) | All(args) | Any(args):
                 stack += args
             case Negate(operand) | Not(operand):
                 stack.append(operand)

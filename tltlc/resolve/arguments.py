@@ -5,19 +5,19 @@ from __future__ import annotations
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.grammar.slips import meant
-from tltlc.grammar.tree import Argument, Call, Expr, Name, Parameter
+from tltlc.grammar.tree import Argument, CallExpr, Expr, NameExpr, Parameter
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
 
 
 def match(
-    use: Name | Call, binding: Binding, parameters: tuple[Parameter, ...], scope: Scope
+    use: NameExpr | CallExpr, binding: Binding, parameters: tuple[Parameter, ...], scope: Scope
 ) -> tuple[tuple[Parameter, Expr | None], ...]:
     """Return each parameter with its argument, or None where the default applies.
 
     Raises ResolutionError (TLT0210) for missing, surplus, repeated and unknown arguments.
     """
-    arguments = use.arguments if isinstance(use, Call) else ()
+    arguments = use.arguments if isinstance(use, CallExpr) else ()
     given: dict[str, Expr] = {}
     for position, argument in enumerate(arguments):
         name = _parameter_for(argument, position, use, binding, parameters, scope)
@@ -40,7 +40,7 @@ def match(
 def _parameter_for(
     argument: Argument,
     position: int,
-    use: Name | Call,
+    use: NameExpr | CallExpr,
     binding: Binding,
     parameters: tuple[Parameter, ...],
     scope: Scope,

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, TypeVar
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
-from tltlc.expression.tree import Param as ParamNode
-from tltlc.expression.tree import Signal as SignalNode
+from tltlc.expression.tree import ParamValue as ParamNode
+from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.expression.tree import nodes
 from tltlc.io.limits import WORK
 from tltlc.resolve.context import Context, Instance
 from tltlc.resolve.spec import Signal
 
 if TYPE_CHECKING:
-    from tltlc.resolve.range_proof import Finding
+    from tltlc.resolve.range_proof import RangeProblem
 
 N = TypeVar("N", SignalNode, ParamNode)
 
@@ -101,7 +101,7 @@ def _not_checked(unchecked: Sequence[Instance]) -> Diagnostic:
     return Diagnostic("TLT0503", f"the predicate `{first.name}`{rest} not checked", (label,), advice, "warning")
 
 
-def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) -> Diagnostic:
+def _diagnostic(instance: Instance, finding: RangeProblem, negative: bool = False) -> Diagnostic:
     code, severity, title, advice = _CASES[finding.kind]
     if negative:
         code, severity, title, advice = "TLT0401", "warning", *_NEGATIVE

@@ -7,7 +7,7 @@ from math import inf
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Edit, Fix, instead
-from tltlc.grammar.tree import Binary, Expr, Name, Number, ParamDecl, SignalDecl
+from tltlc.grammar.tree import BinaryExpr, Expr, NameExpr, NumberExpr, ParamDecl, SignalDecl
 from tltlc.grammar.walk import expressions, parts
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
@@ -21,7 +21,7 @@ _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NEGATED = {"<=": ">", ">=": "<"}
 
 
-def comparison(expr: Binary, env: Env) -> Formula:
+def comparison(expr: BinaryExpr, env: Env) -> Formula:
     """Return the atom of a comparison, or its negation.
 
     ``x >= c`` is ``not (x < c)``, and ``x <= c`` is ``not (x > c)``.
@@ -54,7 +54,7 @@ def comparison(expr: Binary, env: Env) -> Formula:
     return not_(formula) if negated else formula
 
 
-def _check_size(side: Quantity, expr: Binary, env: Env) -> None:
+def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
     """Raise ResolutionError (TLT0319) if values within the ranges can make a side overflow."""
     if not side.overflows:
         return
@@ -68,7 +68,7 @@ def _check_size(side: Quantity, expr: Binary, env: Env) -> None:
     )
 
 
-def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: Binary, env: Env) -> None:
+def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: BinaryExpr, env: Env) -> None:
     """Raise ResolutionError if the truth is constant (TLT0310) or a needed bound is missing (TLT0311)."""
     source = env.scope.source
     x, c = left, right.low
@@ -101,24 +101,26 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         raise _unbounded(x, needed, expr, env)
 
 
-def _is_percentage(x: Quantity, c: float, op: str, expr: Binary, env: Env) -> bool:
+def _is_percentage(x: Quantity, c: float, op: str, expr: BinaryExpr, env: Env) -> bool:
     """Whether a ratio is compared with a plain number that makes sense as a percentage."""
-    is_plain = isinstance(expr.right, Number) and expr.right.unit is None
+    is_plain = isinstance(expr.right, NumberExpr) and expr.right.unit is None
     is_percentage = is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
     return is_percentage and (x.low, x.high) == (0, 1) and _is_ratio(expr.left, env)
 
 
 def _is_ratio(expr: Expr, env: Env) -> bool:
     """Whether this is a signal or param declared as a ratio, by its type or by a range in percent."""
-    binding = env.scope.names.get(expr.name) if isinstance(expr, Name) else None
+    binding = env.scope.names.get(expr.name) if isinstance(expr, NameExpr) else None
     declaration = binding.declaration if binding else None
     if not isinstance(declaration, (SignalDecl, ParamDecl)):
         return False
     written_parts = (part for expression in expressions(declaration) for part in parts(expression))
-    return declaration.type == "ratio" or any(isinstance(part, Number) and part.unit == "%" for part in written_parts)
+    return declaration.type == "ratio" or any(
+        isinstance(part, NumberExpr) and part.unit == "%" for part in written_parts
+    )
 
 
-def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> ResolutionError:
+def _unbounded(x: Quantity, needed: list[bool], expr: BinaryExpr, env: Env) -> ResolutionError:
     unit = f" {units.si_unit(x.dimension)}" if x.dimension and units.si_unit(x.dimension) else ""
     ends = " and ".join(word for word, missing in zip(("upper", "lower"), needed, strict=True) if missing)
     return problem(

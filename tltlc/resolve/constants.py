@@ -8,7 +8,7 @@ from math import ceil, inf, isinf
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const
 from tltlc.grammar import tree
-from tltlc.grammar.tree import Expr, Group, Interval, Number
+from tltlc.grammar.tree import Expr, GroupExpr, Interval, NumberExpr
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.problem import ResolutionError, problem
@@ -50,7 +50,7 @@ def interval(written: Interval, dimension: Dimension, env: Env) -> tuple[float |
     return (None if low == -inf else low), (None if high == inf else high)
 
 
-def samples(value: Number, env: Env) -> int:
+def samples(value: NumberExpr, env: Env) -> int:
     """Return a number of samples, written in steps or as a time (rounded up).
 
     A number without a unit counts samples. A time needs a clock. Raises ResolutionError (TLT0312,
@@ -84,7 +84,7 @@ def samples(value: Number, env: Env) -> int:
     return _counted(in_si[0] / period - 1e-9, value, env)
 
 
-def _counted(steps: float, value: Number, env: Env) -> int:
+def _counted(steps: float, value: NumberExpr, env: Env) -> int:
     """Return the number rounded up; raise ResolutionError (TLT0312) above MOST_SAMPLES."""
     if steps > MOST_SAMPLES:
         title = f"this is more than {MOST_SAMPLES:,} steps"
@@ -118,11 +118,11 @@ def override(text: str) -> tuple[float, Dimension | None] | None:
 
 def _end(expr: Expr, dimension: Dimension, env: Env) -> float:
     sign, inner = 1.0, expr
-    while isinstance(inner, Group) or (isinstance(inner, tree.Unary) and inner.op == "-"):
+    while isinstance(inner, GroupExpr) or (isinstance(inner, tree.Unary) and inner.op == "-"):
         if isinstance(inner, tree.Unary):
             sign, inner = -sign, inner.operand
         else:
             inner = inner.inner
-    if isinstance(inner, Number) and inner.value == inf:
+    if isinstance(inner, NumberExpr) and inner.value == inf:
         return sign * inf
     return number(expr, dimension, env, "the range")

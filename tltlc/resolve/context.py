@@ -10,7 +10,7 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Expression, nodes
-from tltlc.grammar.tree import Call, Expr, Name
+from tltlc.grammar.tree import CallExpr, Expr, NameExpr
 from tltlc.grammar.walk import parts
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, atom
@@ -179,7 +179,7 @@ class Context:
         """Return the names in an expression."""
         names = self._names.get(id(expr))
         if names is None:
-            unique = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (Name, Call)))
+            unique = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (NameExpr, CallExpr)))
             names = self._names[id(expr)] = tuple(unique)
         return names
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import inf
 
-from tltlc.expression.tree import Param as ParamNode
-from tltlc.expression.tree import Signal as SignalNode
-from tltlc.grammar.tree import Call, Name, ParamDecl, SignalDecl
+from tltlc.expression.tree import ParamValue as ParamNode
+from tltlc.expression.tree import SignalValue as SignalNode
+from tltlc.grammar.tree import CallExpr, NameExpr, ParamDecl, SignalDecl
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.kinds import entity
@@ -28,7 +28,7 @@ def param(binding: Binding, env: Env) -> Quantity:
     return Quantity(ParamNode(declared.name), units.TYPES[declared.type], low, high, declared.name)
 
 
-def signal(expr: Name | Call, binding: Binding, env: Env) -> Quantity:
+def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
     """Return the value of a declared signal for the entities given as arguments."""
     declaration = binding.declaration
     assert isinstance(declaration, SignalDecl)

@@ -3,7 +3,17 @@
 from __future__ import annotations
 
 from tltlc.diagnostics.diagnostic import instead
-from tltlc.grammar.tree import Declaration, Expr, Group, LetDecl, Name, Number, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.grammar.tree import (
+    Declaration,
+    Expr,
+    GroupExpr,
+    LetDecl,
+    NameExpr,
+    NumberExpr,
+    ParamDecl,
+    PredicateDecl,
+    SignalDecl,
+)
 from tltlc.grammar.walk import expressions, parts
 from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
@@ -40,13 +50,13 @@ def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
     usual = {unit, *unit.split("/")}
     for binding in env.scope.names.values():
         declaration = binding.declaration
-        if not isinstance(declaration, Name) and _is_of(dimension, declaration):
+        if not isinstance(declaration, NameExpr) and _is_of(dimension, declaration):
             written = [part for expression in expressions(declaration) for part in parts(expression)]
-            number_units = {part.unit for part in written if isinstance(part, Number) and part.unit}
+            number_units = {part.unit for part in written if isinstance(part, NumberExpr) and part.unit}
             if number_units and not number_units & usual:
                 return True
             # The unit of time after the `/` of a speed is parsed as a name.
-            names = {part.name for part in written if isinstance(part, Name)}
+            names = {part.name for part in written if isinstance(part, NameExpr)}
             if any(units.in_si(1.0, name) for name in names - usual):
                 return True
     return False
@@ -63,11 +73,11 @@ def _is_of(dimension: Dimension, declaration: Declaration) -> bool:
 
 def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
     """Return the problem of a quantity of the wrong dimension at ``at``."""
-    while isinstance(at, Group):
+    while isinstance(at, GroupExpr):
         at = at.inner
     unit = units.si_unit(expected)
     advice, replacement = None, ""
-    if isinstance(at, Number):
+    if isinstance(at, NumberExpr):
         digits = env.scope.source.text[at.span.start : at.span.end]
         if at.unit and digits.endswith(at.unit):
             digits = digits[: -len(at.unit)].rstrip()

@@ -11,7 +11,18 @@ from collections.abc import Callable
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Const, Expression, Op
-from tltlc.grammar.tree import Binary, Call, Constant, Expr, Group, LetDecl, Name, Quantified, SignalDecl, Unary
+from tltlc.grammar.tree import (
+    BinaryExpr,
+    CallExpr,
+    Constant,
+    Expr,
+    GroupExpr,
+    LetDecl,
+    NameExpr,
+    Quantified,
+    SignalDecl,
+    Unary,
+)
 from tltlc.grammar.walk import operands
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
@@ -65,20 +76,20 @@ def check_unused(binding: Binding, env: Env) -> None:
 
 
 def _formula(expr: Expr, env: Env) -> Steps:
-    while isinstance(expr, Group):
+    while isinstance(expr, GroupExpr):
         expr = expr.inner
     if isinstance(expr, Constant):
         return logic.TRUE if expr.value else logic.FALSE
-    if isinstance(expr, Name):
+    if isinstance(expr, NameExpr):
         return (yield _named(expr, env))
-    if isinstance(expr, Call) or (isinstance(expr, Binary) and expr.op in _COMPARISONS):
+    if isinstance(expr, CallExpr) or (isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS):
         return (yield _shared(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
         operand = yield _formula(expr.operand, env)
         return bounded(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
     if isinstance(expr, Quantified):
         return (yield _quantified(expr, env))
-    if isinstance(expr, Binary):
+    if isinstance(expr, BinaryExpr):
         if expr.op in _NARY:
             joined: list[Formula] = []
             for written in operands(expr, expr.op):
@@ -92,19 +103,19 @@ def _formula(expr: Expr, env: Env) -> Steps:
     raise not_a_formula(expr, env)
 
 
-def _shared(expr: Call | Binary, env: Env) -> Steps:
+def _shared(expr: CallExpr | BinaryExpr, env: Env) -> Steps:
     """Resolve a call or comparison once for each choice of the local names in it."""
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
     if memo not in values:
-        values[memo] = comparison(expr, env) if isinstance(expr, Binary) else (yield _named(expr, env))
+        values[memo] = comparison(expr, env) if isinstance(expr, BinaryExpr) else (yield _named(expr, env))
     return values[memo]
 
 
-def _named(expr: Name | Call, env: Env) -> Steps:
+def _named(expr: NameExpr | CallExpr, env: Env) -> Steps:
     local = env.local.get(expr.name)
     if local is not None:
-        if isinstance(local, Formula) and isinstance(expr, Name):
+        if isinstance(local, Formula) and isinstance(expr, NameExpr):
             return local
         if isinstance(local, Unknown):
             return logic.atom(local.name)
@@ -128,7 +139,7 @@ def _named(expr: Name | Call, env: Env) -> Steps:
     raise not_a_formula(expr, env)
 
 
-def _bool_atom(value: Quantity, doc: str, expr: Name | Call, env: Env) -> Formula:
+def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
     """Return a bool as an atom: robustness 1 where it is true, -1 where it is false."""
     if value.is_constant:
         return logic.TRUE if value.low else logic.FALSE
@@ -138,13 +149,13 @@ def _bool_atom(value: Quantity, doc: str, expr: Name | Call, env: Env) -> Formul
     return _atom(value, scaled, doc, expr, env)
 
 
-def _atom(value: Quantity, robustness: Expression, doc: str, expr: Name | Call, env: Env) -> Formula:
+def _atom(value: Quantity, robustness: Expression, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
     """Return the atom that is called like a value."""
     base, arguments = value.call or (value.text, ())
     return env.context.atom(base, robustness, doc, env.scope.source, expr.span, arguments)
 
 
-def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
+def _let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Steps:
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
     values: dict[str, Value] = {}
@@ -152,7 +163,7 @@ def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
         argument_env = env if argument is not None else env.within(binding.scope, dict(values))
         expression = argument if argument is not None else parameter.default
         assert expression is not None
-        local = argument_env.local.get(expression.name) if isinstance(expression, Name) else None
+        local = argument_env.local.get(expression.name) if isinstance(expression, NameExpr) else None
         if isinstance(local, Unknown):
             values[parameter.name] = local
         elif parameter.type == "formula" or (parameter.type is None and kind_of(expression, argument_env) == "formula"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.grammar.tree import Call
+from tltlc.grammar.tree import CallExpr
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import mismatch, same_dimension
 from tltlc.resolve.problem import problem
@@ -17,7 +17,7 @@ _FORMS = {
 _ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3, "min": None, "max": None}
 
 
-def check_arguments(call: Call, env: Env) -> None:
+def check_arguments(call: CallExpr, env: Env) -> None:
     """Raise ResolutionError (TLT0210) if a function does not get the arguments that it takes."""
     name, source, count = call.name, env.scope.source, len(call.arguments)
     named = next((argument for argument in call.arguments if argument.name is not None), None)
@@ -30,7 +30,7 @@ def check_arguments(call: Call, env: Env) -> None:
         raise problem("TLT0210", f"`{name}` takes {text}", source, call.span, advice=f"`{name}{example}`")
 
 
-def dimension(call: Call, values: tuple[Quantity, ...], env: Env) -> Dimension | None:
+def dimension(call: CallExpr, values: tuple[Quantity, ...], env: Env) -> Dimension | None:
     """Return the dimension of a function's value.
 
     Raises ResolutionError (TLT0305) if the dimensions of the arguments do not fit.

@@ -8,7 +8,7 @@ from tltlc.diagnostics.diagnostic import Fix, instead
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.mistakes.insertion import at_top
-from tltlc.grammar.tree import Call, Expr, Group, Name, SignalDecl
+from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, SignalDecl
 from tltlc.grammar.walk import parts
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
@@ -32,7 +32,7 @@ _DECLARATIONS = {
 """The declaration to suggest for an unknown name without a similar known one, by its kind."""
 
 
-def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], noun: str) -> Binding:
+def lookup(use: NameExpr | CallExpr, env: Env, wanted: tuple[Kind, ...], noun: str) -> Binding:
     """Return the binding of a name.
 
     Raises ResolutionError (TLT0201) with a suggestion if the name is unknown. Reports nothing if a
@@ -43,8 +43,8 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], noun: str) -> B
         return binding
     if env.scope.incomplete:
         raise ResolutionError(None)
-    span = use.name_span if isinstance(use, Call) else use.span
-    if use.name in CONDITIONS and isinstance(use, Call):
+    span = use.name_span if isinstance(use, CallExpr) else use.span
+    if use.name in CONDITIONS and isinstance(use, CallExpr):
         raise problem(
             "TLT0201",
             f"`{use.name}` is no operator",
@@ -79,7 +79,7 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], noun: str) -> B
         advice = f"declare it: `{line}`" if noun == "entity" else _OTHERWISE.format(line)
     fixes: tuple[Fix, ...] = ()
     # A call would need a declaration with parameters, which this fix does not offer.
-    if is_helped and (library or isinstance(use, Name)):
+    if is_helped and (library or isinstance(use, NameExpr)):
         fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (at_top(env.scope.module, line),)),)
     raise problem("TLT0201", title, source, span, advice=advice, fixes=fixes)
 
@@ -104,9 +104,9 @@ def _in_two_words(name: str, env: Env, wanted: tuple[Kind, ...]) -> str | None:
 
 def entity(expr: Expr, env: Env) -> Entity:
     """Return the entity that an argument names; raise ResolutionError if it names none."""
-    while isinstance(expr, Group):
+    while isinstance(expr, GroupExpr):
         expr = expr.inner
-    if isinstance(expr, Name):
+    if isinstance(expr, NameExpr):
         local = env.local.get(expr.name)
         if isinstance(local, Entity):
             return local
@@ -121,7 +121,7 @@ def entity(expr: Expr, env: Env) -> Entity:
         f"expected an entity, found {described_kind(expr, env)}",
         env.scope.source,
         expr.span,
-        advice=_entities(env) if not isinstance(expr, tree.Binary) else _ONE_ENTITY,
+        advice=_entities(env) if not isinstance(expr, tree.BinaryExpr) else _ONE_ENTITY,
     )
 
 
@@ -152,22 +152,22 @@ def said_of(entity: str, env: Env, *, number: bool) -> str:
 
 def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
     """Return the kind of an argument from its outermost part; unknown names count as formulas."""
-    while isinstance(expr, Group):
+    while isinstance(expr, GroupExpr):
         expr = expr.inner
-    if isinstance(expr, (tree.Number, tree.When)):
+    if isinstance(expr, (tree.NumberExpr, tree.WhenExpr)):
         return "number"
     if isinstance(expr, tree.Unary):
         return "number" if expr.op == "-" else "formula"
-    if isinstance(expr, tree.Binary):
+    if isinstance(expr, tree.BinaryExpr):
         return "formula" if expr.op in _FORMULA_OPERATORS else "number"
-    if isinstance(expr, (Name, Call)):
+    if isinstance(expr, (NameExpr, CallExpr)):
         local = env.local.get(expr.name)
         if local is not None:
             quantity = isinstance(local, Quantity) and not local.is_bool
             return "number" if quantity else "entity" if isinstance(local, Entity) else "formula"
         binding = env.scope.names.get(expr.name)
         if binding is None:
-            return "number" if isinstance(expr, Call) and expr.name in FUNCTIONS else "formula"
+            return "number" if isinstance(expr, CallExpr) and expr.name in FUNCTIONS else "formula"
         if isinstance(binding.declaration, SignalDecl):
             return "formula" if binding.declaration.type == "bool" else "number"
         return "entity" if binding.kind == "entity" else "number" if binding.kind == "param" else "formula"
@@ -176,11 +176,11 @@ def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
 
 def described_kind(expr: Expr, env: Env) -> str:
     """Return the kind of an expression in words, for ``expected a number, found …``."""
-    while isinstance(expr, Group):
+    while isinstance(expr, GroupExpr):
         expr = expr.inner
     if isinstance(expr, tree.Constant):
         return f"`{'true' if expr.value else 'false'}`"
-    if isinstance(expr, tree.Binary) and expr.op in ("<", "<=", ">", ">="):
+    if isinstance(expr, tree.BinaryExpr) and expr.op in ("<", "<=", ">", ">="):
         return "a comparison"
     kind = kind_of(expr, env)
     return {"entity": "an entity", "number": "a number", "formula": "a formula"}[kind]
@@ -200,7 +200,7 @@ def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
 def _how_to_compare(expr: Expr, env: Env) -> str:
     """Return a help that shows how to turn a number into a condition."""
     text = env.scope.source.slice(expr.span)
-    is_short = len(text) <= 40 and not isinstance(expr, tree.When)
+    is_short = len(text) <= 40 and not isinstance(expr, tree.WhenExpr)
     if _is_literal(expr):
         return "compare a signal with it" + (f", as in `SIGNAL > {text}`" if is_short else "")
     return f"compare it, e.g. `{text} > {_threshold(expr, env)}`" if is_short else "compare it with a number"
@@ -208,12 +208,12 @@ def _how_to_compare(expr: Expr, env: Env) -> str:
 
 def _is_literal(expr: Expr) -> bool:
     """Whether an expression consists of numbers only."""
-    return not any(isinstance(part, (Name, Call, tree.When)) for part in parts(expr))
+    return not any(isinstance(part, (NameExpr, CallExpr, tree.WhenExpr)) for part in parts(expr))
 
 
 def _threshold(expr: Expr, env: Env) -> str:
     """Return an example value to compare a signal or param with, in the unit of its type."""
-    binding = env.scope.names.get(expr.name) if isinstance(expr, (Name, Call)) else None
+    binding = env.scope.names.get(expr.name) if isinstance(expr, (NameExpr, CallExpr)) else None
     declaration = binding.declaration if binding else None
     type_ = declaration.type if isinstance(declaration, (SignalDecl, tree.ParamDecl)) else None
     unit = units.si_unit(units.TYPES[type_]) if type_ in units.TYPES else None

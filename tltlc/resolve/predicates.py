@@ -13,7 +13,7 @@ from tltlc.expression.tree import Const
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.slips import meant
-from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
+from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Parameter, PredicateDecl
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
@@ -39,7 +39,7 @@ class PredicateUse:
     doc: str
 
 
-def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
+def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
     """Return the value of a predicate where it is used.
 
     The name of the value is the name of the atom, e.g. ``near(s1, close=3)``.
@@ -105,7 +105,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
 
     Raises ResolutionError if the argument does not fit the parameter.
     """
-    while isinstance(argument, Group):
+    while isinstance(argument, GroupExpr):
         argument = argument.inner
     if parameter.type == "entity" or (parameter.type is None and kind_of(argument, env) == "entity"):
         return entity(argument, env)

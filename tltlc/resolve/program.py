@@ -19,7 +19,7 @@ from tltlc.resolve.imports import Loaded, load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
-from tltlc.resolve.spec import Program, Spec, Vocabulary
+from tltlc.resolve.spec import ResolvedFile, Spec, Vocabulary
 from tltlc.resolve.specs import spec, vocabulary
 from tltlc.resolve.tests import resolved_test
 from tltlc.resolve.values import Env
@@ -36,13 +36,13 @@ class Resolution:
     itself last.
     """
 
-    program: Program
+    program: ResolvedFile
     env: Env
     modules: tuple[Loaded, ...]
     diagnostics: tuple[Diagnostic, ...]
 
 
-def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Program, tuple[Diagnostic, ...]]:
+def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[ResolvedFile, tuple[Diagnostic, ...]]:
     """Return the specs and tests of a module that resolve, and all diagnostics.
 
     Reads the files that the module imports. Never raises on bad input: everything in error is
@@ -69,7 +69,7 @@ def resolution(module: Module, options: ResolveOptions | None = None) -> Resolut
     _check_unused(scope, env)
     if options.proofs:
         check_predicates(context)
-    program = Program(
+    program = ResolvedFile(
         tuple(resolved for resolved in specs.values() if resolved is not None),
         tuple(test for test in tests if test is not None),
         vocabulary([name for group in groups for name in group], groups, context),

@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Fix, around
 from tltlc.expression.tree import Condition, ConditionOp, Const, When
 from tltlc.expression.tree import depth as depth_of
 from tltlc.grammar import tree
-from tltlc.grammar.tree import Call, Expr, Group, Name, Number
+from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, NumberExpr
 from tltlc.io.limits import ARITHMETIC
 from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
@@ -33,7 +33,7 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 
     Raises ResolutionError if it is not a number or its units do not fit.
     """
-    while isinstance(expr, Group):
+    while isinstance(expr, GroupExpr):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
         raise _too_deep(expr, env)
@@ -45,24 +45,24 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     """Return the condition of a ``when`` and its text; raise ResolutionError if it is not one."""
-    while isinstance(expr, Group):
+    while isinstance(expr, GroupExpr):
         expr = expr.inner
     if depth > ARITHMETIC.depth:
         raise _too_deep(expr, env)
     if isinstance(expr, tree.Unary) and expr.op == "not" and expr.bound is None:
         inner, text = condition(expr.operand, env, depth + 1)
         return Condition("not", (inner,)), f"not ({text})"
-    if isinstance(expr, tree.Binary) and expr.op in ("and", "or"):
+    if isinstance(expr, tree.BinaryExpr) and expr.op in ("and", "or"):
         left, left_text = condition(expr.left, env, depth + 1)
         right, right_text = condition(expr.right, env, depth + 1)
         op = cast(ConditionOp, expr.op)
         return Condition(op, (left, right)), f"({left_text}) {expr.op} ({right_text})"
-    if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
+    if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
         a, b = quantity(expr.left, env, depth), quantity(expr.right, env, depth)
         same_dimension(a, b, expr.right, env)
         op = cast(ConditionOp, expr.op)
         return Condition(op, (a.expression, b.expression)), f"{a.text} {expr.op} {b.text}"
-    if isinstance(expr, (Name, Call)):
+    if isinstance(expr, (NameExpr, CallExpr)):
         value = quantity(expr, env, depth)
         if value.is_bool:
             return Condition(">", (value.expression, Const(0.5))), value.text
@@ -76,11 +76,11 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
 
 
 def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
-    if isinstance(expr, Number):
+    if isinstance(expr, NumberExpr):
         return _number(expr, env)
-    if isinstance(expr, Name):
+    if isinstance(expr, NameExpr):
         return _named(expr, env, depth)
-    if isinstance(expr, Call):
+    if isinstance(expr, CallExpr):
         if expr.name in FUNCTIONS and expr.name not in env.local:
             functions.check_arguments(expr, env)
             if len(expr.arguments) > ARITHMETIC.parts:
@@ -91,14 +91,14 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
     if isinstance(expr, tree.Unary) and expr.op == "-":
         operand = quantity(expr.operand, env, depth)
         return _applied("neg", (operand,), operand.dimension, expr, env)
-    if isinstance(expr, tree.Binary) and expr.op in _ARITHMETIC:
+    if isinstance(expr, tree.BinaryExpr) and expr.op in _ARITHMETIC:
         return _infix(expr, env, depth)
-    if isinstance(expr, tree.When):
+    if isinstance(expr, tree.WhenExpr):
         return _when(expr, env, depth)
     raise _not_a_number(expr, env)
 
 
-def _number(expr: Number, env: Env) -> Quantity:
+def _number(expr: NumberExpr, env: Env) -> Quantity:
     in_si = units.in_si(expr.value, expr.unit)
     if in_si is None:
         raise problem(
@@ -115,10 +115,10 @@ def _number(expr: Number, env: Env) -> Quantity:
     return constant(value, None if value == 0 and expr.unit is None else dimension)
 
 
-def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
+def _named(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
     local = env.local.get(expr.name)
     if local is not None:
-        if isinstance(local, Quantity) and isinstance(expr, Name):
+        if isinstance(local, Quantity) and isinstance(expr, NameExpr):
             return local
         if isinstance(local, Unknown):
             placeholder = Signal(local.name, "number", None, None)
@@ -150,10 +150,10 @@ def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
     raise _not_a_number(expr, env)
 
 
-def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
+def _infix(expr: tree.BinaryExpr, env: Env, depth: int) -> Quantity:
     left = quantity(expr.left, env, depth)
     if _is_per_time(expr, env):
-        assert isinstance(expr.right, Name)
+        assert isinstance(expr.right, NameExpr)
         scale, dimension = units.in_si(1.0, expr.right.name) or (1.0, units.PLAIN)
         per = constant(scale, dimension)
         return _applied("/", (left, per), units.product(left.dimension, dimension, -1.0), expr, env)
@@ -167,7 +167,7 @@ def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
     return _applied(expr.op, (left, right), dimension_, expr, env)
 
 
-def _is_per_time(expr: tree.Binary, env: Env) -> bool:
+def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
     """Whether this is a literal speed such as ``3 m/s``.
 
     The unit after the ``/`` is lexed as a name. A signal or param of that name takes precedence,
@@ -176,21 +176,26 @@ def _is_per_time(expr: tree.Binary, env: Env) -> bool:
     left, per = expr.left, expr.right
     if isinstance(left, tree.Unary) and left.op == "-":
         left = left.operand
-    if expr.op != "/" or not isinstance(left, Number) or left.unit is None:
+    if expr.op != "/" or not isinstance(left, NumberExpr) or left.unit is None:
         return False
-    if not isinstance(per, Name) or per.name not in units.time_units() or per.name in env.local:
+    if not isinstance(per, NameExpr) or per.name not in units.time_units() or per.name in env.local:
         return False
     declared = env.scope.names.get(per.name)
     return env.constant or declared is None or declared.kind not in ("param", "signal")
 
 
-def _check_speed(expr: tree.Binary, env: Env) -> None:
+def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
     """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if there is no `s`.
 
     It is read as ``(a / 1 m) / s``.
     """
     inner, per = expr.left, expr.right
-    if expr.op != "/" or not isinstance(inner, tree.Binary) or inner.op not in ("*", "/") or not isinstance(per, Name):
+    if (
+        expr.op != "/"
+        or not isinstance(inner, tree.BinaryExpr)
+        or inner.op not in ("*", "/")
+        or not isinstance(per, NameExpr)
+    ):
         return
     speed = replace(expr, left=inner.right)
     if per.name not in env.scope.names and _is_per_time(speed, env):
@@ -207,7 +212,7 @@ def _check_speed(expr: tree.Binary, env: Env) -> None:
         )
 
 
-def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Quantity:
+def _power(expr: tree.BinaryExpr, base: Quantity, exponent: Quantity, env: Env) -> Quantity:
     if exponent.dimension not in (None, units.PLAIN):
         raise mismatch(units.PLAIN, exponent.dimension, expr.right, env, "an exponent is a number")
     if base.dimension in (None, units.PLAIN):
@@ -223,7 +228,7 @@ def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Q
     return _applied("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
 
 
-def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
+def _when(expr: tree.WhenExpr, env: Env, depth: int) -> Quantity:
     if len(expr.cases) > ARITHMETIC.parts:
         raise _too_wide(f"this `when` has more than {ARITHMETIC.parts} cases", expr, env)
     tests: list[tuple[Condition, str]] = []
@@ -263,7 +268,7 @@ def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, e
 
 def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
-    if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
+    if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
         advice = "a comparison is a formula: `let rich = coins > 30` names one, and `and` joins two"
     elif kind_of(expr, env) == "entity":
         advice = said_of(env.scope.source.slice(expr.span), env, number=True)

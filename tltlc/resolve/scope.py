@@ -9,13 +9,13 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar.slips import meant
-from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, NameExpr, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import Loaded
 from tltlc.resolve.problem import Log, problem
 
 Kind = Literal["signal", "param", "predicate", "let", "entity"]
-Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, Name]
+Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, NameExpr]
 FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
 _MERGED = ("signal", "param", "entity")
 
@@ -37,7 +37,7 @@ class Binding:
     @property
     def span(self) -> Span:
         """The place of the declared name in ``scope.source``."""
-        return self.declaration.span if isinstance(self.declaration, Name) else self.declaration.name_span
+        return self.declaration.span if isinstance(self.declaration, NameExpr) else self.declaration.name_span
 
 
 @record
@@ -198,7 +198,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
     ).diagnostic
 
 
-def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
+def _not_offered(scope: Scope, wanted: NameExpr, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
     close = meant(wanted.name, offered)
     hint = f"did you mean `{close}`?" if close else ""
     fixes = (instead(scope.source, wanted.span, close),) if close else ()

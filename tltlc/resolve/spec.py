@@ -78,7 +78,7 @@ class Bound:
 
 
 @record
-class Part:
+class Conjunct:
     """One conjunct of a spec's formula and its clause, so that errors can name the clause.
 
     ``bounds`` are the bounds expanded in the clause. ``unbounded`` is the formula with ``F p`` for
@@ -106,7 +106,7 @@ class Spec:
     name: str
     doc: str
     formula: Formula
-    parts: tuple[Part, ...]
+    parts: tuple[Conjunct, ...]
     atoms: tuple[Atom, ...]
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
@@ -136,7 +136,7 @@ class Vocabulary:
 
 
 @record
-class Step:
+class TestSample:
     """One line of a test: the atoms that hold (the others are false), repeated ``times``."""
 
     times: int
@@ -160,13 +160,13 @@ class Test:
 
     title: str
     spec: str
-    items: tuple[Step | Expect, ...]
+    items: tuple[TestSample | Expect, ...]
     source: SourceFile
     span: Span
 
 
 @record
-class Program:
+class ResolvedFile:
     """A resolved file: its own specs and tests, in order.
 
     ``exclusive`` is the vocabulary of all ``exclusive`` groups that the file and its imports

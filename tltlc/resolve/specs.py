@@ -8,16 +8,16 @@ from typing import Literal, cast
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression.tree import Expression, nodes
-from tltlc.expression.tree import Param as ParamNode
-from tltlc.expression.tree import Signal as SignalNode
-from tltlc.grammar.tree import Clause, Expr, Name, Number, SpecDecl
+from tltlc.expression.tree import ParamValue as ParamNode
+from tltlc.expression.tree import SignalValue as SignalNode
+from tltlc.grammar.tree import Clause, Expr, NameExpr, NumberExpr, SpecDecl
 from tltlc.grammar.walk import conjuncts, operands
 from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Judge, Part, Spec, Vocabulary
+from tltlc.resolve.spec import Conjunct, Judge, Spec, Vocabulary
 from tltlc.resolve.values import Env
 
 _ONCE = ("level", "limit", "judge", "semantics")
@@ -32,7 +32,7 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     with the formula become part of the spec.
     """
     log, source = env.context.log, env.scope.source
-    parts: list[Part] = []
+    parts: list[Conjunct] = []
     metadata: dict[str, Clause] = {}
     tags: dict[str, None] = {}
     complete = True
@@ -41,7 +41,7 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
             if clause.kind in _READERS:
                 parts.extend(_parts(clause, env))
             elif clause.kind == "tag":
-                tags.update(dict.fromkeys(tag.name for tag in cast("tuple[Name, ...]", clause.value)))
+                tags.update(dict.fromkeys(tag.name for tag in cast("tuple[NameExpr, ...]", clause.value)))
             else:
                 _remember(clause, metadata, env)
         except ResolutionError as failure:
@@ -93,7 +93,7 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
     )
 
 
-def _parts(clause: Clause, env: Env) -> list[Part]:
+def _parts(clause: Clause, env: Env) -> list[Conjunct]:
     """Return the formulas of a clause, with their bounds and their unbounded form if there are bounds."""
     read = _READERS[clause.kind]
     before = len(env.context.bounds)
@@ -108,7 +108,7 @@ def _parts(clause: Clause, env: Env) -> list[Part]:
     ]
 
 
-def _reach(clause: Clause, env: Env) -> list[Part]:
+def _reach(clause: Clause, env: Env) -> list[Conjunct]:
     # Resolve in the order written, so that the first error is the one reported.
     *before, result = [formula(operand, env) for operand in operands(_expression(clause), "then")]
     if not before:
@@ -118,19 +118,19 @@ def _reach(clause: Clause, env: Env) -> list[Part]:
     return [_part(result, clause, env)]
 
 
-def _keep(clause: Clause, env: Env) -> list[Part]:
+def _keep(clause: Clause, env: Env) -> list[Conjunct]:
     return [_part(always(formula(_expression(clause), env)), clause, env)]
 
 
-def _avoid(clause: Clause, env: Env) -> list[Part]:
+def _avoid(clause: Clause, env: Env) -> list[Conjunct]:
     return [_part(always(not_(formula(_expression(clause), env))), clause, env)]
 
 
-def _require(clause: Clause, env: Env) -> list[Part]:
-    return [Part(formula(e, env), env.scope.source, e.span) for e in conjuncts(_expression(clause))]
+def _require(clause: Clause, env: Env) -> list[Conjunct]:
+    return [Conjunct(formula(e, env), env.scope.source, e.span) for e in conjuncts(_expression(clause))]
 
 
-_READERS: dict[str, Callable[[Clause, Env], list[Part]]] = {
+_READERS: dict[str, Callable[[Clause, Env], list[Conjunct]]] = {
     "reach": _reach,
     "keep": _keep,
     "avoid": _avoid,
@@ -143,8 +143,8 @@ def _expression(clause: Clause) -> Expr:
     return clause.value
 
 
-def _part(conjunct: Formula, clause: Clause, env: Env) -> Part:
-    return Part(conjunct, env.scope.source, clause.span)
+def _part(conjunct: Formula, clause: Clause, env: Env) -> Conjunct:
+    return Conjunct(conjunct, env.scope.source, clause.span)
 
 
 def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
@@ -165,7 +165,7 @@ def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
 def _limit(clause: Clause | None, env: Env) -> int | None:
     if clause is None:
         return None
-    assert isinstance(clause.value, Number)
+    assert isinstance(clause.value, NumberExpr)
     if clause.value.unit is None:
         digits = env.scope.source.slice(clause.value.span)
         advice = f"write `{digits} steps` or, with a clock, `{digits} s`"
@@ -181,7 +181,7 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
 
 
 def _word(clause: Clause | None) -> str | None:
-    return clause.value.name if clause is not None and isinstance(clause.value, Name) else None
+    return clause.value.name if clause is not None and isinstance(clause.value, NameExpr) else None
 
 
 def _variables(expression: Expression) -> list[SignalNode | ParamNode]:

@@ -7,11 +7,11 @@ from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import instead
 from tltlc.grammar.slips import meant
-from tltlc.grammar.tree import Expr, Group, TestDecl, TestExpect, TestStep, Unary
+from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Expect, Spec, Step, Test
+from tltlc.resolve.spec import Expect, Spec, Test, TestSample
 from tltlc.resolve.values import Env
 
 
@@ -34,7 +34,7 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
     spec = specs[name]
     if spec is None:
         return None
-    items: list[Step | Expect] = []
+    items: list[TestSample | Expect] = []
     complete = True
     for item in declaration.items:
         try:
@@ -50,7 +50,7 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
     return Test(declaration.title, name, tuple(items), source, declaration.span) if complete else None
 
 
-def _step(item: TestStep, spec: Spec, env: Env) -> Step:
+def _step(item: TestStep, spec: Spec, env: Env) -> TestSample:
     source = env.scope.source
     names = {_squeezed(atom.name): atom.name for atom in spec.atoms}
     values: dict[str, bool] = {}
@@ -68,7 +68,7 @@ def _step(item: TestStep, spec: Spec, env: Env) -> Step:
                 written.span,
                 advice="leave one out",
             )
-    return Step(item.times, frozenset(name for name, holds in values.items() if holds))
+    return TestSample(item.times, frozenset(name for name, holds in values.items() if holds))
 
 
 def _literal(written: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:
@@ -77,8 +77,8 @@ def _literal(written: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bo
     The atom is written as a formula, or as the name of the atom, which has no units.
     """
     holds, inner = True, written
-    while isinstance(inner, Group) or (isinstance(inner, Unary) and inner.op == "not"):
-        inner, holds = (inner.inner, holds) if isinstance(inner, Group) else (inner.operand, not holds)
+    while isinstance(inner, GroupExpr) or (isinstance(inner, Unary) and inner.op == "not"):
+        inner, holds = (inner.inner, holds) if isinstance(inner, GroupExpr) else (inner.operand, not holds)
     name = names.get(_squeezed(env.scope.source.text[inner.span.start : inner.span.end]))
     if name is not None:
         return name, holds

@@ -101,7 +101,7 @@ def command(
         from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
         from tltl_runtime.cli.support.policy_path import check_known, policy_place
         from tltl_runtime.evaluation.evaluate import results, set_up
-        from tltl_runtime.evaluation.player import Task
+        from tltl_runtime.evaluation.player import EpisodeRequest
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
         from tltl_runtime.stealth.capabilities.feasible import reach_warnings
         from tltl_runtime.stealth.levels.file import load_level
@@ -123,7 +123,9 @@ def command(
         files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
         # Check this only now: the report may go into the folder, which EvaluationFiles has created.
         check_writable({"--json": None if cli.is_stdout(json_file) else json_file})
-        tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
+        tasks = [
+            EpisodeRequest(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)
+        ]
         try:
             with closing(results(setup, tasks, workers, _waiting)) as playing:
                 for result in _counted(playing, len(tasks)):

@@ -19,7 +19,7 @@ from tltlc.api import Diagnostic, TltlError, cli, record
 
 if TYPE_CHECKING:
     from tltl_runtime.regression.table1.paper_table import Model
-    from tltl_runtime.regression.table1.table_trainings import Trained
+    from tltl_runtime.regression.table1.table_trainings import TrainedModel
 
 _ELSEWHERE = "name another place with --out"
 _SAVING_S = 20.0
@@ -90,12 +90,12 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 
 def _table(wanted: _Wanted) -> str:
     """The table over the paper's number of episodes, and over all episodes."""
-    from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, Row, markdown
+    from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, figures, measured
     from tltl_runtime.training.run.versions import versions
 
     seeds = []
-    rows: dict[int, dict[tuple[str, Model], Row]] = {RUNS: {}, EPISODES: {}}
+    rows: dict[int, dict[tuple[str, Model], TableRow]] = {RUNS: {}, EPISODES: {}}
     for level in LEVELS:
         for model in MODELS:
             training = _trained(wanted, level, model)
@@ -109,7 +109,7 @@ def _table(wanted: _Wanted) -> str:
                 cells[variant] = measured(wanted.folder, model, level, variant, policy, wanted.workers)
             for runs, table in rows.items():
                 shown = {name: figures(cell, runs) for name, cell in cells.items()}
-                table[level, model] = Row(shown, hours, cloned)
+                table[level, model] = TableRow(shown, hours, cloned)
     tables = [
         f"{runs} episodes each of ours, {RUNS} of the paper's:\n\n{markdown(table)}" for runs, table in rows.items()
     ]
@@ -120,12 +120,12 @@ def _table(wanted: _Wanted) -> str:
     return "\n".join((*tables, footer))
 
 
-def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
+def _trained(wanted: _Wanted, level: str, model: Model) -> TrainedModel | None:
     """Return the result of a model's training, which continues now if it is unfinished; None for the expert."""
     from tltl_runtime.policies.file import read_policy
     from tltl_runtime.policies.shipped import shipped_policies
     from tltl_runtime.regression.table1 import table_trainings
-    from tltl_runtime.regression.table1.table_trainings import Trained, table_training, train_arguments, trained
+    from tltl_runtime.regression.table1.table_trainings import TrainedModel, table_training, train_arguments, trained
 
     if model == "expert":
         return None
@@ -134,7 +134,7 @@ def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
         path = shipped_policies()[level]
         card = read_policy(path).card
         if model == "ours":
-            return Trained(path, card.training["seed"], float(card.training["seconds"]) / 3600, None)
+            return TrainedModel(path, card.training["seed"], float(card.training["seconds"]) / 3600, None)
         limits = table_trainings.limits_as_of(card, wanted.minutes)
     training = table_training(wanted.folder, level, model, limits)
     result = trained(training)

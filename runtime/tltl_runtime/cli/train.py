@@ -18,7 +18,7 @@ from tltl_runtime.training.run.choices import Method
 from tltlc.api import cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.training.run.report import Report as Trained
+    from tltl_runtime.training.run.report import TrainingReport as Trained
     from tltl_runtime.training.run.run import Run
 
 

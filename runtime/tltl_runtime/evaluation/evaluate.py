@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from tltl_runtime.evaluation.local import Process
-from tltl_runtime.evaluation.player import PlayedEpisode, Player, Plays, Recorded, Setup, Task
+from tltl_runtime.evaluation.local import WorkerProcess
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Plays, Recorded, Setup
 from tltl_runtime.evaluation.spread import Alone, spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
@@ -49,7 +49,7 @@ def evaluate(
     """
     loaded = policy if isinstance(policy, Policy) else read_policy(Path(policy))
     setup = set_up(loaded, level, variant, spec, seed)
-    for result in results(setup, [Task(index, sampled) for index in range(episodes)], workers):
+    for result in results(setup, [EpisodeRequest(index, sampled) for index in range(episodes)], workers):
         yield result.played
 
 
@@ -90,7 +90,7 @@ def check_limit(fspa: Fspa) -> None:
 
 def results(
     setup: Setup,
-    tasks: Sequence[Task],
+    tasks: Sequence[EpisodeRequest],
     workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
     alone: Alone | None = None,
@@ -117,7 +117,7 @@ def results(
 
 
 def results_here(
-    make: Callable[[], Plays], tasks: Sequence[Task], workers: int, seed: int, alone: Alone | None = None
+    make: Callable[[], Plays], tasks: Sequence[EpisodeRequest], workers: int, seed: int, alone: Alone | None = None
 ) -> Generator[PlayedEpisode]:
     """Play the tasks on this machine and yield their results in order, like :func:`results`.
 
@@ -136,7 +136,7 @@ def results_here(
     if workers < 0:
         raise ValueError(f"there are no {workers} workers")
     with ExitStack() as stack:
-        team = [Process(make) for _ in range(min(workers or cores(), len(tasks)))]
+        team = [WorkerProcess(make) for _ in range(min(workers or cores(), len(tasks)))]
         for worker in team:
             stack.callback(worker.close)
         yield from spread(team, tasks, seed, alone)

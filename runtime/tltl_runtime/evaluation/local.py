@@ -13,12 +13,12 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import BaseContext
 from typing import Final
 
-from tltl_runtime.evaluation.player import PlayedEpisode, Plays, Task
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Plays
 from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.support.child_processes import interrupts_withheld
 
 
-class Process:
+class WorkerProcess:
     """A worker process.
 
     It has an executor of its own, so that if it breaks, it is known which episode was lost.
@@ -28,7 +28,7 @@ class Process:
     def __init__(self, make: Callable[[], Plays]) -> None:
         self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
-    def play(self, task: Task) -> Future[PlayedEpisode]:
+    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode."""
         future: Future[PlayedEpisode] = Future()
         try:
@@ -88,7 +88,7 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-def _play(task: Task) -> PlayedEpisode:
+def _play(task: EpisodeRequest) -> PlayedEpisode:
     # The player is made here because an exception in `_begin` would be lost.
     global _player
     _player = _player or _make()

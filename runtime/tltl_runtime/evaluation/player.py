@@ -43,7 +43,7 @@ class Setup:
 
 
 @record
-class Task:
+class EpisodeRequest:
     """Episode ``index`` to play, with ``sampled`` actions or the likeliest ones."""
 
     index: int
@@ -54,7 +54,7 @@ class Task:
 class PlayedEpisode:
     """A played episode, with its trajectory and the bytes of its recording if requested."""
 
-    task: Task
+    task: EpisodeRequest
     played: EpisodeSummary
     trajectory: Trajectory | None = None
     recording: bytes = b""
@@ -63,7 +63,7 @@ class PlayedEpisode:
 class Plays(Protocol):
     """Plays the episodes of an evaluation, one after the other."""
 
-    def play(self, task: Task) -> PlayedEpisode:
+    def play(self, task: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
 
     def close(self) -> None:
@@ -88,7 +88,7 @@ class Player:
         if setup.recorded is not None:
             self._env = self._recorder = RecordEpisode(self._env)
 
-    def play(self, task: Task) -> PlayedEpisode:
+    def play(self, task: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
         setup = self._setup
         # In one thread, equal observations give equal logits on any number of cores.

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from typing import Any, Final
 
-from tltl_runtime.evaluation.player import PlayedEpisode, Player, Setup, Task
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Setup
 from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.vector.cluster import cluster, free_cores, there
 
@@ -43,7 +43,7 @@ class RayWorker:
         # No restarts: Ray would silently play the episode again that killed the actor.
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
 
-    def play(self, task: Task) -> Future[PlayedEpisode]:
+    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode."""
         future: Future[PlayedEpisode] = Future()
         playing = self.actor.play.remote(self._setup, task).future()
@@ -75,6 +75,6 @@ class _Actor:
     def __init__(self) -> None:
         self._player: Player | None = None
 
-    def play(self, setup: Setup, task: Task) -> PlayedEpisode:
+    def play(self, setup: Setup, task: EpisodeRequest) -> PlayedEpisode:
         self._player = self._player or Player(setup)
         return self._player.play(task)

@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Protocol
 
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Task
+from tltl_runtime.evaluation.player import CHOICES, EpisodeRequest, PlayedEpisode
 from tltlc.api import Diagnostic, TltlError
 
 
@@ -15,22 +15,22 @@ class LostError(Exception):
     """A worker ended before it returned its result; the message says how."""
 
 
-class Worker(Protocol):
+class EpisodeWorker(Protocol):
     """Plays one episode at a time, for example in another process."""
 
-    def play(self, task: Task) -> Future[PlayedEpisode]:
+    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start an episode; the future raises the exception of the game, or :class:`LostError`."""
 
     def close(self) -> None:
         """Free the resources."""
 
 
-Alone = Callable[[Task], str]
+Alone = Callable[[EpisodeRequest], str]
 """Returns the command that plays a single episode."""
 
 
 def spread(
-    workers: Sequence[Worker], tasks: Sequence[Task], seed: int, alone: Alone | None = None
+    workers: Sequence[EpisodeWorker], tasks: Sequence[EpisodeRequest], seed: int, alone: Alone | None = None
 ) -> Iterator[PlayedEpisode]:
     """Give each free worker the next task; yield the results in the order of the tasks.
 
@@ -42,7 +42,7 @@ def spread(
             ``seed``.
     """
     remaining = iter(enumerate(tasks))
-    running: dict[Future[PlayedEpisode], tuple[Worker, int]] = {}
+    running: dict[Future[PlayedEpisode], tuple[EpisodeWorker, int]] = {}
     results: dict[int, PlayedEpisode] = {}
     for worker, (index, task) in zip(workers, remaining, strict=False):
         running[worker.play(task)] = worker, index
@@ -63,7 +63,7 @@ def spread(
         yield results.pop(wanted)
 
 
-def _lost(error: LostError, task: Task, seed: int, alone: Alone | None) -> TltlError:
+def _lost(error: LostError, task: EpisodeRequest, seed: int, alone: Alone | None) -> TltlError:
     title = (
         f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"

@@ -6,7 +6,7 @@ import pytest
 
 from tests.calls import calls
 from tltlc.automaton.infinite.cycles import Edge, decomposition
-from tltlc.automaton.infinite.mark_conditions import Clause, Marks
+from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks
 from tltlc.automaton.infinite.products import telling_apart
 from tltlc.automaton.work import OutOfWork, Work
 
@@ -21,7 +21,7 @@ def ring(marks: Marks) -> list[Edge]:
     return [(state, (state + 1) % SIZE, marks) for state in range(SIZE)]
 
 
-def spends(edges: list[Edge], clauses: list[Clause]) -> int:
+def spends(edges: list[Edge], clauses: list[MarkClause]) -> int:
     """Return the number of calls that a decomposition makes until it runs out of its budget."""
 
     def work() -> None:
@@ -32,18 +32,18 @@ def spends(edges: list[Edge], clauses: list[Clause]) -> int:
 
 
 def test_clauses_without_edges_count_as_work() -> None:
-    clauses = [Clause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
+    clauses = [MarkClause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
     assert spends(ring(frozenset((0,))), clauses) < MOST_CALLS
 
 
 def test_rejected_sets_count_as_work() -> None:
     marks = frozenset(range(2_000))
-    clauses = [Clause(NONE, frozenset(range(2_000)))] * 1_000
+    clauses = [MarkClause(NONE, frozenset(range(2_000)))] * 1_000
     assert spends(ring(marks), clauses) < MOST_CALLS
 
 
 def test_a_comparison_counts_clauses_without_edges() -> None:
-    one = [Clause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
+    one = [MarkClause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
 
     def work() -> None:
         with pytest.raises(OutOfWork):

@@ -17,14 +17,14 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.factoring import Factoring
 from tltlc.automaton.infinite.infinite import infinite_form, readable
 from tltlc.automaton.infinite.lasso import holds_on_lasso
-from tltlc.automaton.infinite.readback import Writer, without_constants
+from tltlc.automaton.infinite.readback import NormalFormWriter, without_constants
 from tltlc.automaton.text import formula_text
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text, english_text
 
 
 def written(label: str, source: str) -> str:
-    return ascii_text(Writer(read_formula(source)).formula(infinite_form(read_formula(label))))
+    return ascii_text(NormalFormWriter(read_formula(source)).formula(infinite_form(read_formula(label))))
 
 
 # --- short ----------------------------------------------------------------------------------------
@@ -68,7 +68,7 @@ def test_other_forms_of_a_formula_keep_its_meaning(seed: int) -> None:
     factoring = Factoring(ABC)
     for formula in some_formulas(60, 14, seed):
         normal = infinite_form(formula)
-        for form in (*factoring.forms(normal), Writer(formula).formula(normal)):
+        for form in (*factoring.forms(normal), NormalFormWriter(formula).formula(normal)):
             for word in words:
                 assert holds_on_lasso(form, *word) == holds_on_lasso(formula, *word), (formula, form)
 
@@ -78,7 +78,7 @@ def test_labels_keep_their_meaning_and_get_no_longer() -> None:
     for entry in entries():
         if entry.steps > 20_000:
             continue
-        writer, words = Writer(entry.formula), some_lassos(entry.formula.atoms(), 6, 0)
+        writer, words = NormalFormWriter(entry.formula), some_lassos(entry.formula.atoms(), 6, 0)
         for label in made(entry.formula).labels:
             short = writer.formula(label)
             for word in words:
@@ -95,7 +95,7 @@ def test_a_form_that_would_be_too_long_is_not_built() -> None:
     label = f"({' & '.join(half)}) | ({' & '.join(part.replace('a', 'e') for part in half)}) & g"
     normal = infinite_form(read_formula(label))
     assert list(Factoring(normal.atoms()).forms(normal)) == []
-    assert ascii_text(Writer(read_formula(label)).formula(normal)) == ascii_text(read_formula(label))
+    assert ascii_text(NormalFormWriter(read_formula(label)).formula(normal)) == ascii_text(read_formula(label))
 
 
 # --- in English -----------------------------------------------------------------------------------

@@ -10,10 +10,9 @@ from tltlc.program.tree import (
     All,
     Any,
     Assign,
-    Binary,
+    BinaryNumber,
     Bool,
-    Call,
-    Comment,
+    CommentLine,
     Compare,
     Declare,
     Expression,
@@ -21,6 +20,7 @@ from tltlc.program.tree import (
     Int,
     Negate,
     Not,
+    NumericCall,
     Real,
     Statement,
     Variable,
@@ -44,7 +44,7 @@ class Scope:
     def run(self, statements: Iterable[Statement]) -> None:
         for statement in statements:
             match statement:
-                case Comment():
+                case CommentLine():
                     pass
                 case Declare(name, _, value, changes):
                     assert name not in self.values
@@ -69,9 +69,9 @@ class Scope:
                 return self.values[name]
             case Negate(operand):
                 return -self.value(operand)
-            case Binary(op, left, right):
+            case BinaryNumber(op, left, right):
                 return _OPERATIONS[op](self.value(left), self.value(right))
-            case Call(function, args):
+            case NumericCall(function, args):
                 return _call(function, [self.value(argument) for argument in args])
             case Compare(op, left, right):
                 return _COMPARISONS[op](self.value(left), self.value(right))

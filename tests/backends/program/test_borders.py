@@ -9,7 +9,7 @@ from hypothesis import given, settings
 
 from tests.backends.program.interpreter import Scope
 from tests.resolve.test_margins import FINITE, THREE, around, varying
-from tltlc.program.arithmetic import Arithmetic, defined
+from tltlc.program.arithmetic import ExpressionTranslator, defined
 from tltlc.program.bounds import proven, within
 from tltlc.resolve import units
 from tltlc.resolve.margins import robustness
@@ -25,7 +25,7 @@ def test_a_threshold_agrees_with_the_exact_comparison(ends: Sequence[float], x: 
         if not possible:
             continue
         expression = robustness(side, fixed) if is_above else robustness(fixed, side)
-        assigned = Arithmetic({"x": "x"}, {}, "t").assigned("value", expression)
+        assigned = ExpressionTranslator({"x": "x"}, {}, "t").assigned("value", expression)
         statements, range_ = proven("value", assigned, {"x": within(low, high)})
         for number in [*around(threshold, low, high), min(max(x, low), high)]:
             scope = Scope({"x": number})

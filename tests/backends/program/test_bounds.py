@@ -16,9 +16,9 @@ from tltlc import compile_file
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.logic import formula as f
-from tltlc.program.arithmetic import Arithmetic, defined
+from tltlc.program.arithmetic import ExpressionTranslator, defined
 from tltlc.program.bounds import Range, proven, within
 from tltlc.program.build import program
 from tltlc.program.tree import Statement
@@ -27,12 +27,12 @@ from tltlc.resolve import spec
 
 ROOT = Path(__file__).resolve().parents[3]
 KNOWN = {"s1": within(0.0, None), "health": Range(0.0, 1.0), "size": Range(2.0, 1e4)}
-S1, HEALTH, SIZE = Signal("distance(s1)"), Signal("health"), Param("level_size")
+S1, HEALTH, SIZE = SignalValue("distance(s1)"), SignalValue("health"), ParamValue("level_size")
 
 
 def proved(expression: Expression) -> tuple[tuple[Statement, ...], tuple[Statement, ...], Range | None]:
     """Return the plain statements, the statements simplified by the proven ranges, and the range of the value."""
-    arithmetic = Arithmetic({"distance(s1)": "s1", "health": "health"}, {"level_size": "size"}, "t")
+    arithmetic = ExpressionTranslator({"distance(s1)": "s1", "health": "health"}, {"level_size": "size"}, "t")
     statements = arithmetic.assigned("value", expression)
     simplified, range_ = proven("value", statements, KNOWN)
     return defined("value", statements), defined("value", simplified), range_
@@ -135,7 +135,7 @@ def test_predicates_of_the_examples_are_proven_safe() -> None:
             assert not any(called(value) & {"divide"} for value in result.values)
 
 
-@pytest.mark.parametrize("part", [Op("/", (Const(1.0), Signal("x"))), Op("exp", (Signal("x"),))])
+@pytest.mark.parametrize("part", [Op("/", (Const(1.0), SignalValue("x"))), Op("exp", (SignalValue("x"),))])
 def test_a_condition_that_may_have_no_value_is_not_safe(part: Expression) -> None:
     """The sample is an error, whatever the branches are."""
     value = When(((Condition(">", (part, Const(2.0))), Const(0.5)),), Const(-0.5))
@@ -172,7 +172,7 @@ def test_a_bool_is_read_only_in_the_state_that_needs_it() -> None:
     ):
         fspa = build(spec_from_formula(formula))
         signals = tuple(spec.Signal(name, "bool", None, None) for name in "xyz")
-        atoms = (spec.Atom("a", Signal(of_a)), spec.Atom("b", Signal(of_b)))
+        atoms = (spec.Atom("a", SignalValue(of_a)), spec.Atom("b", SignalValue(of_b)))
         result = program(replace(fspa, signals=signals, atoms=atoms), [])
         assert result.read_in == read_in
         assert result.reads_sample

@@ -6,8 +6,8 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.backends import emit
 from tltlc.core.record import replace
 from tltlc.expression.tree import Op
-from tltlc.expression.tree import Param as NamedParam
-from tltlc.expression.tree import Signal as NamedSignal
+from tltlc.expression.tree import ParamValue as NamedParam
+from tltlc.expression.tree import SignalValue as NamedSignal
 from tltlc.logic import formula as f
 from tltlc.program import pieces
 from tltlc.program.printer import Printer

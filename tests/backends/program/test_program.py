@@ -15,10 +15,10 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
-from tltlc.program.arithmetic import Arithmetic, defined
+from tltlc.program.arithmetic import ExpressionTranslator, defined
 from tltlc.program.build import program
 from tltlc.program.printer import Printer
 from tltlc.program.states import ROBUSTNESS
@@ -33,7 +33,7 @@ PARAMS = {"level_size": "size"}
 def computed(expression: Expression, s1: float, health: float, size: float) -> float | str:
     scope = Scope({"s1": s1, "health": health, "size": size})
     try:
-        scope.run(defined("value", Arithmetic(SIGNALS, PARAMS, "t").assigned("value", expression)))
+        scope.run(defined("value", ExpressionTranslator(SIGNALS, PARAMS, "t").assigned("value", expression)))
     except NoValueError as error:
         return str(error)
     return scope.values["value"]
@@ -65,7 +65,7 @@ def test_expressions_have_the_value_of_the_evaluator(
 
 
 def test_operands_are_computed_only_where_they_are_needed() -> None:
-    x = Signal("health")
+    x = SignalValue("health")
     quotient = Op("/", (Const(1.0), x))
     inside = When(((Condition(">", (quotient, Const(2.0))), Const(1.0)),), Const(0.0))
     ops: tuple[Literal["and", "or"], ...] = ("and", "or")
@@ -88,12 +88,12 @@ def _depth(statement: Statement) -> int:
 
 
 def test_deep_expressions_are_split() -> None:
-    deep: Expression = Signal("health")
+    deep: Expression = SignalValue("health")
     for _ in range(200):
         deep = Op("+", (Const(1.0), Op("abs", (deep,))))
     with recursion_room():
         assert computed(deep, 0.0, 0.5, 1.0) == 200.5
-        depth = max(map(_depth, Arithmetic(SIGNALS, PARAMS, "t").assigned("value", deep)))
+        depth = max(map(_depth, ExpressionTranslator(SIGNALS, PARAMS, "t").assigned("value", deep)))
     assert 10 < depth < 40
 
 
@@ -134,7 +134,7 @@ def test_robustness_is_written_with_as_few_literals_as_possible(sample: list[flo
 
 def test_temporaries_avoid_the_names_of_a_specification() -> None:
     names = ("t", "t_1", "t 2", "t2_1", "t_")
-    square = Op("^", (Op("+", (Signal("t"), Const(1.0))), Const(2.0)))
+    square = Op("^", (Op("+", (SignalValue("t"), Const(1.0))), Const(2.0)))
     fspa = replace(
         build(spec_from_formula(f.atom("a"))),
         signals=tuple(spec.Signal(name, "number", None, None) for name in names),

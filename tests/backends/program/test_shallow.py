@@ -8,11 +8,11 @@ from itertools import accumulate
 from tests.backends.program.interpreter import Scope
 from tltlc.program.printer import Printer
 from tltlc.program.shallow import shallow
-from tltlc.program.tree import Assign, Bool, Call, Declare, Expression, If, Negate, Real, Statement, Variable
+from tltlc.program.tree import Assign, Bool, Declare, Expression, If, Negate, NumericCall, Real, Statement, Variable
 
 
 def greatest(terms: Iterable[Expression]) -> Expression:
-    return reduce(lambda left, right: Call("max", (left, right)), terms)
+    return reduce(lambda left, right: NumericCall("max", (left, right)), terms)
 
 
 def depth(line: str) -> int:
@@ -23,7 +23,7 @@ def depth(line: str) -> int:
 def test_values_stay_the_same() -> None:
     draw = random.Random(7)
     numbers = [Real(draw.uniform(-1.0, 1.0)) for _ in range(200)]
-    deep = Call("min", (Negate(greatest(numbers[:150])), Call("min", (Real(0.5), greatest(numbers)))))
+    deep = NumericCall("min", (Negate(greatest(numbers[:150])), NumericCall("min", (Real(0.5), greatest(numbers)))))
     statements = [If(((Bool(True), (Declare("x", "real", deep), Assign("y", Negate(Variable("x"))))),))]
     cut = shallow(statements)
     actual, expected = Scope({}), Scope({})
@@ -34,7 +34,7 @@ def test_values_stay_the_same() -> None:
 
 
 def test_shallow_statements_are_unchanged() -> None:
-    statements: list[Statement] = [Assign("x", Call("min", (Real(1.0), Negate(Real(2.0)))))]
+    statements: list[Statement] = [Assign("x", NumericCall("min", (Real(1.0), Negate(Real(2.0)))))]
     assert shallow(statements) == tuple(statements)
 
 

@@ -3,14 +3,14 @@ from __future__ import annotations
 from tltlc.program.tree import (
     All,
     Assign,
-    Binary,
-    Call,
-    Comment,
+    BinaryNumber,
+    CommentLine,
     Compare,
     Declare,
     If,
     Negate,
     Not,
+    NumericCall,
     Real,
     Statement,
     Variable,
@@ -19,12 +19,12 @@ from tltlc.program.uses import called, read
 
 x, y, z, zero = Variable("x"), Variable("y"), Variable("z"), Real(0.0)
 STATEMENTS: list[Statement] = [
-    Comment("of `comment`"),
+    CommentLine("of `comment`"),
     Declare("a", "real"),
-    Declare("b", "real", Negate(Call("sqrt", (Binary("+", x, zero),)))),
+    Declare("b", "real", Negate(NumericCall("sqrt", (BinaryNumber("+", x, zero),)))),
     If(
-        ((All((Compare(">", y, zero), Not(Compare("<", Call("abs", (y,)), zero)))), (Assign("a", z),)),),
-        (Assign("a", Call("max", (Call("divide", (x, zero)), Variable("b")))),),
+        ((All((Compare(">", y, zero), Not(Compare("<", NumericCall("abs", (y,)), zero)))), (Assign("a", z),)),),
+        (Assign("a", NumericCall("max", (NumericCall("divide", (x, zero)), Variable("b")))),),
     ),
 ]
 

@@ -25,7 +25,7 @@ from tltlc.interfaces.lsp import (
     tokens,
 )
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import Analysis, Figures
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis, SpecFigures
 from tltlc.interfaces.lsp.cursor import cursor, quoted
 from tltlc.interfaces.lsp.diagnostics import label_in, remark
 from tltlc.interfaces.lsp.edits import applied
@@ -39,7 +39,7 @@ PIECES = (
     " then ", " all x in (s1, s2): ", " 3 m ", " within 3 s ", "import ", 'import "', "let p(q) = q ", 'expect state "',
     " limit limit ", " judge at ", " step 3x ", "when a: b otherwise: c",
 )  # fmt: skip
-NOTHING = Analysis((), (), (Figures("branching", 6, 4, 1, 0),))
+NOTHING = DocumentAnalysis((), (), (SpecFigures("branching", 6, 4, 1, 0),))
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -14,10 +14,10 @@ from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.test_server import codes
 from tests.interfaces.lsp.texts import ENDLESS
 from tltlc.interfaces.lsp import queue
-from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.server import create
 
-FOUND = Analysis(())
+FOUND = DocumentAnalysis(())
 
 
 class Desk:
@@ -27,7 +27,7 @@ class Desk:
     def __init__(self) -> None:
         self.queue = queue.Queue(self._analyse, self._give_up)
         self.begun: list[str] = []
-        self._now: asyncio.Future[Analysis | None] | None = None
+        self._now: asyncio.Future[DocumentAnalysis | None] | None = None
 
     async def open(self, *uris: str) -> None:
         for uri in uris:
@@ -35,12 +35,12 @@ class Desk:
             self.queue.put(uri)
         await settled()
 
-    async def end(self, found: Analysis | None = FOUND) -> None:
+    async def end(self, found: DocumentAnalysis | None = FOUND) -> None:
         assert self._now is not None
         self._now.set_result(found)
         await settled()
 
-    async def _analyse(self, uri: str, again: bool) -> Analysis | None:
+    async def _analyse(self, uri: str, again: bool) -> DocumentAnalysis | None:
         self.begun.append(uri)
         self._now = asyncio.get_running_loop().create_future()
         return await self._now

@@ -9,7 +9,7 @@ import pytest
 
 from tltlc.core.source import SourceFile
 from tltlc.interfaces.lsp.analysis import Request
-from tltlc.interfaces.lsp.worker import Worker
+from tltlc.interfaces.lsp.worker import AnalysisWorker
 
 
 def test_the_next_analysis_retries_after_a_failed_start(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -26,7 +26,7 @@ def test_the_next_analysis_retries_after_a_failed_start(monkeypatch: pytest.Monk
     monkeypatch.setattr(context.Process, "start", failing_start)
 
     async def analyses() -> list[object]:
-        worker = Worker()
+        worker = AnalysisWorker()
         try:
             return [await worker.analyse(request) for _ in range(2)]
         finally:

@@ -6,10 +6,10 @@ import re
 import socket
 
 from tests.waiting import HANG_S
-from tltlc.interfaces.playground.server import Server
+from tltlc.interfaces.playground.server import PlaygroundServer
 
 
-def connected(server: Server) -> socket.socket:
+def connected(server: PlaygroundServer) -> socket.socket:
     return socket.create_connection(("127.0.0.1", server.server_address[1]), timeout=HANG_S)
 
 
@@ -34,7 +34,7 @@ def statuses(answers: bytes) -> list[int]:
     return codes
 
 
-def refused(server: Server, data: bytes) -> list[int]:
+def refused(server: PlaygroundServer, data: bytes) -> list[int]:
     """Return the status codes if the server closes the connection itself."""
     with connected(server) as connection:
         connection.sendall(data)

@@ -22,7 +22,7 @@ from tests.waiting import HANG_S, until
 from tltlc.core.record import replace
 from tltlc.interfaces.playground import children
 from tltlc.interfaces.playground.page_config import start
-from tltlc.interfaces.playground.server import Server
+from tltlc.interfaces.playground.server import PlaygroundServer
 from tltlc.io.limits import PLAYGROUND
 
 MANY = 300
@@ -56,7 +56,7 @@ def turns(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 @contextmanager
-def held(server: Server, number: int, data: bytes = b"") -> Iterator[list[socket.socket]]:
+def held(server: PlaygroundServer, number: int, data: bytes = b"") -> Iterator[list[socket.socket]]:
     """Connections on which this data is sent, and nothing more."""
     made = [connected(server) for _ in range(number)]
     try:
@@ -68,7 +68,7 @@ def held(server: Server, number: int, data: bytes = b"") -> Iterator[list[socket
             connection.close()
 
 
-def is_answered(server: Server) -> bool:
+def is_answered(server: PlaygroundServer) -> bool:
     return json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()  # type: ignore[no-any-return]
 
 

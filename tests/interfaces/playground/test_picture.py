@@ -18,7 +18,7 @@ from tltlc.backends import Notation
 from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Curve
-from tltlc.interfaces.playground.layout import Box, Size, layout
+from tltlc.interfaces.playground.layout import Size, StateBox, layout
 from tltlc.interfaces.playground.ordering import Ends
 from tltlc.interfaces.playground.picture import MOST_STATES, picture
 
@@ -233,7 +233,7 @@ def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: 
     traps = {state for state in range(1, size) if state % 4 == 3}
     texts = {(a, b): text_size for (a, b), text_size in zip(edges, sizes, strict=False) if a not in traps or a == b}
     boxes = {
-        state: Box(60.0 + 10 * state, 40.0 + 5 * state, 9.0 * state, 8.0, 30.0 * state, below=state in traps)
+        state: StateBox(60.0 + 10 * state, 40.0 + 5 * state, 9.0 * state, 8.0, 30.0 * state, below=state in traps)
         for state in range(size)
     }
     placed = layout(boxes, texts, (7.0, 9.0))

@@ -16,7 +16,7 @@ from tests.waiting import HANG_S, printed
 from tltlc.interfaces.playground.connections import Connection
 from tltlc.interfaces.playground.page_config import start
 from tltlc.interfaces.playground.request_head import read_head
-from tltlc.interfaces.playground.server import Server
+from tltlc.interfaces.playground.server import PlaygroundServer
 from tltlc.io.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE
 
 HOST = b"Host: localhost\r\n"
@@ -24,20 +24,20 @@ GET = b"GET / HTTP/1.1\r\n" + HOST
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[Server]:
+def server() -> Iterator[PlaygroundServer]:
     with serving() as running:
         yield running
         assert json.loads(ask(running, "POST", "/api", "{}", JSON)[2]) == start()
 
 
 @pytest.fixture(autouse=True)
-def lives_on_in_silence(server: Server, capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
+def lives_on_in_silence(server: PlaygroundServer, capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
     yield
     assert ask(server, "GET", "/")[0] == 200
     assert capfd.readouterr().err == ""
 
 
-def post(server: Server, *headers: bytes, body: bytes = b"{}", host: bytes = HOST) -> bytes:
+def post(server: PlaygroundServer, *headers: bytes, body: bytes = b"{}", host: bytes = HOST) -> bytes:
     own = b"POST /api HTTP/1.1\r\n" + host + b"Content-Type: application/json\r\nTltlc-Token: " + server.token.encode()
     return b"\r\n".join([own, *headers, b"", body])
 
@@ -78,7 +78,7 @@ LINES = [
 
 
 @pytest.mark.parametrize(("line", "status"), LINES, ids=lambda value: repr(value)[:40])
-def test_invalid_request_lines_are_rejected(server: Server, line: bytes, status: int) -> None:
+def test_invalid_request_lines_are_rejected(server: PlaygroundServer, line: bytes, status: int) -> None:
     assert refused(server, line) == [status]
 
 
@@ -116,7 +116,7 @@ HEADERS = [
 
 
 @pytest.mark.parametrize(("header", "status"), HEADERS, ids=lambda value: repr(value)[:40])
-def test_invalid_headers_are_rejected(server: Server, header: bytes, status: int) -> None:
+def test_invalid_headers_are_rejected(server: PlaygroundServer, header: bytes, status: int) -> None:
     # The bytes after the header are not read as a request.
     assert refused(server, GET + header + b"\r\n" + GET + b"\r\n") == [status]
 
@@ -146,18 +146,18 @@ def test_a_long_invalid_header_is_rejected_in_linear_time(header: bytes) -> None
     assert printed(program, GET + header + b"\r\n\r\n").strip() == b"400"
 
 
-def test_endless_heads_are_rejected(server: Server) -> None:
+def test_endless_heads_are_rejected(server: PlaygroundServer) -> None:
     assert refused(server, GET + b"A: " + b"b" * (REQUEST_HEAD.size + 2)) == [431]
     assert refused(server, GET + b"A:\n" * 200) == [431]
 
 
 @pytest.mark.parametrize("path", ["/main.js", "/main%2Ejs", "/%6dain.js", "/main.js?a=%zz"])
-def test_paths_may_have_escapes_and_queries(server: Server, path: str) -> None:
+def test_paths_may_have_escapes_and_queries(server: PlaygroundServer, path: str) -> None:
     assert ask(server, "GET", path)[::2] == (200, server.page.files["main.js"])
 
 
 @pytest.mark.parametrize("path", ["//", "/./", "/../serve.py", "/%2e%2e/x", "/index.html/", "/api/", "/API", "/%2Fapi"])
-def test_unknown_paths_are_not_found(server: Server, path: str) -> None:
+def test_unknown_paths_are_not_found(server: PlaygroundServer, path: str) -> None:
     assert ask(server, "GET", path)[0] == 404
 
 
@@ -172,18 +172,18 @@ def test_unknown_paths_are_not_found(server: Server, path: str) -> None:
         ([b"Transfer-Encoding: chunked"], b"2\r\n{}\r\n0\r\n\r\n", 501),
     ],
 )
-def test_invalid_bodies_are_rejected(server: Server, headers: list[bytes], body: bytes, status: int) -> None:
+def test_invalid_bodies_are_rejected(server: PlaygroundServer, headers: list[bytes], body: bytes, status: int) -> None:
     assert refused(server, post(server, *headers, body=body)) == [status]
 
 
-def test_a_rejection_arrives_although_a_large_body_follows(server: Server) -> None:
+def test_a_rejection_arrives_although_a_large_body_follows(server: PlaygroundServer) -> None:
     body = b"a" * (8 << 20)
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: %d" % len(body), body=body))
         assert statuses(read_to_end(connection)) == [413]
 
 
-def test_a_body_that_ends_early_is_rejected(server: Server) -> None:
+def test_a_body_that_ends_early_is_rejected(server: PlaygroundServer) -> None:
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: 3"))
         connection.shutdown(socket.SHUT_WR)
@@ -216,7 +216,7 @@ def test_a_client_that_closes_its_sending_side_gets_its_answer(version: bytes, m
         assert set(codes[:-1]) == ({100} if version == b"1.1" else set())
 
 
-def test_a_client_that_closes_its_sending_side_gets_all_answers_in_order(server: Server) -> None:
+def test_a_client_that_closes_its_sending_side_gets_all_answers_in_order(server: PlaygroundServer) -> None:
     requests = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
     for data, expected in ((requests * 2, [200] * 6), (requests + b"GET /", [200, 200, 200, 400]), (b"", [])):
         with connected(server) as connection:
@@ -225,21 +225,21 @@ def test_a_client_that_closes_its_sending_side_gets_all_answers_in_order(server:
             assert [status for status in statuses(read_to_end(connection)) if status != 100] == expected
 
 
-def test_pipelined_requests_are_answered_in_order(server: Server) -> None:
+def test_pipelined_requests_are_answered_in_order(server: PlaygroundServer) -> None:
     requests = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
     last = GET + b"Connection: close\r\n\r\n"
     assert refused(server, requests + b"\r\n" + requests + last) == [200] * 7
     assert refused(server, requests + b"nonsense\r\n\r\n" + requests) == [200, 200, 200, 400]
 
 
-def test_requests_may_arrive_byte_by_byte(server: Server) -> None:
+def test_requests_may_arrive_byte_by_byte(server: PlaygroundServer) -> None:
     with connected(server) as connection:
         for byte in request(server, "{}") + GET.replace(b"\r\n", b"\n") + b"Connection: close\n\n":
             connection.sendall(bytes([byte]))
         assert statuses(read_to_end(connection)) == [200, 200]
 
 
-def test_a_body_is_sent_after_100_continue(server: Server) -> None:
+def test_a_body_is_sent_after_100_continue(server: PlaygroundServer) -> None:
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: 2", b"Expect: 100-continue", b"Connection: close", body=b""))
         assert connection.recv(1000) == b"HTTP/1.1 100 Continue\r\n\r\n"
@@ -249,7 +249,7 @@ def test_a_body_is_sent_after_100_continue(server: Server) -> None:
     assert refused(server, post(server, b"Content-Length: 99999999", b"Expect: 100-continue", body=b"")) == [413]
 
 
-def test_a_client_of_http_1_0_is_answered_once(server: Server) -> None:
+def test_a_client_of_http_1_0_is_answered_once(server: PlaygroundServer) -> None:
     assert refused(server, b"GET / HTTP/1.0\r\n" + HOST + b"\r\n") == [200]
     assert refused(server, b"GET / HTTP/1.0\r\n\r\n") == [403]
     assert refused(server, b"HEAD /none HTTP/1.0\r\n" + HOST + b"\r\n")[:1] == [404]

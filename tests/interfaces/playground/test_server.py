@@ -23,7 +23,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.interfaces.playground import children, view
 from tltlc.interfaces.playground.page_config import start
-from tltlc.interfaces.playground.server import Server
+from tltlc.interfaces.playground.server import PlaygroundServer
 from tltlc.io.limits import ANSWER, MESSAGE, PLAYGROUND, PLAYGROUND_CHILD, Connections
 
 JSON = {"Content-Type": "application/json"}
@@ -42,9 +42,9 @@ PATIENT = replace(PLAYGROUND, idle_s=HANG_S, request_s=HANG_S, write_s=HANG_S, l
 
 
 @contextmanager
-def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iterator[Server]:
+def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iterator[PlaygroundServer]:
     """A running server, which by default has no short time limits."""
-    with Server(0, limit_s, connections) as server:
+    with PlaygroundServer(0, limit_s, connections) as server:
         thread = Thread(target=server.serve_forever)
         thread.start()
         try:
@@ -55,13 +55,17 @@ def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iter
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[Server]:
+def server() -> Iterator[PlaygroundServer]:
     with serving() as running:
         yield running
 
 
 def ask(
-    server: Server, method: str, path: str, body: str | bytes | None = None, headers: dict[str, str] | None = None
+    server: PlaygroundServer,
+    method: str,
+    path: str,
+    body: str | bytes | None = None,
+    headers: dict[str, str] | None = None,
 ) -> tuple[int, dict[str, str], bytes]:
     """Send a request with the server's token, unless the headers have another one; return status,
     headers and body."""
@@ -73,7 +77,7 @@ def ask(
     return result
 
 
-def test_the_page_is_served_and_refers_to_no_other_site(server: Server) -> None:
+def test_the_page_is_served_and_refers_to_no_other_site(server: PlaygroundServer) -> None:
     status, headers, page = ask(server, "GET", "/")
     assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
     assert "default-src 'none'" in headers["Content-Security-Policy"]
@@ -85,7 +89,7 @@ def test_the_page_is_served_and_refers_to_no_other_site(server: Server) -> None:
     assert headers["X-Content-Type-Options"] == "nosniff"
 
 
-def test_the_server_answers_like_the_function(server: Server) -> None:
+def test_the_server_answers_like_the_function(server: PlaygroundServer) -> None:
     text = "signal a: bool\nspec x = F a"
     body = json.dumps({"text": text, "spec": "x", "letters": [["a"]]})
     status, _, answer = ask(server, "POST", "/api", body, JSON)
@@ -122,7 +126,7 @@ def test_the_server_answers_like_the_function(server: Server) -> None:
     ],
 )
 def test_invalid_requests_are_rejected(
-    server: Server, method: str, path: str, body: str | bytes | None, headers: dict[str, str], status: int
+    server: PlaygroundServer, method: str, path: str, body: str | bytes | None, headers: dict[str, str], status: int
 ) -> None:
     assert ask(server, method, path, body, headers)[0] == status
 
@@ -143,7 +147,9 @@ ELSEWHERE = [
 
 
 @pytest.mark.parametrize("headers", ELSEWHERE, ids=str)
-def test_requests_from_other_pages_or_without_the_token_are_rejected(server: Server, headers: dict[str, str]) -> None:
+def test_requests_from_other_pages_or_without_the_token_are_rejected(
+    server: PlaygroundServer, headers: dict[str, str]
+) -> None:
     for method, body in (("POST", "{}"), ("GET", None), ("OPTIONS", None)):
         status, answer_headers, answer = ask(server, method, "/api", body, {**JSON, **headers})
         assert (status, answer) == (403, b"Forbidden\n")
@@ -152,36 +158,36 @@ def test_requests_from_other_pages_or_without_the_token_are_rejected(server: Ser
 
 
 @pytest.mark.parametrize("headers", [headers for headers in ELSEWHERE if "Tltlc-Token" not in headers][:-1], ids=str)
-def test_files_are_served_only_to_the_page_itself(server: Server, headers: dict[str, str]) -> None:
+def test_files_are_served_only_to_the_page_itself(server: PlaygroundServer, headers: dict[str, str]) -> None:
     assert ask(server, "GET", "/main.js", None, headers)[0] == 403
     assert ask(server, "GET", "/", None, headers)[0] == 403
 
 
-def test_a_link_from_another_site_opens_the_page(server: Server) -> None:
+def test_a_link_from_another_site_opens_the_page(server: PlaygroundServer) -> None:
     link = {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Tltlc-Token": ""}
     assert ask(server, "GET", "/", None, link)[0] == 200
     assert ask(server, "GET", "/main.js", None, link)[0] == 403
 
 
-def test_the_page_is_answered_under_each_name_of_the_host(server: Server) -> None:
+def test_the_page_is_answered_under_each_name_of_the_host(server: PlaygroundServer) -> None:
     for host in (f"127.0.0.1:{server.server_address[1]}", "localhost:9000"):
         own = {"Host": host, "Origin": f"http://{host}", "Sec-Fetch-Site": "same-origin"}
         assert ask(server, "POST", "/api", "{}", {**JSON, **own})[0] == 200
 
 
-def test_each_server_has_its_own_token(server: Server) -> None:
-    with Server(0) as other:
+def test_each_server_has_its_own_token(server: PlaygroundServer) -> None:
+    with PlaygroundServer(0) as other:
         assert other.token != server.token
         assert len(other.token) >= 32
         assert other.address.endswith(f"/#token={other.token}")
 
 
-def test_a_head_request_has_no_body(server: Server) -> None:
+def test_a_head_request_has_no_body(server: PlaygroundServer) -> None:
     status, headers, body = ask(server, "HEAD", "/")
     assert (status, body, headers["Content-Length"]) == (200, b"", str(len(server.page.files["index.html"])))
 
 
-def test_a_client_that_disconnects_causes_no_error(server: Server, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_client_that_disconnects_causes_no_error(server: PlaygroundServer, capfd: pytest.CaptureFixture[str]) -> None:
     for _ in range(3):
         with socket.create_connection(("127.0.0.1", server.server_address[1])) as gone:
             # The connection is reset: no data is left to send, and answers are refused immediately.
@@ -226,11 +232,11 @@ def test_running_children_end_with_the_server() -> None:
         assert child.wait(timeout=HANG_S)
 
 
-def slow_request(server: Server) -> bytes:
+def slow_request(server: PlaygroundServer) -> bytes:
     return request(server, json.dumps({"text": SLOW}))
 
 
-def request(server: Server, body: str) -> bytes:
+def request(server: PlaygroundServer, body: str) -> bytes:
     head = (
         *("POST /api HTTP/1.1", "Host: localhost", "Content-Type: application/json"),
         *(f"Tltlc-Token: {server.token}", f"Content-Length: {len(body)}"),
@@ -250,18 +256,18 @@ def test_the_port_can_be_reused_at_once() -> None:
         connection.request("GET", "/")
         connection.getresponse().read()
         # The server closes the connection first, which keeps the address in use for a while.
-    with Server(port) as again:
+    with PlaygroundServer(port) as again:
         assert again.server_address[1] == port
     connection.close()
 
 
-def test_a_text_of_the_maximal_file_size_is_accepted(server: Server) -> None:
+def test_a_text_of_the_maximal_file_size_is_accepted(server: PlaygroundServer) -> None:
     body = json.dumps({"text": '"\n' * (1 << 19)})
     status, _, answer = ask(server, "POST", "/api", body, JSON)
     assert (status, len(json.loads(answer)["diagnostics"]) > 0) == (200, True)
 
 
-def test_localhost_is_accepted_as_host(server: Server) -> None:
+def test_localhost_is_accepted_as_host(server: PlaygroundServer) -> None:
     for name in ("localhost:1", "LocalHost", "127.0.0.1"):
         assert ask(server, "GET", "/", None, {"Host": name})[0] == 200
 
@@ -298,9 +304,9 @@ def test_a_child_that_hangs_is_killed(monkeypatch: pytest.MonkeyPatch, tmp_path:
         os.kill(pid, 0)
 
 
-def test_a_port_in_use_is_reported(server: Server) -> None:
+def test_a_port_in_use_is_reported(server: PlaygroundServer) -> None:
     with pytest.raises(TltlError) as caught:
-        Server(server.server_address[1])
+        PlaygroundServer(server.server_address[1])
     (diagnostic,) = caught.value.diagnostics
     assert (diagnostic.code, diagnostic.help) == ("TLT0776", "give another port, or 0 for any: `--port 0`")
     assert diagnostic.title.startswith(f"cannot serve at 127.0.0.1:{server.server_address[1]}: ")

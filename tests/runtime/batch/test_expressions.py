@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from tests.fixtures import near
 from tests.monitor.strategies import PARAMS, SIGNALS, expressions, numbers
 from tltl_runtime.spec.batch import BatchMonitor
-from tltl_runtime.spec.batch.expressions import Program
+from tltl_runtime.spec.batch.expressions import TensorExpressions
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.core.record import replace
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import ArithmeticOp, Condition, Const, Expression, Op, Signal, When
+from tltlc.expression.tree import ArithmeticOp, Condition, Const, Expression, Op, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.monitor import MonitorError
 from tltlc.resolve import spec
@@ -25,11 +25,11 @@ from tltlc.resolve import spec
 FAILURES = (ZeroDivisionError, OverflowError, ValueError)
 CPU = torch.device("cpu")
 REPLACED: dict[str, ArithmeticOp] = {"exp": "abs", "tanh": "neg", "sqrt": "abs", "^": "/"}
-x, y = Signal("x"), Signal("y")
+x, y = SignalValue("x"), SignalValue("y")
 
 
-def program(expression: Expression, params: dict[str, float] | None = None) -> Program:
-    return Program([expression], SIGNALS if params else ("x", "y"), params or {}, CPU, torch.float64)
+def program(expression: Expression, params: dict[str, float] | None = None) -> TensorExpressions:
+    return TensorExpressions([expression], SIGNALS if params else ("x", "y"), params or {}, CPU, torch.float64)
 
 
 def exact(node: Any) -> Any:
@@ -100,7 +100,7 @@ def test_operations_that_torch_rounds_differently_are_close(expression: Expressi
 
 def test_shared_subexpressions_are_computed_once() -> None:
     shared = Op("sqrt", (Op("abs", (x,)),))
-    both = Program([Op("+", (shared, y)), Op("-", (shared, y))], ("x", "y"), {}, CPU, torch.float64)
+    both = TensorExpressions([Op("+", (shared, y)), Op("-", (shared, y))], ("x", "y"), {}, CPU, torch.float64)
     assert both.source.count("sqrt(") == 1
 
 
@@ -114,7 +114,7 @@ def test_a_case_that_is_not_taken_cannot_fail() -> None:
 
 def test_closeness_at_its_borders() -> None:
     distances = [0.0, 0.5, 1.0, 5.0, 5.5, 10.0, 11.0]
-    near_x = Program([near("x")], ("x",), {"level_size": 10.0}, CPU, torch.float64)
+    near_x = TensorExpressions([near("x")], ("x",), {"level_size": 10.0}, CPU, torch.float64)
     (values,), _ = near_x.run(torch.tensor([distances], dtype=torch.float64))
     assert values.tolist() == [evaluate(near("x"), {"x": d}, {"level_size": 10.0}) for d in distances]
 

@@ -6,10 +6,10 @@ from tests.runtime.regression.made import summaries
 from tltl_runtime.cli.support.regression_text import sum_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.retrain.retrained import Outcome, Retrained, Trained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Outcome, Retrained
 from tltl_runtime.regression.verdict.verdict import Verdict
 
-TRAINED = Trained(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)
+TRAINED = FinishedRetraining(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)
 
 
 def report(verdict: Verdict, outcome: Outcome | None = None) -> CaseReport:

@@ -22,7 +22,7 @@ from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.retrain.retrained import Retrained, Trained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Retrained
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -118,7 +118,7 @@ def _left_the_level(*_: object) -> Retrained:
 
 
 def _no_way(*_: object) -> Retrained:
-    trained = Trained("minutes", 100, 1.0, 10, False, None)
+    trained = FinishedRetraining("minutes", 100, 1.0, 10, False, None)
     return Retrained("no_way", "no way found", trained, figures_of(summaries(0, 25)), (0.0, 0.2), None, "policy", None)
 
 

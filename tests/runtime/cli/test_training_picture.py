@@ -12,17 +12,17 @@ from tests.runtime.training.reports import a_report
 from tests.runtime.training.runs import run_in
 from tltl_runtime.cli.support.training_picture import Picture
 from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltlc.core.record import replace
 
 SEARCHED = Searched(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80), complete=True)
 
 
-def _lines(folder: Path, columns: int, lines: int, report: Report | Searched | None) -> list[str]:
+def _lines(folder: Path, columns: int, lines: int, report: TrainingReport | Searched | None) -> list[str]:
     console = Console(width=columns, height=lines, file=StringIO(), force_terminal=True, color_system=None)
     run = run_in(folder, exploration__ways=10, stop__steps=12_000_000)
     picture = Picture(run, console)
-    if isinstance(report, Report):
+    if isinstance(report, TrainingReport):
         picture.trained(report)
     elif report is not None:
         picture.searched(report)
@@ -32,12 +32,14 @@ def _lines(folder: Path, columns: int, lines: int, report: Report | Searched | N
 
 
 @pytest.fixture(name="report")
-def _report() -> Report:
+def _report() -> TrainingReport:
     return replace(a_report(2000, states={0: 0.5, 1: 0.2, 3: 0.1, 4: 0.2}), searched=SEARCHED, checkpointed=True)
 
 
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (80, 18), (80, 15), (120, 40), (101, 24)])
-def test_the_display_fits_and_no_figure_is_cut_off(tmp_path: Path, report: Report, columns: int, lines: int) -> None:
+def test_the_display_fits_and_no_figure_is_cut_off(
+    tmp_path: Path, report: TrainingReport, columns: int, lines: int
+) -> None:
     shown = _lines(tmp_path / ("very-" * 20 + "long"), columns, lines, report)
     assert len(shown) < lines
     # The width leaves four columns, since pressing Ctrl-C twice prints `^C^C` after the border.
@@ -57,13 +59,13 @@ def test_the_display_fits_and_no_figure_is_cut_off(tmp_path: Path, report: Repor
     assert shown[-1].endswith("-very-long ─╯")
 
 
-def test_in_a_low_terminal_the_most_frequent_states_are_shown(tmp_path: Path, report: Report) -> None:
+def test_in_a_low_terminal_the_most_frequent_states_are_shown(tmp_path: Path, report: TrainingReport) -> None:
     text = "\n".join(_lines(tmp_path, 80, 15, report))
     assert "where the last 50 episodes ended (3 of 4 states)" in text
     assert [number for number in range(5) if f"state {number}" in text] == [0, 1, 4]
 
 
-def test_violations_are_shown_at_the_state_before(tmp_path: Path, report: Report) -> None:
+def test_violations_are_shown_at_the_state_before(tmp_path: Path, report: TrainingReport) -> None:
     text = "\n".join(_lines(tmp_path, 120, 40, report))
     assert "20%   15% violated: Reach near(s2), then near(exit)" in text
     assert "The spec is violated." not in text
@@ -75,12 +77,12 @@ def test_before_the_first_iteration_the_search_is_shown(tmp_path: Path) -> None:
     assert "1,200 places, 2 ways to meet the spec, the shortest of 80 steps" in text
 
 
-def test_before_the_first_checkpoint_ctrl_c_is_explained(tmp_path: Path, report: Report) -> None:
+def test_before_the_first_checkpoint_ctrl_c_is_explained(tmp_path: Path, report: TrainingReport) -> None:
     text = "\n".join(_lines(tmp_path, 80, 24, replace(report, checkpointed=False)))
     assert "no checkpoint yet; Ctrl-C writes one to go on from" in text
 
 
-def test_a_search_without_ways_is_shown(tmp_path: Path, report: Report) -> None:
+def test_a_search_without_ways_is_shown(tmp_path: Path, report: TrainingReport) -> None:
     nothing = replace(report, searched=replace(SEARCHED, lengths=()))
     text = "\n".join(_lines(tmp_path, 80, 24, nothing))
     assert "search: no way found in 1 min 20 s; episodes begin at the level's start" in text

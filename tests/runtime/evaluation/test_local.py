@@ -12,8 +12,8 @@ import pytest
 
 from tests.docs.blocks import ROOT
 from tests.waiting import HANG_S
-from tltl_runtime.evaluation.local import Process
-from tltl_runtime.evaluation.player import Plays, Task
+from tltl_runtime.evaluation.local import WorkerProcess
+from tltl_runtime.evaluation.player import EpisodeRequest, Plays
 
 _MAIN = """
 import os, signal
@@ -62,7 +62,7 @@ def test_a_starting_worker_ignores_ctrl_c(tmp_path: Path) -> None:
 class Origin:
     """Returns the parent's process id, the number of its threads, and whether torch is loaded."""
 
-    def play(self, task: Task) -> Any:
+    def play(self, task: EpisodeRequest) -> Any:
         return os.getppid(), len([*Path(f"/proc/{os.getppid()}/task").iterdir()]), "torch" in sys.modules
 
     def close(self) -> None:
@@ -71,9 +71,9 @@ class Origin:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are started otherwise")
 def test_workers_are_forked_from_one_process_with_torch_and_one_thread() -> None:
-    workers = [Process(cast("type[Plays]", Origin)) for _ in range(2)]
+    workers = [WorkerProcess(cast("type[Plays]", Origin)) for _ in range(2)]
     try:
-        one, other = (worker.play(Task(0)).result() for worker in workers)
+        one, other = (worker.play(EpisodeRequest(0)).result() for worker in workers)
     finally:
         for worker in workers:
             worker.close()

@@ -19,9 +19,9 @@ from tests.runtime.own_cluster import CORES, needs_ray, own_cluster
 from tests.waiting import HANG_S, until
 from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, results_here, set_up
-from tltl_runtime.evaluation.local import Process
+from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import PlayedEpisode, Player, Recorded, Setup, Task
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Recorded, Setup
 from tltl_runtime.evaluation.spread import LostError, spread
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -76,12 +76,12 @@ def test_every_pool_plays_the_same_episodes(policy: Policy, expected: list[Episo
 
 
 def test_an_episode_does_not_depend_on_the_number_of_episodes(policy: Policy, expected: list[EpisodeSummary]) -> None:
-    single_results = results(set_up(policy, None, None, None, 3), [Task(7)])
+    single_results = results(set_up(policy, None, None, None, 3), [EpisodeRequest(7)])
     assert [result.played for result in single_results] == [expected[7]]
 
 
 def test_recordings_are_made_as_requested(policy: Policy, expected: list[EpisodeSummary]) -> None:
-    tasks = [Task(0), Task(1)]
+    tasks = [EpisodeRequest(0), EpisodeRequest(1)]
     for recorded, expect_recording in (("all", True), ("failures", True), ("none", False)):
         for result in results(set_up(policy, None, None, None, 3, recorded), tasks):  # type: ignore[arg-type]
             assert result.played == expected[result.task.index]
@@ -98,7 +98,7 @@ def test_recordings_are_made_as_requested(policy: Policy, expected: list[Episode
 @pytest.mark.parametrize("recorded", get_args(Recorded))
 def test_only_failures_are_recorded_if_requested(recorded: Recorded) -> None:
     played_results = list(
-        results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [Task(index) for index in range(6)])
+        results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [EpisodeRequest(index) for index in range(6)])
     )
     failed = [not result.played.success for result in played_results]
     assert set(failed) == {True, False}
@@ -113,7 +113,7 @@ def out_of_the_level() -> None:
 @pytest.mark.parametrize("workers", POOLS)
 def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, killed), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
-    with pytest.raises(TltlError) as caught, closing(results(setup, [Task(6)], workers)) as playing:
+    with pytest.raises(TltlError) as caught, closing(results(setup, [EpisodeRequest(6)], workers)) as playing:
         next(playing)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TLT0850"
@@ -125,14 +125,14 @@ def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) 
 def test_an_error_of_the_game_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as caught:
-        list(results(setup, [Task(0)], workers))
+        list(results(setup, [EpisodeRequest(0)], workers))
     assert caught.value.body == "player"
 
 
 class Ends:
     """A player without a policy that kills its process."""
 
-    def play(self, task: Task) -> PlayedEpisode:
+    def play(self, task: EpisodeRequest) -> PlayedEpisode:
         killed()
         raise AssertionError("it was killed")
 
@@ -142,29 +142,29 @@ class Ends:
 
 def test_a_lost_worker_is_reported_for_any_player() -> None:
     with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode 0 of seed 3"):
-        list(results_here(Ends, [Task(0)], 2, 3))
+        list(results_here(Ends, [EpisodeRequest(0)], 2, 3))
 
 
 @pytest.mark.parametrize("workers", [1, *POOLS])
 def test_an_error_at_the_start_of_a_worker_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
     setup = Setup(policy, "nowhere", "v0", policy.card.fspa, 3, policy.card.params)
     with pytest.raises(TltlError, match="there is no level `nowhere`"):
-        list(results(setup, [Task(0)], workers))
+        list(results(setup, [EpisodeRequest(0)], workers))
 
 
 def test_a_result_is_yielded_before_the_next_episode_starts(policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
-    began: list[Task] = []
+    began: list[EpisodeRequest] = []
     play = Player.play
     monkeypatch.setattr(Player, "play", lambda self, task: began.append(task) or play(self, task))
-    with closing(results(set_up(policy, None, None, None, 3), [Task(0), Task(1)])) as played:
-        assert next(played).task == Task(0)
-        assert began == [Task(0)]
+    with closing(results(set_up(policy, None, None, None, 3), [EpisodeRequest(0), EpisodeRequest(1)])) as played:
+        assert next(played).task == EpisodeRequest(0)
+        assert began == [EpisodeRequest(0)]
 
 
 class Prompt:
     """A worker that is done at once; it is lost in episode 1, and never finishes episode 0."""
 
-    def play(self, task: Task) -> Future[PlayedEpisode]:
+    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
         future: Future[PlayedEpisode] = Future()
         if task.index == 1:
             future.set_exception(LostError("gone"))
@@ -177,7 +177,7 @@ class Prompt:
 
 
 def test_finished_episodes_are_yielded_before_a_lost_worker_is_reported() -> None:
-    tasks = [Task(index) for index in (2, 0, 3, 1)]
+    tasks = [EpisodeRequest(index) for index in (2, 0, 3, 1)]
     played: list[int] = []
     with pytest.raises(TltlError, match="episode 1 of seed 5"):
         played.extend(result.task.index for result in spread([Prompt(), Prompt(), Prompt()], tasks, 5))
@@ -185,15 +185,15 @@ def test_finished_episodes_are_yielded_before_a_lost_worker_is_reported() -> Non
 
 
 def test_a_process_that_ended_between_episodes_is_reported_as_lost(policy: Policy) -> None:
-    worker = Process(partial(Player, set_up(policy, None, None, None, 3)))
+    worker = WorkerProcess(partial(Player, set_up(policy, None, None, None, 3)))
     try:
-        assert worker.play(Task(0)).result().task == Task(0)
+        assert worker.play(EpisodeRequest(0)).result().task == EpisodeRequest(0)
         for child in active_children():
             child.kill()
             child.join()
         until(lambda: worker._executor._broken, "the executor to know that its process has ended")
         with pytest.raises(LostError, match="its process ended"):
-            worker.play(Task(1)).result()
+            worker.play(EpisodeRequest(1)).result()
     finally:
         worker.close()
 
@@ -240,7 +240,7 @@ def test_a_core_that_becomes_free_is_used(
 
     remaining: list[float] = []
     monkeypatch.setattr("tltl_runtime.vector.cluster._TOLD_EVERY_S", 0.5)
-    played = results(set_up(policy, None, None, None, 3), [Task(0)], "ray", waiting)
+    played = results(set_up(policy, None, None, None, 3), [EpisodeRequest(0)], "ray", waiting)
     assert [result.played for result in played] == [expected[0]]
     assert 0 < remaining[0] <= ray_pool.PATIENCE_S == HANG_S
 

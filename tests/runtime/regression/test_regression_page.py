@@ -17,7 +17,7 @@ from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.report_json import FORMAT, VERSION, document
-from tltl_runtime.regression.retrain.retrained import Best, Outcome, Retrained, Trained
+from tltl_runtime.regression.retrain.retrained import BestFailedEpisode, FinishedRetraining, Outcome, Retrained
 from tltl_runtime.regression.suite import suite as suite_module
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
 from tltl_runtime.regression.verdict import confidence
@@ -83,14 +83,18 @@ def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
     assert set(rows("field of a case")) == set(case_document)
     assert (FORMAT, VERSION) == ("tltl-regression", 1)
     assert f"| `{FORMAT}`, {VERSION} |" in PAGE
-    retraining_fields = (*Retrained.__match_args__, *Trained.__match_args__, *Best.__match_args__)
+    retraining_fields = (
+        *Retrained.__match_args__,
+        *FinishedRetraining.__match_args__,
+        *BestFailedEpisode.__match_args__,
+    )
     for name in (*Figures.__match_args__, *case_document["accounts"][0], *retraining_fields, *get_args(Outcome)):
         assert f"`{name}`" in PAGE
     json.dumps(report_document, allow_nan=False)
 
 
 def test_the_page_lists_the_properties() -> None:
-    trained = Trained("met", 1, 1.0, 0, True, None)
+    trained = FinishedRetraining("met", 1, 1.0, 0, True, None)
     new = Retrained("learned", "", trained, figures_of(summaries(2)), (0.0, 1.0), None, "retrained/a/policy", None)
     figures = figures_of(summaries(2))
     report = CaseReport("CASE", "a", "v0", "pass", (), figures=figures, baseline=figures, retrained=new)

@@ -8,14 +8,23 @@ import pytest
 
 from tests.runtime.regression.made import summaries
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.retrain.retrained import Best, Outcome, Retrained, Trained, outcome_of, sentence
+from tltl_runtime.regression.retrain.retrained import (
+    BestFailedEpisode,
+    FinishedRetraining,
+    Outcome,
+    Retrained,
+    outcome_of,
+    sentence,
+)
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.support.record_json import from_json, to_json
 from tltlc.core.record import replace
 
-TRAINED = Trained(end="minutes", steps=212_992, seconds=303.0, searched=200_000, complete=True, shortest=None)
-BEST = Best(0.5, "reach near(exit)")
+TRAINED = FinishedRetraining(
+    end="minutes", steps=212_992, seconds=303.0, searched=200_000, complete=True, shortest=None
+)
+BEST = BestFailedEpisode(0.5, "reach near(exit)")
 
 
 def sentence_of(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:

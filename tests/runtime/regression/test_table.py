@@ -9,11 +9,11 @@ import pytest
 
 from tests.runtime.evaluation.deadly import killed
 from tests.runtime.policies.examples import card_of, policy_of
-from tltl_runtime.evaluation.player import PlayedEpisode, Task
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.table1 import table_cells
-from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, Row, markdown
+from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, TableRow, markdown
 from tltl_runtime.regression.table1.table_cells import Went, figures, measured
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -31,7 +31,7 @@ def test_the_paper_has_a_row_for_each_model_and_level() -> None:
 
 def test_our_row_stands_above_the_row_of_the_paper() -> None:
     cell = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
-    text = markdown({("navigation", "ours"): Row({"v0": cell}, 0.1)})
+    text = markdown({("navigation", "ours"): TableRow({"v0": cell}, 0.1)})
     assert text.splitlines()[2:] == [
         "| navigation | ours | 0.95 (0.89–0.98) | 0.97 ± 0.10 | 0.60 ± 0.20 | 6 min |",
         "|  | *the paper: ours* | 1.00 / 0.90 / 0.00 | 1.00 ± 0.00 / 0.93 ± 0.21 / 0.49 ± 0.05 "
@@ -52,7 +52,7 @@ def test_our_row_stands_above_the_row_of_the_paper() -> None:
 )
 def test_the_duration_of_a_training_is_shown(hours: float | None, cloned: float | None, shown: str) -> None:
     cell = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
-    ours = markdown({("navigation", "imitation"): Row({"v0": cell}, hours, cloned)}).splitlines()[2]
+    ours = markdown({("navigation", "imitation"): TableRow({"v0": cell}, hours, cloned)}).splitlines()[2]
     assert ours.endswith(f"| {shown} |")
 
 
@@ -94,7 +94,7 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
 class Mortal(table_cells._ExpertPlayer):
     """A player that kills its process in its first episode."""
 
-    def play(self, task: Task) -> PlayedEpisode:
+    def play(self, task: EpisodeRequest) -> PlayedEpisode:
         killed()
         return super().play(task)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import Run
 from tltl_runtime.training.run.train import train
 
@@ -18,7 +18,7 @@ def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(name="whole", scope="module")
-def _whole(folder: Path) -> tuple[Run, list[Report]]:
+def _whole(folder: Path) -> tuple[Run, list[TrainingReport]]:
     """A training of three iterations; each module has its own, since resuming changes it."""
     run = run_in(folder / "whole")
     return run, list(train(run))

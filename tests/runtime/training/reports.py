@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.training.run.report import Confirmation, Report, StopReason, Window
+from tltl_runtime.training.run.report import Confirmation, EpisodeWindow, StopReason, TrainingReport
 from tltl_runtime.training.runner import Iteration
 
 
@@ -19,14 +19,14 @@ def a_report(
     stop: StopReason | None = None,
     confirmation: Confirmation | None = None,
     checkpointed: bool = False,
-) -> Report:
+) -> TrainingReport:
     """The report of an iteration of 4096 steps, at 2048 steps per second."""
     progress = 0.5 + successes / count / 2 if count else 0.0
-    return Report(
+    return TrainingReport(
         iteration=Iteration(number, 4096, finished, {"value": 0.25, "entropy": 3.5}, 1.5, 0.5),
         steps=4096 * number,
         seconds=2.0 * number,
-        window=Window(
+        window=EpisodeWindow(
             count,
             successes,
             progress,

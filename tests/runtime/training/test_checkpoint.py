@@ -10,7 +10,7 @@ import torch
 
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.run.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.run.run import RUN, write_run
 from tltlc.core.record import replace
 
@@ -29,7 +29,7 @@ def _checkpoint() -> Checkpoint:
         processes=({"cpu": torch.get_rng_state()},),
         window=((True, 1.0, 30, 2, False),),
         unbroken=0,
-        best=Best((0.5, 1.0, -2.0), {}, 64),
+        best=BestPolicy((0.5, 1.0, -2.0), {}, 64),
         met=False,
         standstill=(0.5, 128),
     )

@@ -11,9 +11,9 @@ import pytest
 import torch
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.training.exploration.reset_distribution import Replayed, Start
+from tltl_runtime.training.exploration.reset_distribution import EpisodeStart, Replayed
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
-from tltl_runtime.training.exploration.search import Way
+from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.vector import make_vec
 from tltl_runtime.vector.env import TLTL_INFO
@@ -29,9 +29,17 @@ spec stoop { level navigation
 """
 """A spec that crouching meets and jumping violates, in one step."""
 STAY, WALK, JUMP, CROUCH = [0, 0, 0, 0, 0], [1, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0]
-WAY = Way(5, [STAY, CROUCH], end=1)
-ON_IT = Start(5, [STAY], part=(WAY.end, 0))
-STARTS = (Start(5), Start(5), Start(5), ON_IT, ON_IT, Start(5, [STAY], part=(WAY.end, 0), most=2), ON_IT)
+WAY = SuccessfulEpisode(5, [STAY, CROUCH], end=1)
+ON_IT = EpisodeStart(5, [STAY], part=(WAY.end, 0))
+STARTS = (
+    EpisodeStart(5),
+    EpisodeStart(5),
+    EpisodeStart(5),
+    ON_IT,
+    ON_IT,
+    EpisodeStart(5, [STAY], part=(WAY.end, 0), most=2),
+    ON_IT,
+)
 """The start of the episodes of each environment."""
 
 
@@ -43,7 +51,7 @@ class Fixed(Restarts):
         self.add(WAY)
         self._starts = cycle(STARTS)
 
-    def draw(self) -> Start:
+    def draw(self) -> EpisodeStart:
         return next(self._starts)
 
 

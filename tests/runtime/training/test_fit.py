@@ -13,9 +13,9 @@ import torch
 
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
-from tltl_runtime.training.exploration.search import Failure, Way
+from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, Run
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
@@ -43,7 +43,7 @@ def refusal(run: Run) -> str:
 
 
 @pytest.fixture(name="copy")
-def _copy(tmp_path: Path, whole: tuple[Run, list[Report]]) -> Run:
+def _copy(tmp_path: Path, whole: tuple[Run, list[TrainingReport]]) -> Run:
     shutil.copytree(whole[0].folder, tmp_path / "run")
     return replace(whole[0], folder=tmp_path / "run")
 
@@ -154,8 +154,8 @@ def test_starts_of_another_shape_are_rejected(tmp_path: Path) -> None:
 def restarts_state() -> dict[str, Any]:
     """The state of restarts with one trajectory and one failure."""
     restarts = Restarts(4, np.random.default_rng(0))
-    restarts.add(Way(1, [[0] * 5, [1] * 5], 2))
-    restarts.failures.append(Failure(3, [[0] * 5], 1))
+    restarts.add(SuccessfulEpisode(1, [[0] * 5, [1] * 5], 2))
+    restarts.failures.append(FailedEpisode(3, [[0] * 5], 1))
     return restarts.state()
 
 

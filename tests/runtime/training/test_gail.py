@@ -19,7 +19,7 @@ from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.distributed import peers
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import DEMONSTRATIONS, POLICY, Run, read_run
 from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.run.setup import demonstrated, environments, prepared
@@ -38,13 +38,13 @@ def _mine(folder: Path) -> Path:
 
 
 @pytest.fixture(name="imitated", scope="module")
-def _imitated(folder: Path, mine: Path) -> tuple[Run, list[Report]]:
+def _imitated(folder: Path, mine: Path) -> tuple[Run, list[TrainingReport]]:
     """A training of three iterations."""
     run = imitating(folder / "imitated", mine)
     return run, list(train(run))
 
 
-def numbers(reports: list[Report]) -> list[Any]:
+def numbers(reports: list[TrainingReport]) -> list[Any]:
     return [(report.iteration.number, report.iteration.losses, report.steps, report.window) for report in reports]
 
 
@@ -68,7 +68,7 @@ def algorithm_of(run: Run) -> Gail:
     return algorithm
 
 
-def test_cloning_comes_first(imitated: tuple[Run, list[Report]]) -> None:
+def test_cloning_comes_first(imitated: tuple[Run, list[TrainingReport]]) -> None:
     run, reports = imitated
     assert [set(report.iteration.losses) for report in reports] == [CLONING, GAIL, GAIL]
     assert [report.steps for report in reports] == [64, 128, 192]
@@ -80,7 +80,7 @@ def test_cloning_comes_first(imitated: tuple[Run, list[Report]]) -> None:
     assert (about.episodes, about.decisions, about.players, about.left_out) == (2, 16, ("me",), ())
 
 
-def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Run, list[Report]]) -> None:
+def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Run, list[TrainingReport]]) -> None:
     run, reports = imitated
     record = write_record(run, reports[-1])
     assert record["imitated"] == {"episodes": 2, "decisions": 16, "players": ["me"], "left_out": [], "cloned": 64}
@@ -91,7 +91,7 @@ def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Run, l
 
 
 def test_equal_trainings_and_equal_checkpoints_give_equal_numbers(
-    folder: Path, mine: Path, imitated: tuple[Run, list[Report]]
+    folder: Path, mine: Path, imitated: tuple[Run, list[TrainingReport]]
 ) -> None:
     run, reports = imitated
     again = replace(run, folder=folder / "again")
@@ -140,14 +140,16 @@ def test_without_a_limit_in_minutes_time_does_not_end_cloning(tmp_path: Path, mi
     assert algorithm.clones
 
 
-def test_the_number_of_workers_does_not_count(folder: Path, imitated: tuple[Run, list[Report]], mine: Path) -> None:
+def test_the_number_of_workers_does_not_count(
+    folder: Path, imitated: tuple[Run, list[TrainingReport]], mine: Path
+) -> None:
     two = imitating(folder / "two", mine, rollout__workers=2)
     assert numbers(list(train(two))) == numbers(imitated[1])
     assert equal(checkpoint_of(two).algorithm, checkpoint_of(imitated[0]).algorithm)
 
 
 def test_the_settings_of_automaton_rewards_do_not_count(
-    folder: Path, imitated: tuple[Run, list[Report]], mine: Path
+    folder: Path, imitated: tuple[Run, list[TrainingReport]], mine: Path
 ) -> None:
     changes = {"reward__mode": "edge", "reward__termination": "paper", "exploration__ways": 3}
     other = imitating(folder / "edge", mine, **changes)

@@ -21,7 +21,7 @@ from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.run.checkpoint import copied
 from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
 from tltl_runtime.training.run.record import record_so_far, write_record
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, POLICY, Run, identity, read_run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
@@ -35,7 +35,7 @@ def tuned(folder: Path, path: Path, **changes: object) -> Run:
 
 
 @pytest.fixture(name="policy")
-def _policy(tmp_path: Path, whole: tuple[Run, list[Report]]) -> Path:
+def _policy(tmp_path: Path, whole: tuple[Run, list[TrainingReport]]) -> Path:
     shutil.copy(whole[0].folder / POLICY, tmp_path / "old.safetensors")
     return tmp_path / "old.safetensors"
 

@@ -16,9 +16,15 @@ from numpy.typing import NDArray
 
 from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.exploration.reset_distribution import Episodes, Replayed, Start
+from tltl_runtime.training.exploration.reset_distribution import Episodes, EpisodeStart, Replayed
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
-from tltl_runtime.training.exploration.search import Exploration, Failure, Search, Searched, Way
+from tltl_runtime.training.exploration.search import (
+    Exploration,
+    FailedEpisode,
+    Searched,
+    SuccessfulEpisode,
+    TrajectorySearch,
+)
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.vector.errors import WorkerError
@@ -40,8 +46,8 @@ def env() -> Iterator[WorkerVectorEnv]:
     vector_env.close()
 
 
-def search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[Way], list[Searched]]:
-    searching = Search(env, exploration, np.random.SeedSequence(7))
+def search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[SuccessfulEpisode], list[Searched]]:
+    searching = TrajectorySearch(env, exploration, np.random.SeedSequence(7))
     reports = list(searching.run())
     return searching.ways, reports
 
@@ -79,7 +85,7 @@ def test_a_given_player_plays_first(env: WorkerVectorEnv) -> None:
         return np.zeros(5, np.int64)
 
     # Its first episodes have the same seeds as in the first search.
-    searching = Search(env, replace(exploration, ways=1), np.random.SeedSequence(7), player=follow)
+    searching = TrajectorySearch(env, replace(exploration, ways=1), np.random.SeedSequence(7), player=follow)
     (*_, last) = searching.run()
     assert searching.ways[0] in ways
     assert (last.steps, last.replayed) == (env.num_envs * len(searching.ways[0].actions), 0)
@@ -90,21 +96,21 @@ def test_if_a_player_fails_the_search_continues_from_its_places(
     env: WorkerVectorEnv, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     decisions: list[list[int]] = []
-    starts: list[Start] = []
+    starts: list[EpisodeStart] = []
 
     def walk(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
         """Walk away from the switch for 20 decisions of each environment, then stand still."""
         decisions.append([2, 1, 0, 0, 0] if len(decisions) < 20 * env.num_envs else [0, 0, 0, 0, 0])
         return np.array(decisions[-1])
 
-    def drawn(search: Search) -> Start:
+    def drawn(search: TrajectorySearch) -> EpisodeStart:
         starts.append(draw(search))
         return starts[-1]
 
-    draw = Search._draw
-    monkeypatch.setattr(Search, "_draw", drawn)
+    draw = TrajectorySearch._draw
+    monkeypatch.setattr(TrajectorySearch, "_draw", drawn)
     exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
-    searching = Search(env, exploration, np.random.SeedSequence(7), player=walk)
+    searching = TrajectorySearch(env, exploration, np.random.SeedSequence(7), player=walk)
     list(searching.run())
     assert len(searching.ways) >= 2
     # The episodes of the player end at the limit of 300 decisions.
@@ -116,8 +122,8 @@ def test_if_a_player_fails_the_search_continues_from_its_places(
 def test_ways_are_found_from_failures(env: WorkerVectorEnv) -> None:
     exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
     # Failures are ways without their last three actions, shortly before the switch.
-    failures = [Failure(way.seed, way.actions[:-3], 0) for way in search(env, exploration)[0]]
-    searching = Search(env, exploration, np.random.SeedSequence(8), failures)
+    failures = [FailedEpisode(way.seed, way.actions[:-3], 0) for way in search(env, exploration)[0]]
+    searching = TrajectorySearch(env, exploration, np.random.SeedSequence(8), failures)
     steps = list(searching.run())[-1].steps
     assert {way.seed for way in searching.ways} == {failure.seed for failure in failures}
     for way in searching.ways:
@@ -125,8 +131,13 @@ def test_ways_are_found_from_failures(env: WorkerVectorEnv) -> None:
         half = len(failure.actions) // 2
         assert way.actions[:half] == failure.actions[:half]
     assert steps < 5000
-    elsewhere = [Failure(failure.seed, failure.actions, 1) for failure in failures]
-    assert list(Search(env, replace(exploration, steps=64), np.random.SeedSequence(8), elsewhere).run())[-1].places == 0
+    elsewhere = [FailedEpisode(failure.seed, failure.actions, 1) for failure in failures]
+    assert (
+        list(TrajectorySearch(env, replace(exploration, steps=64), np.random.SeedSequence(8), elsewhere).run())[
+            -1
+        ].places
+        == 0
+    )
 
 
 def test_any_number_of_workers_finds_the_same_ways(env: WorkerVectorEnv) -> None:
@@ -147,7 +158,7 @@ def test_a_search_ends_at_its_limit() -> None:
 def test_episodes_start_with_replayed_actions(env: WorkerVectorEnv) -> None:
     rng = np.random.default_rng(3)
     actions = [[int(choice) for choice in rng.integers(0, (3, 3, 1, 2, 2))] for _ in range(25)]
-    starts = iter([Start(5, actions[:20])] * 4 + [Start(5, actions, most=2)] * 20)
+    starts = iter([EpisodeStart(5, actions[:20])] * 4 + [EpisodeStart(5, actions, most=2)] * 20)
     episodes = Episodes(env, lambda: next(starts))
     single_env = make_env("navigation", "v0", NEAR)
     single_env.reset(seed=5)
@@ -204,7 +215,7 @@ def test_a_prepared_episode_equals_an_unprepared_one(prepared: int) -> None:
 def test_a_lost_worker_is_reported_with_the_seeds_of_its_episodes(
     env: WorkerVectorEnv, begun: list[int], told: list[tuple[int, ...]]
 ) -> None:
-    starts = iter([Start(seed, [[0] * 5] * 3) for seed in range(10, 20)])
+    starts = iter([EpisodeStart(seed, [[0] * 5] * 3) for seed in range(10, 20)])
     episodes = Episodes(env, lambda: next(starts))
     episodes.step(np.zeros((4, 5), dtype=np.int64))
     (worker,) = env.worker_pids
@@ -233,7 +244,7 @@ def test_each_place_is_counted_once(env: WorkerVectorEnv) -> None:
     assert len(visited) / 2 < reports[-1].places <= len(visited)
 
 
-def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:
+def restarts_of(ways: Sequence[SuccessfulEpisode], parts: int, seed: int = 1) -> Restarts:
     restarts = Restarts(parts, np.random.default_rng(seed))
     for way in ways:
         restarts.add(way)
@@ -241,7 +252,7 @@ def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:
 
 
 def test_restarts_move_from_the_end_of_a_way_to_its_start() -> None:
-    way = Way(1, [[0, 0, 0, 0, 0]] * 80, 1)
+    way = SuccessfulEpisode(1, [[0, 0, 0, 0, 0]] * 80, 1)
     restarts = restarts_of([way], 8, 0)
 
     def drawn() -> Counter[int | None]:
@@ -254,13 +265,13 @@ def test_restarts_move_from_the_end_of_a_way_to_its_start() -> None:
     longer = [[1, 0, 0, 0, 0]] * 90
     for part, times in ((7, 60), (6, 60), (5, 4)):
         for _ in range(times):
-            restarts.ended(Start(1, way.actions[: 10 * part], (1, part)), longer, 1)
+            restarts.ended(EpisodeStart(1, way.actions[: 10 * part], (1, part)), longer, 1)
     later = drawn()
     # Learned parts and parts far from them are drawn less often.
     assert later[5] > 2 * later[4] > 10 * max(later[7], later[6])
     assert later[4] > 1.3 * later[3] > 2 * later[1]
     for _ in range(500):
-        restarts.ended(Start(2), longer, 1)
+        restarts.ended(EpisodeStart(2), longer, 1)
     assert drawn()[None] > 800
 
 
@@ -268,7 +279,7 @@ def test_restarts_move_from_the_end_of_a_way_to_its_start() -> None:
 def test_a_better_agent_starts_more_episodes_at_the_start_of_the_level(from_start: int, on_ways: int) -> None:
     shares = []
     for passed in (0.0, 0.5, 1.0):
-        restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
+        restarts = restarts_of([SuccessfulEpisode(1, [[0] * 5] * 80, 1)], 8)
         restarts.lengths[:] = from_start, on_ways
         restarts.passed = passed
         shares.append(sum(restarts.draw().part is None for _ in range(2000)) / 2000)
@@ -279,7 +290,7 @@ def test_a_better_agent_starts_more_episodes_at_the_start_of_the_level(from_star
 
 @pytest.mark.parametrize("length", [30, 90, 900])
 def test_a_fifth_of_the_decisions_is_in_episodes_from_the_start_of_the_level(length: int) -> None:
-    way = Way(1, [[0] * 5] * 80, 1)
+    way = SuccessfulEpisode(1, [[0] * 5] * 80, 1)
     restarts = restarts_of([way], 8)
     decisions = Counter[bool]()
     for index in range(6000):
@@ -292,17 +303,17 @@ def test_a_fifth_of_the_decisions_is_in_episodes_from_the_start_of_the_level(len
 
 
 def test_the_last_32_failures_from_the_start_of_the_level_are_kept() -> None:
-    restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
+    restarts = restarts_of([SuccessfulEpisode(1, [[0] * 5] * 80, 1)], 8)
     for seed in range(40):
-        restarts.ended(Start(seed), [[0] * 5] * 9, None, 2)
-        restarts.ended(Start(seed, part=(1, 3)), [[0] * 5] * 9, None, 2)
-        restarts.ended(Start(seed), [[0] * 5] * 9, 1, 3)
-        restarts.ended(Start(seed), [[0] * 5] * 9, None)
+        restarts.ended(EpisodeStart(seed), [[0] * 5] * 9, None, 2)
+        restarts.ended(EpisodeStart(seed, part=(1, 3)), [[0] * 5] * 9, None, 2)
+        restarts.ended(EpisodeStart(seed), [[0] * 5] * 9, 1, 3)
+        restarts.ended(EpisodeStart(seed), [[0] * 5] * 9, None)
     assert [(failure.seed, failure.state) for failure in restarts.failures] == [(seed, 2) for seed in range(8, 40)]
 
 
 def test_a_start_lies_in_its_part_and_leaves_enough_time() -> None:
-    way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)], 1)
+    way = SuccessfulEpisode(9, [[0, 0, 0, 0, index % 2] for index in range(160)], 1)
     restarts = restarts_of([way], 16)
     for start in (restarts.draw() for _ in range(300)):
         if start.part is not None:
@@ -315,12 +326,12 @@ def test_a_start_lies_in_its_part_and_leaves_enough_time() -> None:
 
 
 def test_the_shortest_ways_to_each_end_are_kept() -> None:
-    ways = [Way(index, [[0] * 5] * (100 + index), index % 2) for index in range(20)]
-    ways += [Way(0, [[0] * 5] * length, 0) for length in (99, 150)]
+    ways = [SuccessfulEpisode(index, [[0] * 5] * (100 + index), index % 2) for index in range(20)]
+    ways += [SuccessfulEpisode(0, [[0] * 5] * length, 0) for length in (99, 150)]
     restarts = restarts_of(ways, 4)
-    restarts.ended(Start(77), [[1] * 5] * 50, 0)
-    restarts.ended(Start(78), [[1] * 5] * 40, None)
-    restarts.ended(Start(79), [[1] * 5] * 400, 3)
+    restarts.ended(EpisodeStart(77), [[1] * 5] * 50, 0)
+    restarts.ended(EpisodeStart(78), [[1] * 5] * 40, None)
+    restarts.ended(EpisodeStart(79), [[1] * 5] * 400, 3)
     kept = {end: [way.seed for way in ways_to_end] for end, ways_to_end in restarts.ways.items()}
     assert kept == {0: [77, 0, 2, 4, 6, 8], 1: [1, 3, 5, 7, 9, 11], 3: [79]}
     assert [len(way.actions) for way in restarts.ways[0]] == [50, 99, 102, 104, 106, 108]
@@ -334,13 +345,13 @@ def test_without_ways_episodes_start_at_the_start_of_the_level() -> None:
 
 @pytest.mark.parametrize("count", [0, 3])
 def test_the_saved_state_of_restarts_is_complete(count: int) -> None:
-    ways = [Way(index, [[index, 0, 1, 0, 1]] * (5 + index), index) for index in range(count)]
+    ways = [SuccessfulEpisode(index, [[index, 0, 1, 0, 1]] * (5 + index), index) for index in range(count)]
     restarts = restarts_of(ways, 4)
     if count:
-        restarts.ended(Start(3, (), (2, 2)), [], None)
-    restarts.ended(Start(3), [[0] * 5] * 200, None)
+        restarts.ended(EpisodeStart(3, (), (2, 2)), [], None)
+    restarts.ended(EpisodeStart(3), [[0] * 5] * 200, None)
     for seed in range(count):
-        restarts.ended(Start(seed), [[seed, 0, 1, 0, 1]] * (3 + seed), None, 1)
+        restarts.ended(EpisodeStart(seed), [[seed, 0, 1, 0, 1]] * (3 + seed), None, 1)
     again = restarts_of([], 4)
     again.load(restarts.state())
     assert again.failures == restarts.failures

@@ -14,14 +14,14 @@ import torch
 from tests.runtime.training.runs import run_in
 from tests.runtime.training.test_search import restarts_of
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.exploration.search import Way
+from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.exploration.self_imitation import BATCH, Lessons, imitate
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.runner import Runner
 from tltl_runtime.vector import make_vec
 
-WAY = Way(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)
+WAY = SuccessfulEpisode(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)
 make = partial(make_env, "cover_and_hide")
 
 
@@ -52,7 +52,7 @@ def test_decisions_are_drawn_with_the_observations_before_them() -> None:
 
 
 def test_a_way_is_replayed_only_once() -> None:
-    other = Way(6, [[1, 1, 0, 0, 0]] * 30, 1)
+    other = SuccessfulEpisode(6, [[1, 1, 0, 0, 0]] * 30, 1)
     restarts = restarts_of([WAY, other], 4)
     env = Counting(make())
     lessons = Lessons(lambda: env, restarts)

@@ -9,7 +9,7 @@ from typing import get_type_hints
 import pytest
 
 from tltl_runtime.policies.network import Network
-from tltl_runtime.training.run.settings import Settings, default_text, read_settings, rsl_config, settings_text
+from tltl_runtime.training.run.settings import TrainingSettings, default_text, read_settings, rsl_config, settings_text
 from tltl_runtime.training.run.settings_file import KINDS, read_values
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
@@ -88,7 +88,7 @@ algorithm = "mine.algorithm:PPO"
 """Another value for each setting."""
 
 
-def _read(tmp_path: Path, text: str) -> Settings:
+def _read(tmp_path: Path, text: str) -> TrainingSettings:
     file = tmp_path / "settings.toml"
     file.write_text(text, encoding="utf-8")
     return read_settings(file)
@@ -107,11 +107,11 @@ def test_the_defaults_are_from_the_paper() -> None:
 def test_the_default_file_has_exactly_all_settings() -> None:
     values = read_values(SourceFile("settings.toml", default_text()))
     assert {table: set(keys) for table, keys in values.items()} == {table: set(keys) for table, keys in KINDS.items()}
-    for name, kind in get_type_hints(Settings).items():
+    for name, kind in get_type_hints(TrainingSettings).items():
         # Rewards use the discount of the algorithm.
         fields = set(getattr(kind, "__match_args__", ())) - ({"gamma"} if name == "reward" else set())
         assert fields == set(KINDS.get(name, {})), name
-    assert {name for name in get_type_hints(Settings) if name not in KINDS} == set(KINDS[""])
+    assert {name for name in get_type_hints(TrainingSettings) if name not in KINDS} == set(KINDS[""])
 
 
 def test_the_comments_on_settings_hold_for_other_values_too(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ from tltl_runtime.training.run import training_files as keeping
 from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.report import Confirmation, Report
+from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.run import (
     CHECKPOINT,
     CURVE,
@@ -40,7 +40,7 @@ from tltl_runtime.training.run.run import (
     read_run,
     write_run,
 )
-from tltl_runtime.training.run.settings import Settings, read_settings
+from tltl_runtime.training.run.settings import TrainingSettings, read_settings
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.core.record import replace
@@ -54,7 +54,7 @@ CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n a
 """A spec that an untrained agent meets in about one of four episodes."""
 
 
-def _numbers(reports: list[Report]) -> list[Any]:
+def _numbers(reports: list[TrainingReport]) -> list[Any]:
     return [(report.iteration.number, report.iteration.losses, report.steps, report.window) for report in reports]
 
 
@@ -65,7 +65,7 @@ def _assert_equal_weights(one: Run, other: Run) -> None:
         assert all(torch.equal(first[part][name], second[part][name]) for name in first[part])
 
 
-def test_a_training_ends_at_its_limit_and_writes_its_files(whole: tuple[Run, list[Report]]) -> None:
+def test_a_training_ends_at_its_limit_and_writes_its_files(whole: tuple[Run, list[TrainingReport]]) -> None:
     run, reports = whole
     assert [(report.iteration.number, report.steps, report.stop) for report in reports] == [
         (1, 64, None),
@@ -93,7 +93,9 @@ def test_rsl_rl_prints_nothing(folder: Path, capfd: pytest.CaptureFixture[str]) 
     assert capfd.readouterr() == ("", "")
 
 
-def test_equal_runs_and_equal_checkpoints_give_equal_numbers(folder: Path, whole: tuple[Run, list[Report]]) -> None:
+def test_equal_runs_and_equal_checkpoints_give_equal_numbers(
+    folder: Path, whole: tuple[Run, list[TrainingReport]]
+) -> None:
     run, reports = whole
     again = replace(run, folder=folder / "again")
     assert _numbers(list(train(again))) == _numbers(reports)
@@ -304,7 +306,7 @@ def test_the_identity_depends_on_all_settings_that_may_not_change(folder: Path, 
         table, _, key = name.rpartition(".")
         assert value != other_values[name]
         (document[table] if table else document)[key] = other_values[name]
-        changed = replace(run, settings=from_json(Settings, document, "settings"))
+        changed = replace(run, settings=from_json(TrainingSettings, document, "settings"))
         assert (identity(changed) == identity(run)) == (name in MAY_CHANGE), name
 
 

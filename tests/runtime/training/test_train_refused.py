@@ -16,7 +16,7 @@ from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.training.run.checkpoint import VERSION, write_checkpoint
 from tltl_runtime.training.run.folder import held
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import (
     CHECKPOINT,
     RUN,
@@ -29,7 +29,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 
 @pytest.fixture(name="copy")
-def _copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[Run, list[Report]]) -> Iterator[Run]:
+def _copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[Run, list[TrainingReport]]) -> Iterator[Run]:
     """A copy of the whole training, in the folder `run`."""
     shutil.copytree(whole[0].folder, tmp_path / "run")
     monkeypatch.chdir(tmp_path)

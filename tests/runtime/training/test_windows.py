@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.ppo.windows import Standstill, Windows
-from tltl_runtime.training.run.report import Window
+from tltl_runtime.training.run.report import EpisodeWindow
 
 SUCCESS = EpisodeSummary(0, None, True, "success", 1.0, 0.6, 40, 4)
 FAILURE = EpisodeSummary(1, None, False, "violation", 0.6, -0.4, 25, 2)
@@ -69,13 +69,13 @@ def test_loaded_windows_continue(before: list[bool], after: list[bool]) -> None:
     assert (windows.state(), windows.unbroken) == (whole.state(), whole.unbroken)
 
 
-def window_of(successes: int) -> Window:
-    return Window(100, successes, 0.5, 0.1, 100.0, {}, {})
+def window_of(successes: int) -> EpisodeWindow:
+    return EpisodeWindow(100, successes, 0.5, 0.1, 100.0, {}, {})
 
 
 def test_a_standstill_is_a_pass_rate_that_no_longer_rises() -> None:
     standstill = Standstill()
-    assert not standstill.add(Window(2, 1, 0.5, 0.1, 100.0, {}, {}), 0)
+    assert not standstill.add(EpisodeWindow(2, 1, 0.5, 0.1, 100.0, {}, {}), 0)
     rates = [(0, 0), (150_000, 0), (200_000, 9), (250_000, 40), (300_000, 44), (340_000, 38)]
     assert not any(standstill.add(window_of(successes), steps) for steps, successes in rates)
     assert standstill.add(window_of(44), 350_000)

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.tools.conformance.runner import Outcome, Runner, build, built, problems, ran, runners, write
-from tltlc.tools.conformance.case import Case
+from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
 from tltlc.tools.conformance.expected import Expected, expected
 
@@ -21,7 +21,7 @@ ALONE = ("by_zero", "exclusive_many", "names_of_code")
 
 
 @cache
-def case_and_expected(name: str) -> tuple[Case, tuple[Expected, ...]]:
+def case_and_expected(name: str) -> tuple[ConformanceCase, tuple[Expected, ...]]:
     case = CASES[name]()
     return case, tuple(expected(case.fspa, trace) for trace in case.traces)
 

@@ -19,7 +19,7 @@ from tests.interfaces.cli.conftest import ROOT
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.core.source import SourceFile
-from tltlc.expression.tree import ArithmeticOp, Condition, ConditionOp, Const, Op, Param, When, nodes
+from tltlc.expression.tree import ArithmeticOp, Condition, ConditionOp, Const, Op, ParamValue, When, nodes
 from tltlc.io.writing import write_files
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
@@ -161,7 +161,7 @@ def test_the_corpus_has_every_operator_of_expressions() -> None:
     assert any(not isinstance(power, Const) for power in powers)
     whens = [node for node in expressions if isinstance(node, When)]
     assert any(isinstance(inner, When) for node in whens for inner in nodes(node) if inner is not node)
-    assert any(isinstance(node, Param) for node in expressions)
+    assert any(isinstance(node, ParamValue) for node in expressions)
 
 
 def test_the_corpus_has_every_operator_of_formulas() -> None:

@@ -19,7 +19,7 @@ import pytest
 from tests.backends.monitors import FAR, HEAD, expected, trace_of
 from tests.tools.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, built, runners, write
 from tltlc.io.limits import TRACE_LINE
-from tltlc.tools.conformance.case import Case
+from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES
 
 NAME = "cover_and_hide"
@@ -77,7 +77,7 @@ Program = tuple[Runner, Path, list[str]]
 
 
 @pytest.fixture(scope="session")
-def case() -> Case:
+def case() -> ConformanceCase:
     return CASES[NAME]()
 
 
@@ -108,7 +108,7 @@ def programs() -> dict[str, Program]:
 @pytest.fixture(scope="session", params=USABLE, ids=lambda runner: runner.name)
 def program(
     request: pytest.FixtureRequest,
-    case: Case,
+    case: ConformanceCase,
     programs: dict[str, Program],
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Program:
@@ -146,7 +146,7 @@ def run(program: Program) -> Run:
 
 
 @pytest.fixture
-def outcomes(program: Program, run: Run, case: Case, tmp_path: Path) -> RunAll:
+def outcomes(program: Program, run: Run, case: ConformanceCase, tmp_path: Path) -> RunAll:
     """A function that runs the program on many traces, with ``--full``."""
     runner, _, _ = program
     if runner.name in SLOW_TO_START:
@@ -155,7 +155,7 @@ def outcomes(program: Program, run: Run, case: Case, tmp_path: Path) -> RunAll:
     return lambda traces: [run("--full", "trace.csv", trace=trace) for trace in traces]
 
 
-def test_files_and_standard_input_give_the_same_rows(run: Run, case: Case) -> None:
+def test_files_and_standard_input_give_the_same_rows(run: Run, case: ConformanceCase) -> None:
     samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
     status, out, err = expected(case.fspa, samples)
     short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
@@ -165,7 +165,7 @@ def test_files_and_standard_input_give_the_same_rows(run: Run, case: Case) -> No
     assert run("-", trace=trace) == (status, short, err)
 
 
-def test_a_trace_may_be_written_in_several_ways(outcomes: RunAll, case: Case) -> None:
+def test_a_trace_may_be_written_in_several_ways(outcomes: RunAll, case: ConformanceCase) -> None:
     expected_outcome = expected(case.fspa, [FAR])
     for trace, outcome in zip(SPELLINGS, outcomes(SPELLINGS), strict=True):
         assert outcome == expected_outcome, trace[:200]

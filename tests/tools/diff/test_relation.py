@@ -21,7 +21,7 @@ from tltlc.logic.text.printer import ascii_text
 from tltlc.monitor.guards import holds as guard_holds
 from tltlc.tools.diff.differences import differences
 from tltlc.tools.diff.pairs import diff
-from tltlc.tools.diff.relation import Group, Relation, compare
+from tltlc.tools.diff.relation import ExclusiveGroup, Relation, compare
 from tltlc.tools.witness.blocks import values
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=4)
@@ -79,7 +79,7 @@ def test_exclusive_atoms_restrict_the_traces(first: Formula, second: Formula) ->
     never = always(not_(and_(atom("a"), atom("b"))))
     a, b = finite(first), finite(second)
     sides = (not is_included(finite(and_(one, never)), other) for one, other in ((first, b), (second, a)))
-    comparison = compare(a, b, exclusive=[Group(("a", "b", "elsewhere"), True, True)])
+    comparison = compare(a, b, exclusive=[ExclusiveGroup(("a", "b", "elsewhere"), True, True)])
     assert comparison.relation == relation_of(*sides)
     for trace in (comparison.only_a, comparison.only_b):
         assert trace is None or {"a", "b"} not in trace.prefix

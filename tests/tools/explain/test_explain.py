@@ -28,7 +28,7 @@ from tltlc.monitor.guards import holds
 from tltlc.pipeline import compile_source, read_artefact
 from tltlc.tools.explain.explanation import explain
 from tltlc.tools.explain.formulas import guard_reader
-from tltlc.tools.explain.sections import Table, document
+from tltlc.tools.explain.sections import SectionTable, document
 from tltlc.tools.explain.text import text
 from tltlc.tools.explain.values import values
 from tltlc.tools.witness import blocks
@@ -152,7 +152,7 @@ def test_counting_states_share_a_row(formula: str, rows: list[str]) -> None:
     explanation = explain(fspa)
     (section,) = (candidate for candidate in document(explanation) if candidate.heading == "States")
     (table,) = section.blocks
-    assert isinstance(table, Table)
+    assert isinstance(table, SectionTable)
     assert [row[0] for row in table.rows] == rows
     assert len(values(explanation)["states"]) == len(fspa.states)
 

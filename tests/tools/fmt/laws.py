@@ -72,7 +72,7 @@ def shape(node: object) -> object:
     return type(node).__name__, {name: shape(value) for name, value in fields.items() if not isinstance(value, Span)}
 
 
-def _covered(op: str, bound: tree.Bound) -> Iterator[object]:
+def _covered(op: str, bound: tree.TemporalInterval) -> Iterator[object]:
     high = bound.high
     steps = high.unit in STEPS
     if bound.low is not None and (bound.low.value or bound.low.unit not in STEPS):

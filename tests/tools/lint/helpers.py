@@ -8,7 +8,7 @@ from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.fixing import Fixed, fix
-from tltlc.tools.lint.rule import Finding, Remark
+from tltlc.tools.lint.rule import LintFinding, Remark
 from tltlc.tools.lint.run import lint, view_of
 
 SIGNALS = "signal a: bool signal b: bool signal c: bool\n"
@@ -18,7 +18,7 @@ APART = PLACES + "exclusive at(x), at(y)\n"
 _HEAD = "spec s {\n    limit 9 steps\n    judge at goal\n    "
 
 
-def findings_in(text: str, **options: object) -> tuple[Finding, ...]:
+def findings_in(text: str, **options: object) -> tuple[LintFinding, ...]:
     """Return the findings of the linter in a text."""
     return lint(SourceFile("example.tltl", text), CompileOptions(**options))  # type: ignore[arg-type]
 

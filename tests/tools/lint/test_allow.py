@@ -12,7 +12,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.allow import silenced
-from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.run import lint, view_of
 
 BEFORE = "signal seen: bool\n"
@@ -157,7 +157,7 @@ def test_the_work_for_comments_is_linear(text: str, what: str) -> None:
         )
         view = view_of(SourceFile("example.tltl", source), CompileOptions())
         spans = [declaration.span for declaration in view.module.declarations]
-        findings = [Finding(Diagnostic("TLT0421", "unused", (Label(view.source, span),))) for span in spans]
+        findings = [LintFinding(Diagnostic("TLT0421", "unused", (Label(view.source, span),))) for span in spans]
         return calls(lambda: silenced(view, findings))
 
     assert work(800) < 2.5 * work(400), what

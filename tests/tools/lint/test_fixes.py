@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Edit
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.pipeline import CompileOptions, Session
-from tltlc.tools.lint.fixes import Offer, of_errors, of_findings
+from tltlc.tools.lint.fixes import OfferedFix, of_errors, of_findings
 from tltlc.tools.lint.run import findings, lint, view_of
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
@@ -21,7 +21,7 @@ def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnosti
     return session.syntax_errors, session.source_diagnostics
 
 
-def offers(text: str) -> list[Offer]:
+def offers(text: str) -> list[OfferedFix]:
     source = SourceFile("x.tltl", text)
     return list(of_errors(errors(source)[1], source, errors))
 

@@ -14,7 +14,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, TltlError
 from tltlc.grammar.parser import parse
 from tltlc.resolve.program import resolve
-from tltlc.tools.lint.fixes import Offer, of_errors
+from tltlc.tools.lint.fixes import OfferedFix, of_errors
 from tltlc.tools.lint.scopes import after
 
 GOLDEN = [case for case in cases("error") if re.match("TLT0[123]", case.name) and "input.tltl" in case.files]
@@ -184,7 +184,7 @@ def all_fixes(source: SourceFile) -> Iterator[tuple[Diagnostic, Fix]]:
             yield diagnostic, fix
 
 
-def offers(source: SourceFile) -> list[Offer]:
+def offers(source: SourceFile) -> list[OfferedFix]:
     return list(of_errors(errors(source), source, lambda text: (parse(text)[1], errors(text))))
 
 

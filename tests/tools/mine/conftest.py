@@ -3,15 +3,15 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from tests.interfaces.cli.conftest import inside, process, tltlc
-from tltlc.tools.mine.evidence import Evidence, Recorded
-from tltlc.tools.mine.vocabulary import Words, of_columns
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
+from tltlc.tools.mine.vocabulary import MiningVocabulary, of_columns
 
 __all__ = ["inside", "process", "tltlc"]
 
 ATOMS = ("a", "b", "c")
 
 
-def words(atoms: tuple[str, ...] = ATOMS) -> Words:
+def words(atoms: tuple[str, ...] = ATOMS) -> MiningVocabulary:
     return of_columns(dict.fromkeys(atoms, True))
 
 
@@ -23,5 +23,8 @@ def evidences(draw: st.DrawFn, atoms: tuple[str, ...] = ATOMS, longest: int = 20
     good = draw(st.lists(traces, min_size=1, max_size=4))
     bad = draw(st.lists(traces, min_size=0, max_size=4))
     return Evidence(
-        *(tuple(Recorded(f"t{i}", letters_of_trace) for i, letters_of_trace in enumerate(part)) for part in (good, bad))
+        *(
+            tuple(LabelledTrace(f"t{i}", letters_of_trace) for i, letters_of_trace in enumerate(part))
+            for part in (good, bad)
+        )
     )

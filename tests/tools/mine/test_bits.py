@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from tests.tools.mine.conftest import evidences
 from tltlc.tools.mine.bits import Bits, count
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 
 def places(bits: Bits, samples: int, evidence: Evidence) -> list[set[int]]:
@@ -59,7 +59,7 @@ def test_operations_match_a_naive_implementation(evidence: Evidence, steps: int)
 def test_backwards_reverses_every_trace(evidence: Evidence) -> None:
     turned = Evidence(
         *(
-            tuple(Recorded(trace.name, trace.letters[::-1]) for trace in part)
+            tuple(LabelledTrace(trace.name, trace.letters[::-1]) for trace in part)
             for part in (evidence.traces, evidence.counterexamples)
         )
     )

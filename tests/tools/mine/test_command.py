@@ -15,7 +15,7 @@ from tests.interfaces.cli.test_loading import HEAVY, loaded
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import CompileOptions, compile_file
 from tltlc.tools.fmt import format_text
-from tltlc.tools.mine.evidence import Recorded
+from tltlc.tools.mine.evidence import LabelledTrace
 
 SPEC = Planted(
     "heist",
@@ -53,7 +53,7 @@ def recorded(inside: Path) -> Path:
     return inside
 
 
-def _csv(trace: Recorded) -> str:
+def _csv(trace: LabelledTrace) -> str:
     rows = [",".join(["time", *SPEC.likely])]
     for number, letter in enumerate(trace.letters):
         rows.append(",".join([f"{number / 10}", *(str(name in letter).lower() for name in SPEC.likely)]))
@@ -305,17 +305,17 @@ def test_an_interrupt_prints_the_best_proposals_so_far(
     recorded: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from tltlc.tools.mine.search import Search
+    from tltlc.tools.mine.search import SpecSearch
 
-    original_run = Search.run
+    original_run = SpecSearch.run
 
-    def interrupted(self: Search) -> Iterator[str]:
+    def interrupted(self: SpecSearch) -> Iterator[str]:
         for stage in original_run(self):
             yield stage
             if stage == "conjunctions" and len(self.ranked()[0]) > 1:
                 raise KeyboardInterrupt
 
-    monkeypatch.setattr(Search, "run", interrupted)
+    monkeypatch.setattr(SpecSearch, "run", interrupted)
     outcome = tltlc("mine", "good", "--against", "bad", "--json")
     assert outcome.status == 130
     assert "interrupted" in outcome.err

@@ -18,13 +18,13 @@ from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine import candidates
 from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.candidates import Candidates
-from tltlc.tools.mine.clause import Clause, Conjunction
+from tltlc.tools.mine.clause import Conjunction, MinedClause
 from tltlc.tools.mine.conjunctions import best
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.evidence_reader import gathered
 from tltlc.tools.mine.reading import TraceFile
-from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.sequences import sequences
 from tltlc.tools.mine.templates import clauses
 
@@ -51,14 +51,14 @@ def csv(trace: tuple[frozenset[str], ...], columns: int) -> str:
 
 
 def random_evidence(columns: int) -> Evidence:
-    good, bad = (Recorded(f"t{seed}", noisy(columns, 10, seed)) for seed in (1, 2))
+    good, bad = (LabelledTrace(f"t{seed}", noisy(columns, 10, seed)) for seed in (1, 2))
     return Evidence((good,), (bad,))
 
 
 def test_the_work_does_not_grow_with_the_columns() -> None:
     work = []
     for columns in (1_000, 2_000):
-        search = Search(random_evidence(columns), Options())
+        search = SpecSearch(random_evidence(columns), MiningOptions())
         list(search.run())
         work.append(search.tried - 2 * columns)
         assert search.ranked()
@@ -70,7 +70,7 @@ def test_the_work_does_not_grow_with_the_columns() -> None:
 def test_the_search_can_be_stopped_every_few_candidates() -> None:
     """This keeps ``--time`` precise: the search tries few candidates between two points at which it
     can stop."""
-    search = Search(random_evidence(1_000), Options())
+    search = SpecSearch(random_evidence(1_000), MiningOptions())
     previous = largest = 0
     for _ in search.run():
         largest = max(largest, search.tried - previous)
@@ -80,11 +80,11 @@ def test_the_search_can_be_stopped_every_few_candidates() -> None:
 
 def test_the_events_that_separate_best_are_combined() -> None:
     planted = ("key", "door")
-    good = [Recorded(f"g{seed}", noisy(300, 10, seed, planted)) for seed in range(20)]
-    bad = [Recorded(f"b{seed}", noisy(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
+    good = [LabelledTrace(f"g{seed}", noisy(300, 10, seed, planted)) for seed in range(20)]
+    bad = [LabelledTrace(f"b{seed}", noisy(300, 10, 100 + seed, planted[::-1])) for seed in range(20)]
     given = Evidence(tuple(good), tuple(bad))
     assert set(planted) <= set(best_events(given, given.atoms()))
-    search = Search(given, Options())
+    search = SpecSearch(given, MiningOptions())
     list(search.run())
     assert [clause.text for clause in search.ranked()[0]] == ["require (not door) weak_until key"]
 
@@ -101,7 +101,7 @@ def test_sequences_stop_at_the_work_limit() -> None:
     assert 0 < limited_count < full_count
 
 
-def every_clause(bits: Bits) -> list[Clause]:
+def every_clause(bits: Bits) -> list[MinedClause]:
     backwards = Bits(random_evidence(30), backwards=True)
     return [clause for portion in clauses(bits, backwards, tuple(bits.holds), 1) for clause in portion]
 
@@ -120,12 +120,12 @@ def test_pruned_candidates_would_not_have_been_chosen() -> None:
 
 def test_the_best_candidates_are_kept_if_there_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(candidates, "_MOST", 2)
-    traces = [Recorded(f"t{number}", letters("a", "b")) for number in range(4)]
-    bits = Bits(Evidence(tuple(traces), (Recorded("bad", letters("c")),)))
+    traces = [LabelledTrace(f"t{number}", letters("a", "b")) for number in range(4)]
+    bits = Bits(Evidence(tuple(traces), (LabelledTrace("bad", letters("c")),)))
     kept = Candidates(bits)
     for number in range(5):
         accepts = sum(0x80 << 8 * place for place in range(number))
-        kept.add((Clause("reach", 0, f"reach {number}", 1, accepts, accepts),), accepts)
+        kept.add((MinedClause("reach", 0, f"reach {number}", 1, accepts, accepts),), accepts)
     assert kept.is_cut
     assert {conjunction[0].text for conjunction, _ in kept.items()} == {"reach 3", "reach 4"}
 

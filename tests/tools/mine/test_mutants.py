@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 
 from tests.tools.mine.conftest import evidences
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
 
 
@@ -22,7 +22,7 @@ def test_mutants_are_deterministic_and_differ_from_all_traces(given_: Evidence) 
 
 def test_every_kind_of_mutant_is_made() -> None:
     a, b, kept = frozenset({"a", "k"}), frozenset({"b", "k"}), frozenset({"k"})
-    made = with_mutants([Recorded("run", (kept, a, kept, b, kept))])
+    made = with_mutants([LabelledTrace("run", (kept, a, kept, b, kept))])
     mutants = {trace.name: trace.letters for trace in made.counterexamples}
     assert mutants["run, cut short"] == (kept, a, kept)
     assert mutants["run, without a"] == (kept, kept, kept, b, kept)

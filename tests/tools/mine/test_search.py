@@ -15,15 +15,15 @@ from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.clause import Conjunction, accepted_by, atoms_of
 from tltlc.tools.mine.confirm import Proposal, confirmed, judge
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.measure import figures
-from tltlc.tools.mine.search import Options, Search
+from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.sequences import sequences
 from tltlc.tools.mine.templates import KINDS, clauses
 
 
-def proposals(given_: Evidence, options: Options | None = None, top: int = 5) -> tuple[Proposal, ...]:
-    search = Search(given_, options or Options())
+def proposals(given_: Evidence, options: MiningOptions | None = None, top: int = 5) -> tuple[Proposal, ...]:
+    search = SpecSearch(given_, options or MiningOptions())
     list(search.run())
     atoms = given_.atoms() or ("a",)
     return confirmed(search.ranked(), given_, words(atoms), CompileOptions(), top)
@@ -61,7 +61,7 @@ def test_every_template_is_tried() -> None:
 @settings(max_examples=12, deadline=None)
 @given(evidences(longest=8))
 def test_figures_agree_with_automata_and_masks(given_: Evidence) -> None:
-    search = Search(given_, Options(min_support=0.5))
+    search = SpecSearch(given_, MiningOptions(min_support=0.5))
     list(search.run())
     for proposal in confirmed(search.ranked(), given_, words(), CompileOptions(), 5):
         accepts = accepted_by(proposal.clauses, search.bits)
@@ -98,7 +98,7 @@ def _with_all_orders(spec: Planted, steps: list[str], given_: Evidence) -> Evide
     # All other atoms hold between the steps, so they do not help to separate the traces.
     filler = [frozenset(ATOMS) - set(steps)] * 9
     missed = tuple(
-        Recorded(
+        LabelledTrace(
             f"missed {number}", tuple(part for letter in letters_of_trace for part in (*filler, letter)) + tuple(filler)
         )
         for number, letters_of_trace in enumerate(letters)
@@ -115,7 +115,7 @@ def test_the_plans_of_the_paper_are_recovered(spec: Planted) -> None:
 def test_wrong_labels_are_tolerated_on_request() -> None:
     spec = planted(0)
     given_ = evidence(spec, 40, 80, seed=1, noise=0.05)
-    proposed = proposals(given_, Options(min_support=0.9))
+    proposed = proposals(given_, MiningOptions(min_support=0.9))
     assert are_equivalent(proposed[0].fspa, spec.automaton())
     assert all(proposal.figures.support == 1.0 for proposal in proposals(given_))
 
@@ -134,7 +134,7 @@ def _texts(conjunctions: list[Conjunction]) -> list[list[str]]:
 
 def test_the_best_proposal_so_far_is_available_at_any_time() -> None:
     given_ = evidence(planted(1), 20, 30, seed=5)
-    search = Search(given_, Options())
+    search = SpecSearch(given_, MiningOptions())
     best = -2.0
     assert search.ranked() == []
     for _ in search.run():
@@ -148,7 +148,7 @@ def test_the_best_proposal_so_far_is_available_at_any_time() -> None:
 
 def test_no_proposal_is_longer_than_allowed() -> None:
     given_ = evidence(planted(1), 20, 30, seed=5)
-    search = Search(given_, Options(max_length=3))
+    search = SpecSearch(given_, MiningOptions(max_length=3))
     list(search.run())
     assert search.ranked()
     assert max(map(atoms_of, search.ranked())) <= 3

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import tltlc
 from tltlc.monitor import Monitor
-from tltlc.tools.witness.samples import Obstacle, Realiser, Unrealised, csv_text, samples
+from tltlc.tools.witness.samples import Realiser, Unrealised, UnsatisfiedLiterals, csv_text, samples
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_values_between_thresholds_are_found(thresholds: list[int], data: st.Dat
         monitor.step(sample)
         assert [value > 0 for value in monitor.values] == [holds for _, holds in literals]
     else:
-        assert isinstance(sample, Obstacle)
+        assert isinstance(sample, UnsatisfiedLiterals)
         (low, holds), (high, other) = sorted(sample.literals, key=lambda literal: thresholds[literal[0]])
         assert not holds and other and thresholds[low] < thresholds[high]
 
@@ -63,7 +63,7 @@ def test_exclusive_atoms_do_not_hold_together() -> None:
     text = "signal a: bool  signal b: bool  exclusive a, b  spec s = F a & F b"
     (fspa,) = tltlc.compile_text(text)
     realiser = Realiser(fspa)
-    assert isinstance(realiser.letter(frozenset({"a", "b"})), Obstacle)
+    assert isinstance(realiser.letter(frozenset({"a", "b"})), UnsatisfiedLiterals)
     assert realiser.letter(frozenset({"a"})) == {"a": 1.0, "b": 0.0}
 
 

@@ -26,9 +26,9 @@ from tltlc.pipeline import compile_source
 from tltlc.tools.witness import blocks
 from tltlc.tools.witness import text as written
 from tltlc.tools.witness.cover import Cover, cover
-from tltlc.tools.witness.nearest import Nearest
+from tltlc.tools.witness.nearest import NearestEdges
 from tltlc.tools.witness.traces import Witness, accepting, rejecting
-from tltlc.tools.witness.transitions import Move, Moves
+from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
@@ -199,11 +199,11 @@ def test_a_cover_equals_a_search_from_each_state(formula: Formula, exclusive: st
     assert [trace.moves for trace in cover(moves).traces] == searched_cover(moves)
 
 
-def searched_cover(moves: Moves) -> list[tuple[Move, ...]]:
+def searched_cover(moves: Moves) -> list[tuple[SampledEdge, ...]]:
     """Compute the traces of a cover with one breadth-first search per path: slow and simple."""
     untaken, traces = set(range(len(moves.fspa.edges))), []
     while True:
-        trace: list[Move] = []
+        trace: list[SampledEdge] = []
         while path := moves.way(moves.fspa.edges[trace[-1].edge].target if trace else 0, untaken.__contains__):
             trace += path
             untaken.difference_update(move.edge for move in path)
@@ -226,7 +226,7 @@ ANY_ORDER = "F a & F b & F c & F d & F e & F f & F g"
 def test_a_cover_visits_few_edges_per_step(spec: str) -> None:
     signals = "".join(f"signal {name}: bool  " for name in "abcdefgh")
     (fspa,) = tltlc.compile_text(f"{signals} spec s = {spec}")
-    nearest, state, steps = Nearest(edges_leaving(fspa)), 0, 0
+    nearest, state, steps = NearestEdges(edges_leaving(fspa)), 0, 0
     while path := nearest.take(state) or (nearest.take(0) if state else ()):
         steps += len(path)
         state = fspa.edges[path[-1]].target

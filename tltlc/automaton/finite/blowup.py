@@ -16,7 +16,7 @@ from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 
 ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
 _RECURSION_ROOM = 10_000
@@ -47,7 +47,7 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else why(reason)
     left = WORK["states of blamed parts"]
 
-    def size(part: Part, spec: Spec) -> Size | None:
+    def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal left
         if left < 0:
             # The parts measured so far are more than a message names.
@@ -67,15 +67,15 @@ def why(reason: Exception) -> str:
 
 
 def blamed(
-    spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, Spec], Size | None], advice: str = ADVICE
+    spec: Spec, reason: Exception, too_large: str, size: Callable[[Conjunct, Spec], Size | None], advice: str = ADVICE
 ) -> TltlError:
     """Return the error, labelled with the parts of the spec whose own automata are largest.
 
     ``too_large`` says why the automaton failed if its guards are not the reason.  ``size`` returns
     None for a part that is too large alone.
     """
-    sizes: dict[Part, Size | None] = {}
-    alone: list[Part] = []
+    sizes: dict[Conjunct, Size | None] = {}
+    alone: list[Conjunct] = []
     for part in spec.parts:
         sizes[part] = size(part, spec)
         if sizes[part] is None:
@@ -111,7 +111,7 @@ def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
     return order if spec.exclusive else f"declare atoms that never hold together `exclusive`, {order}"
 
 
-def _cause(part: Part) -> Label:
+def _cause(part: Conjunct) -> Label:
     """Label the part's longest bound, or the part if it has none.
 
     An automaton may have to remember a bound of n samples n times over.
@@ -122,7 +122,7 @@ def _cause(part: Part) -> Label:
     return Label(bound.source, bound.span, "it is this bound")
 
 
-def _size(part: Part, spec: Spec) -> Size | None:
+def _size(part: Conjunct, spec: Spec) -> Size | None:
     """Return how many states one part's automaton has; None for :data:`_PART_BUDGET` or more."""
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], TransitionDiagrams(steps=100_000))

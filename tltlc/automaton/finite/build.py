@@ -21,7 +21,7 @@ from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.judge import default_judge, judge_of
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.core.source import SourceFile, Span
-from tltlc.expression.tree import Signal as SignalValue
+from tltlc.expression.tree import SignalValue as SignalValue
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form

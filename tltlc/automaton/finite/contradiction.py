@@ -10,7 +10,7 @@ from tltlc.automaton.finite.build import minimal_machine
 from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 from tltlc.logic.formula import and_
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 
 _MOST_PARTS = 40
 _STATES = 1_000
@@ -18,11 +18,11 @@ _STEPS = 50_000
 """Limits of the search, above which it gives up: a warning must not take longer than the compilation."""
 
 
-Decision = Callable[[Sequence[Part], Spec], bool]
+Decision = Callable[[Sequence[Conjunct], Spec], bool]
 """Whether it can be proved that no trace satisfies all of the parts."""
 
 
-def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Part, ...]:
+def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunct, ...]:
     """Return parts of an unsatisfiable spec that contradict each other and are all needed for that.
 
     ``decision`` decides whether parts contradict each other, by default over finite traces.  If
@@ -37,7 +37,7 @@ def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Part, .
     return tuple(needed)
 
 
-def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
+def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
     """Whether it can be proved, within the limits, that no finite trace satisfies all of the parts."""
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.finite.machine import Machine, stands_for
-from tltlc.automaton.finite.readback import Writer
+from tltlc.automaton.finite.readback import ObligationWriter
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.transitions import ACCEPT, FALSE, TRUE
 from tltlc.logic import formula as build
@@ -68,7 +68,7 @@ class Labels:
         self._machine = machine
         self._allowed = allowed
         self._work = work
-        self._writer = Writer(successors, source)
+        self._writer = ObligationWriter(successors, source)
         self._sizes: dict[Formula, int] = {}
         self._simplified: dict[Formula, Formula] = {}
         self._known = dict(machine.representative)

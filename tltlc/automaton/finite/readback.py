@@ -21,7 +21,7 @@ _Placed = tuple[int, Formula]
 """The position of a formula's first part in the source, and the formula."""
 
 
-class Writer:
+class ObligationWriter:
     """Writes the obligations of one table as formulas, with operands in the order of ``source``."""
 
     __slots__ = ("_long_bounds", "_position", "_successors", "_sums", "_without_shorter", "_written")

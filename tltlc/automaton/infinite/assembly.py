@@ -16,7 +16,7 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula
 
 
-class Analysis(Protocol):
+class TargetsAndGoals(Protocol):
     """The part of :class:`~tltlc.automaton.infinite.analysis.Analysis` that the conversion needs."""
 
     targets: dict[int, list[int]]
@@ -38,7 +38,7 @@ class Parts:
 
 def assembled(
     automaton: Rabin,
-    analysis: Analysis,
+    analysis: TargetsAndGoals,
     atoms: Sequence[str],
     exclusive: Sequence[Sequence[int]],
     label: Callable[[int], Formula | Text],

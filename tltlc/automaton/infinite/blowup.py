@@ -10,7 +10,7 @@ from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.work import OutOfWork
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 
 _FOR_A_PART: Final = 500_000
 """Steps of work for the automaton of one part alone: enough to rank the parts, few enough for a quick answer."""
@@ -25,7 +25,7 @@ def blow_up(spec: Spec, reason: Exception) -> TltlError:
         too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
     left = _FOR_ALL_PARTS
 
-    def size(part: Part, spec: Spec) -> Size | None:
+    def size(part: Conjunct, spec: Spec) -> Size | None:
         nonlocal left
         if left < _FOR_A_PART:
             # The parts measured so far are more than a message names.

@@ -11,7 +11,7 @@ from tltlc.automaton.infinite.analysis import analysis_of_rabin
 from tltlc.automaton.infinite.assembly import assembled
 from tltlc.automaton.infinite.blowup import blow_up
 from tltlc.automaton.infinite.construct import rabin
-from tltlc.automaton.infinite.readback import Writer
+from tltlc.automaton.infinite.readback import NormalFormWriter
 from tltlc.automaton.work import STEPS_PER_STATE, OutOfWork, Work
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
@@ -36,7 +36,7 @@ def _build(spec: Spec, work: int) -> Fspa:
     names = [atom.name for atom in spec.atoms]
     automaton = rabin(spec.formula, names, spec.exclusive, work)
     analysis = analysis_of_rabin(automaton, Work(work))
-    writer = Writer(spec.formula)
+    writer = NormalFormWriter(spec.formula)
 
     def label(state: int) -> Formula:
         return writer.formula(automaton.labels[state]) if state else spec.formula

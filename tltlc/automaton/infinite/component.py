@@ -12,8 +12,8 @@ from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.after_automaton import After
 from tltlc.automaton.infinite.delta2 import is_pi_2
 from tltlc.automaton.infinite.graphs import smallest_bottom
-from tltlc.automaton.infinite.leaf_automata import Breakpoint, Memory, Part, Recurrence, RoundRobin
-from tltlc.automaton.infinite.mark_conditions import Clause, Marks, Skeleton, clauses
+from tltlc.automaton.infinite.leaf_automata import Breakpoint, LeafAutomaton, Memory, Recurrence, RoundRobin
+from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, Skeleton, clauses
 from tltlc.core.record import record
 from tltlc.logic.formula import Formula
 
@@ -38,17 +38,17 @@ class Local:
 
     labels: dict[State, int]
     steps: dict[State, int]
-    accepts: tuple[Clause, ...]
+    accepts: tuple[MarkClause, ...]
 
 
-def parts_of(after: After, normal: Formula, *, keep: bool, in_turn: bool) -> tuple[Skeleton, list[Part]]:
+def parts_of(after: After, normal: Formula, *, keep: bool, in_turn: bool) -> tuple[Skeleton, list[LeafAutomaton]]:
     """Return the Boolean skeleton of a normalised formula, and its parts.
 
     If ``in_turn``, parts that can be followed one at a time become one part.  For ``keep`` see
     :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
     index_of: dict[Formula | tuple[Formula, ...], int] = {}
-    parts: list[Part] = []
+    parts: list[LeafAutomaton] = []
 
     def read(formula: Formula) -> Skeleton:
         if formula.op in ("and", "or"):
@@ -91,7 +91,7 @@ def local(
     inside: Collection[int],
     first: int,
     skeleton: Skeleton,
-    parts: Sequence[Part],
+    parts: Sequence[LeafAutomaton],
 ) -> Local:
     """Return the smallest bottom component of the product of the labels ``inside`` with the parts' memories.
 
@@ -104,7 +104,7 @@ def local(
     values = [part.settled(memory) for part, memory in zip(parts, best[0][1:], strict=True)]
     accepts = clauses(skeleton, kinds, values, letters.work)
     if isinstance(accepts, bool):
-        accepts = [Clause(frozenset(), frozenset())] if accepts else []
+        accepts = [MarkClause(frozenset(), frozenset())] if accepts else []
     members = set(best)
     chosen = {state: step for state, step in steps.items() if state in members}
     return Local({state: state[0] for state in chosen}, chosen, tuple(accepts))
@@ -161,7 +161,11 @@ def merged(letters: Diagrams[Any], one: Local) -> Local:
 
 
 def _step(
-    letters: Diagrams[Any], step_of: Callable[[int], int], inside: Collection[int], state: State, parts: Sequence[Part]
+    letters: Diagrams[Any],
+    step_of: Callable[[int], int],
+    inside: Collection[int],
+    state: State,
+    parts: Sequence[LeafAutomaton],
 ) -> int:
     """Return the :data:`Leaf` after a state of the product, as a function of the letter."""
 

@@ -12,13 +12,13 @@ from tltlc.automaton.infinite.analysis import analysis_of_rabin
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.logic.formula import and_
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 
 _WORK: Final = 100_000
 """Steps above which the search gives up: a warning must not take longer than the compilation."""
 
 
-def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
+def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
     """Whether it can be proved, within the steps, that no infinite trace satisfies all of the parts."""
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]

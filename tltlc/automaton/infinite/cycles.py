@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.mark_conditions import Clause, Marks
+from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks
 from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
@@ -37,7 +37,7 @@ class Node:
     below: tuple[Node, ...]
 
 
-def decomposition(edges: Iterable[Edge], clauses: Sequence[Clause], work: Work) -> Node:
+def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Work) -> Node:
     """Return the tree of a strongly connected set of edges, with children in the order of their edges.
 
     In this module, work counts the edges that are visited; its functions raise
@@ -71,7 +71,7 @@ def _maximal(sets: Sequence[Edges], work: Work) -> list[Edges]:
     return maximal
 
 
-def _accepts(edges: Edges, clauses: Sequence[Clause], work: Work) -> bool:
+def _accepts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> bool:
     work.spend((len(edges) + len(clauses)) // LOOKS_PER_STEP)
     marks = marks_of(edges)
     return any(clause.accepts(marks) for clause in clauses)
@@ -82,7 +82,7 @@ def marks_of(edges: Iterable[Edge]) -> Marks:
     return frozenset().union(*(edge[2] for edge in edges))
 
 
-def accepting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list[Edges]:
+def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
     """Return, for each clause, the maximal strongly connected subsets that it accepts."""
     work.spend(len(edges) * len(clauses) // LOOKS_PER_STEP)
     return [
@@ -93,7 +93,7 @@ def accepting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list
     ]
 
 
-def rejecting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list[Edges]:
+def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
     """Return rejected strongly connected subsets, among them all maximal ones."""
     rejected: dict[Edges, None] = {}
     seen: set[Edges] = set()

@@ -19,7 +19,7 @@ Memory = tuple[Any, ...]
 """Obligations and numbers.  No truth values: a table of leaves could not tell them from the numbers 1 and 0."""
 
 
-class Part(Protocol):
+class LeafAutomaton(Protocol):
     """A deterministic automaton whose states are memories.
 
     A run is accepted if its marks come infinitely often (``kind`` is ``inf``) or finitely often

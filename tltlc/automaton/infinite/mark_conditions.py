@@ -21,7 +21,7 @@ Skeleton = tuple[Any, ...]
 
 
 @record
-class Clause:
+class MarkClause:
     """A condition that a run meets if it takes all marks of ``infs``, and none of ``fins``, infinitely often."""
 
     fins: Marks
@@ -37,14 +37,14 @@ def pair_marks(marks: Iterable[Mark], first: int = 0) -> Marks:
     return frozenset(first + 2 * pair + (kind == "inf") for pair, kind in marks)
 
 
-def pair_clauses(pairs: int, first: int = 0) -> list[Clause]:
+def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
     """Return ``pairs`` Rabin pairs as clauses over the numbers of :func:`pair_marks`."""
-    return [Clause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
+    return [MarkClause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
 
 
 def clauses(
     skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work
-) -> list[Clause] | bool:
+) -> list[MarkClause] | bool:
     """Return the disjunctive normal form of a skeleton over parts of these kinds; True or False if it is constant.
 
     ``values`` has True or False for parts that are settled, None for the others.  Raises OutOfWork
@@ -58,25 +58,25 @@ def clauses(
     return result
 
 
-def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work) -> list[Clause]:
+def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work) -> list[MarkClause]:
     if skeleton[0] == "leaf":
         index = skeleton[1]
         if values[index] is not None:
-            return [Clause(frozenset(), frozenset())] if values[index] else []
+            return [MarkClause(frozenset(), frozenset())] if values[index] else []
         one = frozenset((index,))
-        return [Clause(one, frozenset()) if kinds[index] == "fin" else Clause(frozenset(), one)]
+        return [MarkClause(one, frozenset()) if kinds[index] == "fin" else MarkClause(frozenset(), one)]
     below = [_clauses(operand, kinds, values, work) for operand in skeleton[1:]]
     work.spend(len(below))
     if skeleton[0] == "or":
         return _minimal([clause for group in below for clause in group], work)
-    result = [Clause(frozenset(), frozenset())]
+    result = [MarkClause(frozenset(), frozenset())]
     for group in below:
         work.spend(len(result) * len(group) // 4)
-        result = _minimal([Clause(x.fins | y.fins, x.infs | y.infs) for x, y in product(result, group)], work)
+        result = _minimal([MarkClause(x.fins | y.fins, x.infs | y.infs) for x, y in product(result, group)], work)
     return result
 
 
-def _minimal(disjuncts: list[Clause], work: Work) -> list[Clause]:
+def _minimal(disjuncts: list[MarkClause], work: Work) -> list[MarkClause]:
     """Return the clauses that no other clause covers."""
     distinct = list(dict.fromkeys(disjuncts))
     work.spend(len(distinct) ** 2 // 16)

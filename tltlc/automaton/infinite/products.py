@@ -8,7 +8,7 @@ from typing import Any
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of, parts
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.mark_conditions import Clause, Marks, pair_clauses, pair_marks
+from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, pair_clauses, pair_marks
 from tltlc.automaton.work import Work
 
 Both = tuple[Any, Any]
@@ -17,11 +17,11 @@ Both = tuple[Any, Any]
 Leaf = tuple[Both, Marks]
 """The states after a letter, and both automata's marks; the second's are numbered after the first's."""
 
-Ways = Sequence[tuple[Sequence[Clause], Sequence[Clause]]]
+Ways = Sequence[tuple[Sequence[MarkClause], Sequence[MarkClause]]]
 """Alternatives: the clauses of which one must accept a cycle, and the clauses of which none may."""
 
 
-def conditions(pairs: int, others: int) -> tuple[list[Clause], list[Clause]]:
+def conditions(pairs: int, others: int) -> tuple[list[MarkClause], list[MarkClause]]:
     """Return the clauses of two automata, the first with ``pairs`` pairs and the second with ``others``."""
     return pair_clauses(pairs), pair_clauses(others, first=2 * pairs)
 
@@ -73,7 +73,9 @@ def telling_apart(
     return None
 
 
-def _only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[Clause], work: Work) -> Edges | None:
+def _only_here(
+    edges: Sequence[Edge], these: Sequence[MarkClause], those: Sequence[MarkClause], work: Work
+) -> Edges | None:
     """Return a strongly connected subset that ``these`` clauses accept and ``those`` reject; None if there is none."""
     for clause in these:
         # Removing edges is cheap; `parts` counts its own work.

@@ -15,10 +15,10 @@ _MOST_PARTS: Final = 300
 
 def without_constants(formula: Formula) -> Formula:
     """Return a formula that is equal on every infinite trace, and is a constant or contains none."""
-    return Writer(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
+    return NormalFormWriter(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 
 
-class Writer:
+class NormalFormWriter:
     """Writes formulas in the construction's normal form as ``source`` does: ``a -> F b`` for ``!a | F b``."""
 
     def __init__(self, source: Formula) -> None:

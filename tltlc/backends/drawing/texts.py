@@ -29,7 +29,7 @@ _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/"
 _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
-class Guards:
+class GuardNotation:
     """Translates the texts of guards into a notation; the names of the automaton's atoms stay unchanged."""
 
     def __init__(self, fspa: Fspa, notation: Notation) -> None:
@@ -53,7 +53,7 @@ def arrows(fspa: Fspa, edges: Iterable[Edge], notation: Notation) -> Mapping[tup
 
     Over infinite traces, several edges that differ in their pairs share one arrow.
     """
-    guards = Guards(fspa, notation)
+    guards = GuardNotation(fspa, notation)
     guards_of_arrow: dict[tuple[int, int], list[str]] = {}
     for edge in edges:
         guards_of_arrow.setdefault((edge.source, edge.target), []).append(guards.text(edge.guard.text))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Final
 
-from tltlc.program.names import Names
+from tltlc.program.names import VariableNames
 
 _WORDS: Final = """
     if elif else for do while match switch case default break continue pass return class class_name extends is in as
@@ -56,7 +56,7 @@ RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 def snake_case(names: Iterable[str]) -> dict[str, str]:
     """Return unique new names for those that are not in lower case; the engine's classes use capitals."""
     all_names = list(names)
-    unique_names = Names({*RESERVED, *all_names})
+    unique_names = VariableNames({*RESERVED, *all_names})
     return {name: unique_names.give(_lower(name)) for name in all_names if name != name.lower()}
 
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
 from tltlc.program.printer import Printer
-from tltlc.program.tree import Assign, Call, Declare, Expression, Negate, Real, Type, Variable
+from tltlc.program.tree import Assign, Declare, Expression, Negate, NumericCall, Real, Type, Variable
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
@@ -72,7 +72,7 @@ class Gd(Printer):
         cost more than the rest.
         """
         match node:
-            case Call("min" | "max" as function, (first, second)) if function not in self._functions:
+            case NumericCall("min" | "max" as function, (first, second)) if function not in self._functions:
                 if _is_simple(first) and _is_simple(second):
                     first_text, second_text = self.text(first), self.text(second)
                     return f"{second_text} if {second_text} {_BETTER[function]} {first_text} else {first_text}", _CHOICE

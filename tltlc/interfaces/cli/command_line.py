@@ -18,7 +18,7 @@ import click
 from tltlc.interfaces.cli import exits, plugins
 from tltlc.interfaces.cli.numbers import FiniteRange, WholeRange
 from tltlc.io import resources
-from tltlc.io.limits import COMMAND, Process
+from tltlc.io.limits import COMMAND, ProcessLimit
 from tltlc.io.resources import OutOfTimeError
 
 BUILT_IN: Final = {
@@ -238,7 +238,7 @@ Start here:
 def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:
     """Compile plans for a game, written in temporal logic, to automata that judge and reward a player."""
     if ctx.obj:
-        resources.permit(Process(memory=int(max_memory * 2**30), work_s=max_cpu))
+        resources.permit(ProcessLimit(memory=int(max_memory * 2**30), work_s=max_cpu))
     if ctx.invoked_subcommand in BOUNDED:
         ctx.with_resource(resources.bounded())
 

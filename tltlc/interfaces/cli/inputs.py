@@ -12,7 +12,7 @@ import click
 
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
-from tltlc.interfaces.cli.settings import Settings, check_libraries, compile_settings
+from tltlc.interfaces.cli.settings import CompileSettings, check_libraries, compile_settings
 from tltlc.io.project import Project, project_for
 from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, read, split
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.core.source import SourceFile
     from tltlc.pipeline import Session
-    from tltlc.resolve.spec import Program
+    from tltlc.resolve.spec import ResolvedFile
 
 
 @record
@@ -34,7 +34,7 @@ class Input:
     diagnostics: tuple[Diagnostic, ...]
 
     @property
-    def program(self) -> Program | None:
+    def program(self) -> ResolvedFile | None:
         """The specs and tests of a source; None for an artefact."""
         return self.session.program if self.session else None
 
@@ -53,7 +53,7 @@ class Input:
         raise TltlError([Diagnostic("TLT0721", title, help=help_)])
 
 
-def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> Input:
+def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = ()) -> Input:
     """Read and compile an argument.
 
     ``specs`` selects by name, in addition to a name in the argument. Raises TltlError with all
@@ -109,7 +109,7 @@ def _hoa_diagnostic(source: SourceFile) -> Diagnostic:
     return Diagnostic("TLT0652", title, help=help_)
 
 
-def _artefact(source: SourceFile, settings: Settings, wanted: tuple[str, ...], project: Project) -> Input:
+def _artefact(source: SourceFile, settings: CompileSettings, wanted: tuple[str, ...], project: Project) -> Input:
     from tltlc.pipeline import read_artefact, unknown_spec, with_params
 
     fspa = read_artefact(source)

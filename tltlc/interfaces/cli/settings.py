@@ -22,7 +22,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @record
-class Settings:
+class CompileSettings:
     """Where and how to compile, from the command line.
 
     ``libraries`` come before those of the project file.
@@ -47,7 +47,7 @@ def compile_options(command: Function) -> Function:
         *args: Any, library: tuple[Path, ...], param: tuple[str, ...], state_budget: int | None, **rest: Any
     ) -> Any:
         params = assignments(param, "NAME=VALUE", "--param")
-        return command(*args, settings=Settings(library, params, state_budget), **rest)
+        return command(*args, settings=CompileSettings(library, params, state_budget), **rest)
 
     for option in reversed(
         (
@@ -86,7 +86,7 @@ format_option = click.option(
 )
 
 
-def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
+def compile_settings(settings: CompileSettings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
     """Return the options to compile a file of a project; ``specs`` selects by name."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.pipeline import CompileOptions
@@ -99,7 +99,7 @@ def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...
     )
 
 
-def work_of(settings: Settings) -> int:
+def work_of(settings: CompileSettings) -> int:
     """Return the steps that a search may take, as many as for an automaton over infinite traces."""
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE

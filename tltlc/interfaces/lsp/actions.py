@@ -12,13 +12,13 @@ from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.diagnostics import remark
 from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.tools.lint.fixes import of_errors, of_findings
-from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.rule import LintFinding
 
 
 def actions(
     document: Document,
     span: Span,
-    findings: tuple[Finding, ...],
+    findings: tuple[LintFinding, ...],
     encoding: str,
     uri_of: Callable[[str], str],
     edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],

@@ -19,7 +19,7 @@ from tltlc.io.files import Stamp, noted, stamp, unsaved
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.program import Resolution
 from tltlc.resolve.scope import Scope
-from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.run import levelled
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Document:
             return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not missing.may_mend(diagnostic)))
         resolved = self.resolution
         remaining = unsilenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
-        kept = levelled(map(Finding, remaining), self.project.lint)
+        kept = levelled(map(LintFinding, remaining), self.project.lint)
         return tuple(finding.diagnostic for finding in kept)
 
     @property

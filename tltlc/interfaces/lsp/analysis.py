@@ -16,7 +16,7 @@ from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.importers import used_elsewhere, words
 from tltlc.tools.lint.neighbours import neighbours
-from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.rules import rules
 from tltlc.tools.lint.run import findings, levelled, view_of
 
@@ -38,7 +38,7 @@ class Request:
 
 
 @record
-class Figures:
+class SpecFigures:
     """The automaton and tests of a spec in numbers.
 
     ``distance`` is the distance of the first state; None if no trace satisfies the spec.
@@ -52,12 +52,12 @@ class Figures:
 
 
 @record
-class Analysis:
+class DocumentAnalysis:
     """The findings of compiler and linter, the failures of tests, and numbers for each spec."""
 
-    findings: tuple[Finding, ...]
+    findings: tuple[LintFinding, ...]
     failures: tuple[Diagnostic, ...] = ()
-    figures: tuple[Figures, ...] = ()
+    figures: tuple[SpecFigures, ...] = ()
 
     @property
     def said(self) -> tuple[Diagnostic, ...]:
@@ -65,13 +65,13 @@ class Analysis:
         return (*(finding.diagnostic for finding in self.findings), *self.failures)
 
 
-def analyse(request: Request) -> Analysis:
+def analyse(request: Request) -> DocumentAnalysis:
     """Compile, lint and test a text."""
     with unsaved(request.texts):
         try:
             view = view_of(request.source, CompileOptions(library_dirs=request.libraries))
         except TltlError as error:
-            return Analysis(levelled(map(Finding, error.diagnostics), request.levels))
+            return DocumentAnalysis(levelled(map(LintFinding, error.diagnostics), request.levels))
         if _seems_unused(view):
             # Reading the neighbouring files is slow, so do it only if their uses matter.
             view = replace(view, elsewhere=_elsewhere(request))
@@ -98,14 +98,14 @@ def _elsewhere(request: Request) -> Container[str]:
     return used_elsewhere(name, [words(path, text) for path, text in neighbour_texts.items()])
 
 
-def _with_tests(view: View, file_findings: tuple[Finding, ...]) -> Analysis:
+def _with_tests(view: View, file_findings: tuple[LintFinding, ...]) -> DocumentAnalysis:
     results = run_tests(view.program, (compiled.fspa for compiled in view.specs))
     figures = []
     for compiled in view.specs:
         passed = [result.passed for result in results if result.test.spec == compiled.spec.name]
         fspa = compiled.fspa
         figures.append(
-            Figures(fspa.name, len(fspa.states), fspa.states[0].distance, sum(passed), len(passed) - sum(passed))
+            SpecFigures(fspa.name, len(fspa.states), fspa.states[0].distance, sum(passed), len(passed) - sum(passed))
         )
     failures = tuple(result.failure for result in results if result.failure is not None)
-    return Analysis(file_findings, failures, tuple(figures))
+    return DocumentAnalysis(file_findings, failures, tuple(figures))

@@ -29,23 +29,23 @@ from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.interfaces.lsp.names import Occurrence, Symbol
 from tltlc.interfaces.lsp.paths import name_of
 from tltlc.interfaces.lsp.positions import offset, range_of
-from tltlc.interfaces.lsp.session import Server
+from tltlc.interfaces.lsp.session import EditorSession
 from tltlc.interfaces.lsp.worker import LONGEST_S
 
 
-def _complete(server: Server, params: types.CompletionParams) -> types.CompletionList | None:
+def _complete(server: EditorSession, params: types.CompletionParams) -> types.CompletionList | None:
     document, at = _place(server, params)
     if document is None:
         return None
     return types.CompletionList(is_incomplete=False, items=completion.completions(document, at, server.encoding))
 
 
-def _hover(server: Server, params: types.HoverParams) -> types.Hover | None:
+def _hover(server: EditorSession, params: types.HoverParams) -> types.Hover | None:
     document, at = _place(server, params)
     return hover.hover(document, at, server.analysis(document), server.encoding) if document else None
 
 
-def _definition(server: Server, params: types.DefinitionParams) -> types.Location | None:
+def _definition(server: EditorSession, params: types.DefinitionParams) -> types.Location | None:
     document, at = _place(server, params)
     if document is None:
         return None
@@ -61,12 +61,12 @@ def _definition(server: Server, params: types.DefinitionParams) -> types.Locatio
     return None
 
 
-def _links(server: Server, params: types.DocumentLinkParams) -> list[types.DocumentLink] | None:
+def _links(server: EditorSession, params: types.DocumentLinkParams) -> list[types.DocumentLink] | None:
     document = server.texts.document(params.text_document.uri)
     return imports.links(document, server.encoding, server.texts.uri) if document else None
 
 
-async def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
+async def _references(server: EditorSession, params: types.ReferenceParams) -> list[types.Location] | None:
     name = await _name_everywhere(server, params, references.may_have_references)
     if name is None:
         return None
@@ -78,7 +78,7 @@ async def _references(server: Server, params: types.ReferenceParams) -> list[typ
     ]
 
 
-def _highlight(server: Server, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight] | None:
+def _highlight(server: EditorSession, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight] | None:
     document, at = _place(server, params)
     name = document.name_at(at) if document else None
     if document is None or name is None:
@@ -93,7 +93,9 @@ def _highlight(server: Server, params: types.DocumentHighlightParams) -> list[ty
     ]
 
 
-async def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
+async def _prepare_rename(
+    server: EditorSession, params: types.PrepareRenameParams
+) -> types.PrepareRenamePlaceholder | None:
     name = await _name_everywhere(server, params, references.may_have_references)
     document = server.texts.document(params.text_document.uri)
     if document is None or name is None:
@@ -102,25 +104,25 @@ async def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> 
     return types.PrepareRenamePlaceholder(range_of(document.source, name.span, server.encoding), name.symbol.name)
 
 
-async def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit | None:
+async def _rename(server: EditorSession, params: types.RenameParams) -> types.WorkspaceEdit | None:
     name = await _name_everywhere(server, params, references.may_refuse_rename)
     if name is None:
         return None
     return _workspace_edit(server, references.rename(name.symbol, params.new_name, server.texts))
 
 
-async def _move_files(server: Server, params: types.RenameFilesParams) -> types.WorkspaceEdit:
+async def _move_files(server: EditorSession, params: types.RenameFilesParams) -> types.WorkspaceEdit:
     await server.texts.parse(moves.may_import)
     renames = [(name_of(file.old_uri), name_of(file.new_uri)) for file in params.files]
     return _workspace_edit(server, moves.edits_of_moves(renames, server.texts))
 
 
-def _format(server: Server, params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
+def _format(server: EditorSession, params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
     document = server.texts.document(params.text_document.uri)
     return formatting.formatting(document, server.encoding) if document else None
 
 
-def _actions(server: Server, params: types.CodeActionParams) -> list[types.CodeAction] | None:
+def _actions(server: EditorSession, params: types.CodeActionParams) -> list[types.CodeAction] | None:
     document = server.texts.document(params.text_document.uri)
     wanted = params.context.only
     if document is None or (wanted is not None and not {"", types.CodeActionKind.QuickFix}.intersection(wanted)):
@@ -131,7 +133,7 @@ def _actions(server: Server, params: types.CodeActionParams) -> list[types.CodeA
     return actions.actions(document, place, findings, server.encoding, server.texts.uri, server.workspace_edit)
 
 
-def _lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens]:
+def _lenses(server: EditorSession, params: types.CodeLensParams) -> list[types.CodeLens]:
     uri = params.text_document.uri
     document = server.texts.document(uri)
     # Show the last lenses, even if outdated, so the lines of the text do not jump with each key.
@@ -139,27 +141,27 @@ def _lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens
     return lenses.lenses(document, uri, analysis, server.encoding) if document and analysis else []
 
 
-def _hints(server: Server, params: types.InlayHintParams) -> list[types.InlayHint] | None:
+def _hints(server: EditorSession, params: types.InlayHintParams) -> list[types.InlayHint] | None:
     document = server.texts.document(params.text_document.uri)
     return durations.hints(document, _span(server, document, params.range), server.encoding) if document else None
 
 
-def _folding(server: Server, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
+def _folding(server: EditorSession, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
     document = server.texts.document(params.text_document.uri)
     return folding.folds(document) if document else None
 
 
-def _tokens(server: Server, params: types.SemanticTokensParams) -> types.SemanticTokens | None:
+def _tokens(server: EditorSession, params: types.SemanticTokensParams) -> types.SemanticTokens | None:
     document = server.texts.document(params.text_document.uri)
     return types.SemanticTokens(tokens.tokens(document, server.encoding)) if document else None
 
 
-def _symbols(server: Server, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol] | None:
+def _symbols(server: EditorSession, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol] | None:
     document = server.texts.document(params.text_document.uri)
     return symbols.symbols(document, server.encoding) if document else None
 
 
-async def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+async def _find_symbols(server: EditorSession, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
     await server.texts.parse(lambda text: True)
     return [
         symbol
@@ -168,7 +170,7 @@ async def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> 
     ]
 
 
-async def run_tests(server: Server, uri: str, spec: str) -> None:
+async def run_tests(server: EditorSession, uri: str, spec: str) -> None:
     """Show the user the test results of a spec."""
     analysis = await server.analysis_of(uri)
     figures = next((entry for entry in analysis.figures if entry.spec == spec), None) if analysis else None
@@ -187,7 +189,7 @@ async def run_tests(server: Server, uri: str, spec: str) -> None:
     server.window_show_message(types.ShowMessageParams(kind, text))
 
 
-def _workspace_edit(server: Server, changed: list[tuple[Document, list[Edit]]]) -> types.WorkspaceEdit:
+def _workspace_edit(server: EditorSession, changed: list[tuple[Document, list[Edit]]]) -> types.WorkspaceEdit:
     edits = {
         server.texts.uri(document.source.name): [text_edit(document.source, edit, server.encoding) for edit in own]
         for document, own in changed
@@ -195,23 +197,25 @@ def _workspace_edit(server: Server, changed: list[tuple[Document, list[Edit]]]) 
     return server.workspace_edit(edits)
 
 
-def _place(server: Server, params: Any) -> tuple[Document | None, int]:
+def _place(server: EditorSession, params: Any) -> tuple[Document | None, int]:
     """Return the document and the offset that a request is about."""
     document = server.texts.document(params.text_document.uri)
     return document, offset(document.source, params.position, server.encoding) if document else 0
 
 
-def _span(server: Server, document: Document, requested: types.Range) -> Span:
+def _span(server: EditorSession, document: Document, requested: types.Range) -> Span:
     start, end = (offset(document.source, end_point, server.encoding) for end_point in (requested.start, requested.end))
     return Span(start, max(start, end))
 
 
-def _name(server: Server, params: Any) -> Occurrence | None:
+def _name(server: EditorSession, params: Any) -> Occurrence | None:
     document, at = _place(server, params)
     return document.name_at(at) if document else None
 
 
-async def _name_everywhere(server: Server, params: Any, is_needed: Callable[[Symbol, str], bool]) -> Occurrence | None:
+async def _name_everywhere(
+    server: EditorSession, params: Any, is_needed: Callable[[Symbol, str], bool]
+) -> Occurrence | None:
     """Parse the required texts of the workspace, then return the name that a request is about."""
     name = _name(server, params)
     if name is not None:
@@ -231,7 +235,7 @@ FILES_AND_FOLDERS: Final = types.FileOperationRegistrationOptions(
 )
 """The files and folders whose renaming and deletion the editor reports to the server."""
 
-ANSWERS: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
+ANSWERS: Final[tuple[tuple[str, Callable[[EditorSession, Any], Any], Any], ...]] = (
     (types.TEXT_DOCUMENT_COMPLETION, _complete, types.CompletionOptions(trigger_characters=[".", '"', "("])),
     (types.TEXT_DOCUMENT_HOVER, _hover, None),
     (types.TEXT_DOCUMENT_DEFINITION, _definition, None),

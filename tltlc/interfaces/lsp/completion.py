@@ -13,7 +13,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, JUDGE, SEMANTICS, TEST_ITEMS, VERDICTS
 from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.tables import load
-from tltlc.grammar.tree import Clause, LetDecl, Name, PredicateDecl, SignalDecl, SpecDecl
+from tltlc.grammar.tree import Clause, LetDecl, NameExpr, PredicateDecl, SignalDecl, SpecDecl
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted
 from tltlc.interfaces.lsp.declaration_text import declaration_text
@@ -141,7 +141,7 @@ def _settings(document: Document, clause: str) -> Iterator[types.CompletionItem]
         tags = {name.name for item in _clauses(document) if isinstance(item.value, tuple) for name in item.value}
         words = sorted(tags)
     if clause == "level":
-        words = sorted({item.value.name for item in _clauses(document, "level") if isinstance(item.value, Name)})
+        words = sorted({item.value.name for item in _clauses(document, "level") if isinstance(item.value, NameExpr)})
     yield from (types.CompletionItem(word, kind=Kind.EnumMember) for word in words)
 
 
@@ -194,7 +194,7 @@ def _visible(document: Document, kinds: tuple[str, ...]) -> Iterator[types.Compl
 
 def _name_item(name: str, binding: Binding) -> types.CompletionItem:
     declaration = binding.declaration
-    doc = "" if isinstance(declaration, Name) else declaration.doc
+    doc = "" if isinstance(declaration, NameExpr) else declaration.doc
     head = declaration_text(declaration, binding.scope.source, head=True)
     detail = f"{head} (from {binding.via})" if binding.via else head
     return types.CompletionItem(name, kind=_KINDS[binding.kind], detail=detail, documentation=doc or None)

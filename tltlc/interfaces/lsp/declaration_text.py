@@ -11,7 +11,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.tree import (
     Declaration,
     LetDecl,
-    Name,
+    NameExpr,
     ParamDecl,
     Parameter,
     PredicateDecl,
@@ -40,10 +40,10 @@ _SUPPLIED: Final = {
 
 
 def declaration_text(
-    declaration: Union[Declaration, Name, Parameter, Quantified], source: SourceFile, *, head: bool = False
+    declaration: Union[Declaration, NameExpr, Parameter, Quantified], source: SourceFile, *, head: bool = False
 ) -> str:
     """Return a declaration as written; if ``head``, only the part before its ``=`` or ``{``."""
-    if isinstance(declaration, Name):
+    if isinstance(declaration, NameExpr):
         return f"entity {declaration.name}"
     if isinstance(declaration, Quantified):
         names = ", ".join(entity.name for entity in declaration.entities)
@@ -108,7 +108,7 @@ def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
         sentence = _english(declaration, env)
         if sentence:
             yield sentence
-    elif isinstance(declaration, Name):
+    elif isinstance(declaration, NameExpr):
         yield "An object of the level."
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from lsprotocol import types
 
 from tltlc.core.source import Span
-from tltlc.grammar.tree import Declaration, Number, SpecDecl, Unary
+from tltlc.grammar.tree import Declaration, NumberExpr, SpecDecl, Unary
 from tltlc.grammar.walk import expressions, parts
 from tltlc.interfaces.lsp.analysed_text import Document
 from tltlc.interfaces.lsp.positions import position
@@ -31,7 +31,7 @@ def steps_text(steps: int) -> str:
     return f"{steps} step{'' if steps == 1 else 's'}"
 
 
-def durations(document: Document) -> Iterator[tuple[Number, int]]:
+def durations(document: Document) -> Iterator[tuple[NumberExpr, int]]:
     """Yield the limits and bounds that are written as times, with their steps."""
     for declaration in document.module.declarations:
         for number in _counts(declaration):
@@ -44,9 +44,9 @@ def durations(document: Document) -> Iterator[tuple[Number, int]]:
                 yield number, steps
 
 
-def _counts(declaration: Declaration) -> Iterator[Number]:
+def _counts(declaration: Declaration) -> Iterator[NumberExpr]:
     if isinstance(declaration, SpecDecl):
-        yield from (clause.value for clause in declaration.clauses if isinstance(clause.value, Number))
+        yield from (clause.value for clause in declaration.clauses if isinstance(clause.value, NumberExpr))
     for expression in expressions(declaration):
         for part in parts(expression):
             if isinstance(part, Unary) and part.bound is not None:

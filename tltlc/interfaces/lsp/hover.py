@@ -8,10 +8,10 @@ from lsprotocol import types
 
 from tltlc.core.source import Span
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
-from tltlc.grammar.tree import Binary, Clause, Expr, SpecDecl, Unary
+from tltlc.grammar.tree import BinaryExpr, Clause, Expr, SpecDecl, Unary
 from tltlc.grammar.walk import parts
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.declaration_text import spec_markdown, symbol_markdown
 from tltlc.interfaces.lsp.durations import durations, steps_text
 from tltlc.interfaces.lsp.lenses import figures_text
@@ -27,7 +27,7 @@ _LARGEST: Final = 2000
 """Formulas with more parts get no English sentence."""
 
 
-def hover(document: Document, offset: int, analysis: Analysis | None, encoding: str) -> types.Hover | None:
+def hover(document: Document, offset: int, analysis: DocumentAnalysis | None, encoding: str) -> types.Hover | None:
     """Describe the name, operator, duration or keyword at an offset."""
     description = (
         _name(document, offset, analysis)
@@ -42,7 +42,7 @@ def hover(document: Document, offset: int, analysis: Analysis | None, encoding: 
     return types.Hover(content, range_of(document.source, span, encoding))
 
 
-def _name(document: Document, offset: int, analysis: Analysis | None) -> tuple[str, Span] | None:
+def _name(document: Document, offset: int, analysis: DocumentAnalysis | None) -> tuple[str, Span] | None:
     name = document.name_at(offset)
     if name is None:
         return None
@@ -91,7 +91,7 @@ def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
 def _part(document: Document, clause: Clause, offset: int) -> tuple[str, Span] | None:
     assert not isinstance(clause.value, tuple)
     for part in parts(clause.value):
-        if isinstance(part, (Unary, Binary)) and part.op_span.start <= offset < part.op_span.end:
+        if isinstance(part, (Unary, BinaryExpr)) and part.op_span.start <= offset < part.op_span.end:
             if part.op == "then" and clause.kind == "reach":
                 meaning = _meaning_of_clause(document, clause)
             else:

@@ -8,14 +8,14 @@ from lsprotocol import types
 
 from tltlc.grammar.tree import SpecDecl
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import Analysis, Figures
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis, SpecFigures
 from tltlc.interfaces.lsp.positions import range_of
 
 RUN_TESTS: Final = "tltlc.runTests"
 """The command of the test lens; its arguments are the URI and the name of the spec."""
 
 
-def lenses(document: Document, uri: str, analysis: Analysis, encoding: str) -> list[types.CodeLens]:
+def lenses(document: Document, uri: str, analysis: DocumentAnalysis, encoding: str) -> list[types.CodeLens]:
     """Return two lenses for each spec: its size and, if it has tests, their results."""
     figures = {entry.spec: entry for entry in analysis.figures}
     result = []
@@ -31,13 +31,13 @@ def lenses(document: Document, uri: str, analysis: Analysis, encoding: str) -> l
     return result
 
 
-def figures_text(figures: Figures) -> str:
+def figures_text(figures: SpecFigures) -> str:
     """Return a text such as ``7 states, distance 3``."""
     states = f"{figures.states} state{'' if figures.states == 1 else 's'}"
     return f"{states}, " + ("cannot be met" if figures.distance is None else f"distance {figures.distance}")
 
 
-def tests_text(figures: Figures) -> str:
+def tests_text(figures: SpecFigures) -> str:
     """Return a text such as ``3 tests pass`` or ``1 of 3 tests fails``."""
     count = figures.passed + figures.failed
     tests = f"{count} test{'' if count == 1 else 's'}"

@@ -152,9 +152,9 @@ class _Walk:
         waiting = [(expression, local) for expression in expressions]
         while waiting:
             part, visible = waiting.pop()
-            if isinstance(part, tree.Name):
+            if isinstance(part, tree.NameExpr):
                 self._used(part.name, part.span, visible)
-            elif isinstance(part, tree.Call):
+            elif isinstance(part, tree.CallExpr):
                 self._used(part.name, part.name_span, visible)
                 self._keywords(part)
             elif isinstance(part, tree.Quantified):
@@ -176,7 +176,7 @@ class _Walk:
         self._note(span, symbol, declares=True)
         return {**local, part.variable: symbol}
 
-    def _keywords(self, call: tree.Call) -> None:
+    def _keywords(self, call: tree.CallExpr) -> None:
         binding = self._visible.get(call.name)
         declaration = binding.declaration if binding else None
         if binding is None or not isinstance(declaration, (tree.SignalDecl, tree.PredicateDecl, tree.LetDecl)):

@@ -6,11 +6,11 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Label
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 from tltlc.interfaces.lsp.edits import difference
 
 
-def kept(before: Document, analysis: Analysis, now: Document) -> tuple[Diagnostic, ...]:
+def kept(before: Document, analysis: DocumentAnalysis, now: Document) -> tuple[Diagnostic, ...]:
     """Return earlier diagnostics that need automata, moved to their new places.
 
     Leaves out diagnostics whose places were edited, and those that the new text has anyway.

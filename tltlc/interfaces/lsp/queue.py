@@ -9,7 +9,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Final
 
-from tltlc.interfaces.lsp.analysis import Analysis
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis
 
 LONG_S: Final = 0.5
 """Seconds after which an analysis gives way to a document that the user looked at since.
@@ -25,7 +25,9 @@ class Queue:
     ``analyse`` does the work, and ends early after ``give_up`` is called.
     """
 
-    def __init__(self, analyse: Callable[[str, bool], Awaitable[Analysis | None]], give_up: Callable[[], None]) -> None:
+    def __init__(
+        self, analyse: Callable[[str, bool], Awaitable[DocumentAnalysis | None]], give_up: Callable[[], None]
+    ) -> None:
         self._analyse = analyse
         self._give_up = give_up
         self._waiting: dict[str, bool] = {}
@@ -36,7 +38,7 @@ class Queue:
         self._working_since = 0.0
         self._task: asyncio.Task[None] | None = None
         self._timer: asyncio.TimerHandle | None = None
-        self._asked: dict[str, list[asyncio.Future[Analysis | None]]] = {}
+        self._asked: dict[str, list[asyncio.Future[DocumentAnalysis | None]]] = {}
 
     def looked_at(self, uri: str) -> None:
         """Record that the user is at a document, which is then analysed before others."""
@@ -50,12 +52,12 @@ class Queue:
             self._task = asyncio.get_running_loop().create_task(self._work())
         self._give_way()
 
-    async def answer(self, uri: str) -> Analysis | None:
+    async def answer(self, uri: str) -> DocumentAnalysis | None:
         """Return the analysis of a document, which goes first.
 
         Return None if it is dropped or takes too long.
         """
-        future: asyncio.Future[Analysis | None] = asyncio.get_running_loop().create_future()
+        future: asyncio.Future[DocumentAnalysis | None] = asyncio.get_running_loop().create_future()
         self._asked.setdefault(uri, []).append(future)
         self.looked_at(uri)
         self.put(uri)
@@ -108,7 +110,7 @@ class Queue:
             self._waiting[working] = True
             self._give_up()
 
-    def _tell(self, uri: str, analysis: Analysis | None) -> None:
+    def _tell(self, uri: str, analysis: DocumentAnalysis | None) -> None:
         for future in self._asked.pop(uri, ()):
             if not future.done():
                 future.set_result(analysis)

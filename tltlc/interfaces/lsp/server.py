@@ -24,7 +24,7 @@ from tltlc.interfaces.lsp.frames import Frames
 from tltlc.interfaces.lsp.lenses import RUN_TESTS
 from tltlc.interfaces.lsp.paths import name_of
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
-from tltlc.interfaces.lsp.session import Server
+from tltlc.interfaces.lsp.session import EditorSession
 
 _REFUSED: Final = -32803
 """The protocol's error code RequestFailed, for failures whose reason the user should read."""
@@ -61,7 +61,7 @@ def serve() -> bool:
     return server.was_shut_down
 
 
-async def _listen(server: Server, file: BufferedReader) -> None:
+async def _listen(server: EditorSession, file: BufferedReader) -> None:
     """Handle messages until the input ends."""
     frames, protocol = Frames(), cast("Protocol", server.protocol)
     loop = asyncio.get_running_loop()
@@ -110,16 +110,16 @@ def _is_unforeseen(record: logging.LogRecord) -> bool:
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
 
-def create() -> Server:
+def create() -> EditorSession:
     """Create a server with all its handlers."""
-    server = Server()
+    server = EditorSession()
     for method, handler, options in (*_TOLD, *ANSWERS):
         server.feature(method, options)(_guarded(server, handler))
     server.command(RUN_TESTS)(partial(run_tests, server))
     return server
 
 
-def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[[Any], Any]:
+def _guarded(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
     """Wrap a handler: a TltlError becomes an error response.
 
     A request counts as a look of the user at its document.
@@ -140,7 +140,7 @@ def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[
 
 
 @contextmanager
-def _refusals(server: Server, params: Any) -> Iterator[None]:
+def _refusals(server: EditorSession, params: Any) -> Iterator[None]:
     try:
         yield
     except TltlError as error:
@@ -157,7 +157,7 @@ def _refusals(server: Server, params: Any) -> Iterator[None]:
 # --- notifications ------------------------------------------------------------------------------
 
 
-def _initialized(server: Server, _: types.InitializedParams) -> None:
+def _initialized(server: EditorSession, _: types.InitializedParams) -> None:
     root = server.workspace.root_uri
     server.texts.folders = [name_of(uri) for uri in server.workspace.folders or ([root] if root else [])]
     capabilities = server.client_capabilities.workspace
@@ -169,43 +169,43 @@ def _initialized(server: Server, _: types.InitializedParams) -> None:
         server.client_register_capability(types.RegistrationParams([registration]))
 
 
-def _shut_down(server: Server, _: None) -> None:
+def _shut_down(server: EditorSession, _: None) -> None:
     server.shut_down()
 
 
-def _opened(server: Server, params: types.DidOpenTextDocumentParams) -> None:
+def _opened(server: EditorSession, params: types.DidOpenTextDocumentParams) -> None:
     item = params.text_document
     server.changed(server.texts.put(item.uri, item.version, item.text))
 
 
-def _changed(server: Server, params: types.DidChangeTextDocumentParams) -> None:
+def _changed(server: EditorSession, params: types.DidChangeTextDocumentParams) -> None:
     if params.content_changes:
         item = params.text_document
         server.changed(server.texts.put(item.uri, item.version, params.content_changes[-1].text))
 
 
-def _closed(server: Server, params: types.DidCloseTextDocumentParams) -> None:
+def _closed(server: EditorSession, params: types.DidCloseTextDocumentParams) -> None:
     touched = server.texts.close(params.text_document.uri)
     server.closed(params.text_document.uri)
     server.changed(touched)
 
 
-def _watched_files_changed(server: Server, params: types.DidChangeWatchedFilesParams) -> None:
+def _watched_files_changed(server: EditorSession, params: types.DidChangeWatchedFilesParams) -> None:
     # For open files, the text in the editor counts, saved or not.
     if not all(server.texts.is_open(change.uri) for change in params.changes):
         _files_changed(server, params)
 
 
-def _files_changed(server: Server, _: Any) -> None:
+def _files_changed(server: EditorSession, _: Any) -> None:
     server.changed(server.texts.refresh())
     server.used_otherwise(server.texts.opened())
 
 
-def _folders_changed(server: Server, _: types.DidChangeWorkspaceFoldersParams) -> None:
+def _folders_changed(server: EditorSession, _: types.DidChangeWorkspaceFoldersParams) -> None:
     server.texts.folders = [name_of(uri) for uri in server.workspace.folders]
 
 
-_TOLD: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
+_TOLD: Final[tuple[tuple[str, Callable[[EditorSession, Any], Any], Any], ...]] = (
     (types.INITIALIZED, _initialized, None),
     (types.SHUTDOWN, _shut_down, None),
     (types.TEXT_DOCUMENT_DID_OPEN, _opened, None),

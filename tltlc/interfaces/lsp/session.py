@@ -14,14 +14,14 @@ from tltlc import __version__
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
 from tltlc.interfaces.lsp.analysed_text import Document
-from tltlc.interfaces.lsp.analysis import Analysis, Request
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis, Request
 from tltlc.interfaces.lsp.diagnostics import remark, remark_on_project
 from tltlc.interfaces.lsp.paths import name_of, path_of
 from tltlc.interfaces.lsp.positions import UTF_16
 from tltlc.interfaces.lsp.previous_diagnostics import kept
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
 from tltlc.interfaces.lsp.queue import Queue
-from tltlc.interfaces.lsp.worker import Worker
+from tltlc.interfaces.lsp.worker import AnalysisWorker
 from tltlc.interfaces.lsp.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ LATER_S: Final = 0.4
 """Seconds without a change after which automata are built."""
 
 
-class Server(LanguageServer):
+class EditorSession(LanguageServer):
     """The state of one editor's session."""
 
     def __init__(self) -> None:
@@ -41,10 +41,10 @@ class Server(LanguageServer):
         full = types.TextDocumentSyncKind.Full
         super().__init__("tltlc", __version__, text_document_sync_kind=full, protocol_cls=Protocol)
         self.texts = Workspace()
-        self.worker = Worker()
+        self.worker = AnalysisWorker()
         self.queue = Queue(self._analyse_now, self.worker.abandon)
         self.was_shut_down = False
-        self._analyses: dict[str, tuple[Document, Analysis]] = {}
+        self._analyses: dict[str, tuple[Document, DocumentAnalysis]] = {}
         self._timers: dict[tuple[str, str], asyncio.TimerHandle] = {}
         self._imported: dict[str, list[str]] = {}
         self._said_of_project: dict[str, tuple[Diagnostic, ...]] = {}
@@ -55,12 +55,12 @@ class Server(LanguageServer):
         agreed = self.server_capabilities.position_encoding
         return str(getattr(agreed, "value", agreed) or UTF_16)
 
-    def analysis(self, document: Document) -> Analysis | None:
+    def analysis(self, document: Document) -> DocumentAnalysis | None:
         """Return the analysis of a document if it is up to date."""
         made_of, analysis = self._analyses.get(document.source.name, (None, None))
         return analysis if made_of is document else None
 
-    def last_analysis(self, document: Document) -> Analysis | None:
+    def last_analysis(self, document: Document) -> DocumentAnalysis | None:
         """Return the last analysis of a document, which may have changed since."""
         _, analysis = self._analyses.get(document.source.name, (None, None))
         return analysis
@@ -192,7 +192,7 @@ class Server(LanguageServer):
         ):
             self.queue.put(uri, again=True)
 
-    async def analysis_of(self, uri: str) -> Analysis | None:
+    async def analysis_of(self, uri: str) -> DocumentAnalysis | None:
         """Return the analysis of a document, made if needed.
 
         Return None if the document is missing, broken or changing.
@@ -200,7 +200,7 @@ class Server(LanguageServer):
         document = self.texts.document(uri)
         return (self.analysis(document) if document else None) or await self.queue.answer(uri)
 
-    async def _analyse_now(self, uri: str, again: bool) -> Analysis | None:
+    async def _analyse_now(self, uri: str, again: bool) -> DocumentAnalysis | None:
         """Analyse a document and publish the result.
 
         Return None if the document is missing, broken or changing.

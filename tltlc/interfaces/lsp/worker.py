@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Final
 
-from tltlc.interfaces.lsp.analysis import Analysis, Request
+from tltlc.interfaces.lsp.analysis import DocumentAnalysis, Request
 from tltlc.io.limits import COMMAND
 from tltlc.io.resources import limit
 
@@ -22,14 +22,14 @@ LONGEST_S: Final = 60.0
 """Seconds after which an analysis is given up."""
 
 
-class Worker:
+class AnalysisWorker:
     """Runs one analysis at a time, in a process of its own that starts when it is first needed."""
 
     def __init__(self) -> None:
         self._process: BaseProcess | None = None
         self._pipe: Connection | None = None
 
-    async def analyse(self, request: Request) -> Analysis | None:
+    async def analyse(self, request: Request) -> DocumentAnalysis | None:
         """Analyse a text.
 
         Return None if that was given up, took too long, or no process can be started.
@@ -69,9 +69,9 @@ class Worker:
         return self._pipe
 
 
-def _exchange(pipe: Connection, request: Request) -> Analysis | None:
+def _exchange(pipe: Connection, request: Request) -> DocumentAnalysis | None:
     pipe.send(request)
-    analysis: Analysis | None = pipe.recv()
+    analysis: DocumentAnalysis | None = pipe.recv()
     return analysis
 
 

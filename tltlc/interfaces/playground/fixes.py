@@ -10,13 +10,13 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint import fixes
-from tltlc.tools.lint.fixes import Offer
+from tltlc.tools.lint.fixes import OfferedFix
 
 _LONGEST: Final = 20_000
 """In longer texts, trying each fix would take too long."""
 
 
-def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[Offer]:
+def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[OfferedFix]:
     """Return the fixes for errors of a text; ``libraries`` are its import folders.
 
     Long texts get none.

@@ -29,7 +29,7 @@ Size = tuple[float, float]
 
 
 @record
-class Box:
+class StateBox:
     """A box to place: a state, with the texts over and under it.
 
     ``over`` and ``under`` are the heights of those texts, ``span`` is the width of everything, and
@@ -55,7 +55,7 @@ class Layout:
     height: float
 
 
-def layout(boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
+def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
     """Lay out boxes and edges from a corner on.
 
     Box 0 is the first state, and ``texts`` has the text size of each edge. Loops and the texts of
@@ -68,7 +68,7 @@ def layout(boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point =
 class _Places:
     """Computes columns from left to right, levels from top to bottom, then the curves of edges."""
 
-    def __init__(self, boxes: Mapping[int, Box], texts: Mapping[Ends, Size], corner: Point) -> None:
+    def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point) -> None:
         self.boxes, self.texts = boxes, texts
         above = [state for state in boxes if not boxes[state].below]
         inside = [(a, b) for a, b in texts if a != b and not boxes[a].below and not boxes[b].below]
@@ -269,5 +269,5 @@ class _Places:
         return places
 
 
-def _span(box: Box) -> float:
+def _span(box: StateBox) -> float:
     return max(box.width, box.span)

@@ -22,7 +22,7 @@ from tltlc.pipeline import CompileOptions
 from tltlc.tools.explain.explanation import Explanation, explain
 from tltlc.tools.explain.sections import failure_texts
 from tltlc.tools.explain.values import values
-from tltlc.tools.lint.fixes import Offer, of_findings
+from tltlc.tools.lint.fixes import OfferedFix, of_findings
 from tltlc.tools.lint.run import findings, view_of
 
 NAME: Final = "<playground>"
@@ -79,7 +79,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     return page
 
 
-def _messages(messages: Sequence[Diagnostic], source: SourceFile, offers: Sequence[Offer]) -> dict[str, Any]:
+def _messages(messages: Sequence[Diagnostic], source: SourceFile, offers: Sequence[OfferedFix]) -> dict[str, Any]:
     shown = [diagnostic(message, source, offers) for message in messages[:MOST_MESSAGES]]
     return {"diagnostics": shown, "more": len(messages) - len(shown)}
 
@@ -116,7 +116,9 @@ def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter]
     }
 
 
-def diagnostic(message: Diagnostic, source: SourceFile | None = None, offers: Iterable[Offer] = ()) -> dict[str, Any]:
+def diagnostic(
+    message: Diagnostic, source: SourceFile | None = None, offers: Iterable[OfferedFix] = ()
+) -> dict[str, Any]:
     """Return a message as the page expects it.
 
     ``source`` is the text in which the page can show places. Of ``offers``, only the fixes of this

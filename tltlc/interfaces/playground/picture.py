@@ -13,7 +13,7 @@ from tltlc.backends.drawing.picture_content import notes, shown
 from tltlc.backends.drawing.texts import arrows, visible, wrapped
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Point, bent, drawn
-from tltlc.interfaces.playground.layout import Box, Size, layout
+from tltlc.interfaces.playground.layout import Size, StateBox, layout
 from tltlc.interfaces.playground.ordering import Ends
 
 MOST_STATES: Final = 40
@@ -84,7 +84,7 @@ class _Picture:
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shortened(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 
-    def _box(self, state: int) -> Box:
+    def _box(self, state: int) -> StateBox:
         lines = self.labels[state]
         width, height = max(_columns(lines) * _LABEL_CHARACTER + 30, 62.0), len(lines) * _LABEL_LINE + 32
         loop = _size(self.lines.get((state, state), []))
@@ -92,8 +92,8 @@ class _Picture:
         beside, under = (size[1] + margin if size[1] else 0.0 for size, margin in ((loop, _LOOP + 4), (fall, 12)))
         if state == self.trap:
             arriving = sum(target == state for _, target in self.lines)
-            return Box(max(width, 12.0 * arriving), height, 0.0, beside, loop[0], below=True)
-        return Box(width, height, beside, under, max(loop[0], fall[0]))
+            return StateBox(max(width, 12.0 * arriving), height, 0.0, beside, loop[0], below=True)
+        return StateBox(width, height, beside, under, max(loop[0], fall[0]))
 
     def _frame(self, state: int) -> tuple[float, float, float, float]:
         """Return the left, top, right and bottom of a state."""

@@ -50,7 +50,7 @@ _HEADERS: Final = {
 }
 
 
-class Page:
+class PageHandler:
     """Answers ``GET`` of the page's files, and ``POST`` to :data:`_API` with the token."""
 
     def __init__(self, children: Children, token: str) -> None:
@@ -157,7 +157,7 @@ def _read_all(reader: socket.socket) -> None:
             pass
 
 
-class Server:
+class PlaygroundServer:
     """Serves the page at :data:`HOST` only; port 0 is any free port.
 
     Raises TltlError, TLT0776, if the port is not available.
@@ -175,7 +175,7 @@ class Server:
         self.server_address: tuple[str, int] = self._listener.getsockname()
         self.token = secrets.token_urlsafe(24)
         self.children = Children(limit_s)
-        self.page = Page(self.children, self.token)
+        self.page = PageHandler(self.children, self.token)
         self.open = Open(_within_descriptors(connections))
         self._loop = asyncio.SelectorEventLoop()
         self._again: asyncio.TimerHandle | None = None
@@ -222,7 +222,7 @@ class Server:
         self._listener.close()
         self._loop.close()
 
-    def __enter__(self) -> Server:
+    def __enter__(self) -> PlaygroundServer:
         return self
 
     def __exit__(

@@ -13,7 +13,7 @@ from tltlc.monitor.samples import MonitorError
 from tltlc.tools.witness.blocks import values
 from tltlc.tools.witness.samples import Realiser
 from tltlc.tools.witness.traces import Witness, accepting, rejecting
-from tltlc.tools.witness.transitions import Move, Moves
+from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 Letter = Union[Sequence[str], Mapping[str, float]]
 """A step of a trace: the names of the atoms that hold, or the values of the signals by name."""
@@ -101,7 +101,7 @@ def _letters(fspa: Fspa, witness: Witness | None) -> list[dict[str, Any]] | None
     return [_letter(fspa, move) for move in witness.moves]
 
 
-def _letter(fspa: Fspa, move: Move) -> dict[str, Any]:
+def _letter(fspa: Fspa, move: SampledEdge) -> dict[str, Any]:
     return {"atoms": _in_order(fspa, move.letter), "signals": dict(move.sample)}
 
 

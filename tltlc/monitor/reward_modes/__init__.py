@@ -16,7 +16,7 @@ from typing import Any
 
 from tltlc.core.record import record
 from tltlc.monitor.reward import RewardOptions
-from tltlc.monitor.tables import Tables
+from tltlc.monitor.tables import MonitorTables
 
 
 @record
@@ -30,7 +30,7 @@ class Transition:
     success: bool
 
 
-ModeFunction = Callable[[Tables, Transition, RewardOptions, Any], tuple[float, Any]]
+ModeFunction = Callable[[MonitorTables, Transition, RewardOptions, Any], tuple[float, Any]]
 
 
 def mode_function(name: str) -> ModeFunction:

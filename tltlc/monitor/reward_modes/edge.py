@@ -5,10 +5,10 @@ from __future__ import annotations
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.reward import RewardOptions
 from tltlc.monitor.reward_modes import Transition
-from tltlc.monitor.tables import Tables
+from tltlc.monitor.tables import MonitorTables
 
 
-def reward(tables: Tables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
+def reward(tables: MonitorTables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
     """Return the robustness of the disjunction of the edges that leave the state, in [-1, 1]; 0 without such edges.
 
     ▲ Edges into a trap are left out: the disjunction would reward a violation.

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from tltlc.monitor.reward import RewardOptions, approach
 from tltlc.monitor.reward_modes import Transition
-from tltlc.monitor.tables import Tables
+from tltlc.monitor.tables import MonitorTables
 
 
-def reward(tables: Tables, transition: Transition, options: RewardOptions, memory: float | None) -> tuple[float, float]:
+def reward(
+    tables: MonitorTables, transition: Transition, options: RewardOptions, memory: float | None
+) -> tuple[float, float]:
     """Return ``1`` on success, plus ``gamma * potential after - potential before``.
 
     The potential of a state at a sample is its base progress plus what line 14 of Algorithm 1 adds,
@@ -22,7 +24,7 @@ def reward(tables: Tables, transition: Transition, options: RewardOptions, memor
     return float(transition.success) + options.gamma * after - before, after
 
 
-def _potential(tables: Tables, transition: Transition) -> float:
+def _potential(tables: MonitorTables, transition: Transition) -> float:
     state = transition.target
     base = tables.base_progress[state]
     return base + approach(tables, state, transition.values) if tables.improving[state] else base

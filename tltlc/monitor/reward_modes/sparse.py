@@ -5,7 +5,7 @@ from __future__ import annotations
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.reward import RewardOptions
 from tltlc.monitor.reward_modes import Transition
-from tltlc.monitor.tables import Tables
+from tltlc.monitor.tables import MonitorTables
 
 Widths = dict[int, float]
 """Per state that a trace of this length can reach, the width of the widest run: the maximum over
@@ -13,7 +13,9 @@ runs of the least edge robustness.
 """
 
 
-def reward(tables: Tables, transition: Transition, _: RewardOptions, memory: Widths | None) -> tuple[float, Widths]:
+def reward(
+    tables: MonitorTables, transition: Transition, _: RewardOptions, memory: Widths | None
+) -> tuple[float, Widths]:
     """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
 
     The robustness is the signed distance (the greatest difference of an atom's value) from the
@@ -34,7 +36,7 @@ def reward(tables: Tables, transition: Transition, _: RewardOptions, memory: Wid
     return distance if accepted else -distance + 0.0, widths
 
 
-def _widened(tables: Tables, widths: Widths, transition: Transition) -> Widths:
+def _widened(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
     """Return the widths after one more sample."""
     widened: Widths = {}
     for state, width in widths.items():

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When, nodes
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When, nodes
 from tltlc.resolve.range_proof.work import spend
 
 LARGEST_NUMBER_OF_CASES = 64
@@ -30,19 +30,19 @@ Constraints = tuple[Constraint, ...]
 
 
 @record
-class Case:
+class ConstrainedValue:
     """The value of the whole expression where all constraints hold."""
 
     constraints: Constraints
     value: Expression
 
 
-def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[Case, ...]:
+def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[ConstrainedValue, ...]:
     """Return the cases of an expression, in order; together they cover every point.
 
     ``split_extremes`` also splits min, max, abs and clamp. Raises TooManyCasesError.
     """
-    result: list[Case] = []
+    result: list[ConstrainedValue] = []
     for case in _expand(expression, (), split_extremes):
         result.append(case)
         if len(result) > LARGEST_NUMBER_OF_CASES:
@@ -50,12 +50,12 @@ def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[Case
     return tuple(result)
 
 
-def condition_operands(expression: Expression) -> tuple[Case, ...]:
+def condition_operands(expression: Expression) -> tuple[ConstrainedValue, ...]:
     """Return the expressions that the ``when`` conditions compare.
 
     Each comes with the constraints that hold when it is evaluated. Raises TooManyCasesError.
     """
-    result: list[Case] = []
+    result: list[ConstrainedValue] = []
     _collect_operands(expression, (), result)
     return tuple(result)
 
@@ -74,14 +74,14 @@ def size(expression: Expression, most: int) -> int:
     return sum(1 for _ in islice(nodes(expression), most + 1))
 
 
-def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
+def variables(expression: Expression | Condition) -> dict[SignalValue | ParamValue, None]:
     """Return the signals and params that an expression reads, in order of appearance."""
     all_nodes = list(nodes(expression))
     spend(1 + len(all_nodes) // 10)
-    return dict.fromkeys(node for node in all_nodes if isinstance(node, (Signal, Param)))
+    return dict.fromkeys(node for node in all_nodes if isinstance(node, (SignalValue, ParamValue)))
 
 
-def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iterator[Case]:
+def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iterator[ConstrainedValue]:
     spend()
     if isinstance(expression, When):
         remaining: list[Constraints] = [before]
@@ -99,9 +99,9 @@ def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iter
             if extremes and expression.op in ("min", "max", "abs", "clamp"):
                 yield from _split_extreme(expression.op, args, constraints)
             else:
-                yield Case(constraints, expression if args == expression.args else Op(expression.op, args))
+                yield ConstrainedValue(constraints, expression if args == expression.args else Op(expression.op, args))
     else:
-        yield Case(before, expression)
+        yield ConstrainedValue(before, expression)
 
 
 def _expand_all(
@@ -115,10 +115,10 @@ def _expand_all(
             yield constraints, (first.value, *rest)
 
 
-def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -> Iterator[Case]:
+def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -> Iterator[ConstrainedValue]:
     if op == "abs":
-        yield Case((*before, Constraint(args[0], False)), args[0])
-        yield Case((*before, Constraint(Op("neg", args), True)), Op("neg", args))
+        yield ConstrainedValue((*before, Constraint(args[0], False)), args[0])
+        yield ConstrainedValue((*before, Constraint(Op("neg", args), True)), Op("neg", args))
     elif op == "clamp":
         value, low, high = args
         for inner in _split_extreme("max", (value, low), before):
@@ -127,7 +127,7 @@ def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -
         for chosen in args:
             rest = [other for other in args if other != chosen]
             pairs = [(other, chosen) if op == "min" else (chosen, other) for other in rest]
-            yield Case((*before, *(Constraint(Op("-", pair), False) for pair in pairs)), chosen)
+            yield ConstrainedValue((*before, *(Constraint(Op("-", pair), False) for pair in pairs)), chosen)
 
 
 def _where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
@@ -158,7 +158,7 @@ def _difference(a: Expression, b: Expression) -> Expression:
     return a if b == Const(0.0) else Op("-", (a, b))
 
 
-def _collect_operands(node: Expression, before: Constraints, result: list[Case]) -> None:
+def _collect_operands(node: Expression, before: Constraints, result: list[ConstrainedValue]) -> None:
     spend()
     if isinstance(node, Op):
         for arg in node.args:
@@ -177,13 +177,13 @@ def _collect_operands(node: Expression, before: Constraints, result: list[Case])
             _collect_operands(node.otherwise, path, result)
 
 
-def _collect_condition(condition: Condition, before: Constraints, result: list[Case]) -> None:
+def _collect_condition(condition: Condition, before: Constraints, result: list[ConstrainedValue]) -> None:
     paths = [before]
     for arg in condition.args:
         for path in paths:
             if isinstance(arg, Condition):
                 _collect_condition(arg, path, result)
-            elif not isinstance(arg, (Const, Signal, Param)):
+            elif not isinstance(arg, (Const, SignalValue, ParamValue)):
                 _collect_operands(arg, path, result)
                 result.extend(_expand(arg, path, False))
         if (

@@ -15,7 +15,7 @@ from math import inf
 from typing import Literal
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Expression, Signal, When
+from tltlc.expression.tree import Expression, SignalValue, When
 from tltlc.io.limits import WORK
 from tltlc.resolve import spec
 from tltlc.resolve.range_proof.cases import (
@@ -28,8 +28,8 @@ from tltlc.resolve.range_proof.cases import (
     variables,
     whens,
 )
-from tltlc.resolve.range_proof.proof import Task, unproved
-from tltlc.resolve.range_proof.region import Box, Region, Variable
+from tltlc.resolve.range_proof.proof import ProofGoal, unproved
+from tltlc.resolve.range_proof.region import Box, ConstrainedBox, Variable
 from tltlc.resolve.range_proof.work import OutOfWorkError, limited, spend
 
 FindingKind = Literal[
@@ -46,7 +46,7 @@ _NO_POINT: Mapping[str, float] = {}
 
 
 @record
-class Finding:
+class RangeProblem:
     """A property of a predicate that is wrong or could not be proved.
 
     ``witness`` gives the value of each signal and param at the point in ``message``. It is empty if
@@ -65,7 +65,7 @@ def check_predicate(
     params: Mapping[str, spec.Param],
     low: float,
     high: float,
-) -> tuple[Finding, ...]:
+) -> tuple[RangeProblem, ...]:
     """Return the findings on a predicate with the declared range ``[low, high]``.
 
     The checks cover all values of the signals and params. ``signals`` and ``params`` hold at least
@@ -92,11 +92,11 @@ _STEPS_OF_A_QUESTION = _MOST_STEPS // 3
 _TOO_LONG = f"the check takes too many steps: {_MOST_STEPS:,} are allowed"
 
 
-def _unchecked(aspect: Literal["range", "continuity"], why: str) -> Finding:
-    return Finding("range_unchecked" if aspect == "range" else "continuity_unchecked", why)
+def _unchecked(aspect: Literal["range", "continuity"], why: str) -> RangeProblem:
+    return RangeProblem("range_unchecked" if aspect == "range" else "continuity_unchecked", why)
 
 
-def _findings(predicate: Predicate) -> tuple[Finding, ...]:
+def _findings(predicate: Predicate) -> tuple[RangeProblem, ...]:
     """Check the range, then continuity. Continuity is skipped if the range cannot be checked."""
     try:
         with limited(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
@@ -108,7 +108,7 @@ def _findings(predicate: Predicate) -> tuple[Finding, ...]:
     return tuple(finding for finding in (range_finding, _bounded_continuity(predicate)) if finding is not None)
 
 
-def _bounded_continuity(predicate: Predicate) -> Finding | None:
+def _bounded_continuity(predicate: Predicate) -> RangeProblem | None:
     try:
         return _check_continuity(predicate)
     except TooManyCasesError:
@@ -135,12 +135,12 @@ class Predicate:
     high: float
 
 
-def _check_range(predicate: Predicate) -> Finding | None:
-    whole = Region(predicate.box, {})
+def _check_range(predicate: Predicate) -> RangeProblem | None:
+    whole = ConstrainedBox(predicate.box, {})
     low, high = predicate.low, predicate.high
-    tasks = [Task(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
+    tasks = [ProofGoal(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
     tasks += [
-        Task(operand.value, operand.constraints, -inf, inf) for operand in condition_operands(predicate.expression)
+        ProofGoal(operand.value, operand.constraints, -inf, inf) for operand in condition_operands(predicate.expression)
     ]
     doubtful = unproved(tasks, whole)
     if not doubtful:
@@ -150,10 +150,10 @@ def _check_range(predicate: Predicate) -> Finding | None:
         return wrong
     if _proves_exactly("range", predicate, doubtful, whole):
         return None
-    return Finding("range_unproved", f"could not prove that the value stays in [{_number(low)}, {_number(high)}]")
+    return RangeProblem("range_unproved", f"could not prove that the value stays in [{_number(low)}, {_number(high)}]")
 
 
-def _wrong(predicate: Predicate) -> Finding | None:
+def _wrong(predicate: Predicate) -> RangeProblem | None:
     """Return a point where the value leaves its range or is undefined.
 
     Returns None if the search finds no such point within its steps.
@@ -168,14 +168,14 @@ def _wrong(predicate: Predicate) -> Finding | None:
         return None
     values = _by_name(witness.point)
     problem = witness.reason if witness.value is None else f"is {_number(witness.value)}"
-    return Finding("range_wrong", f"{_where(values)}the value {problem}", values, witness.is_undefined)
+    return RangeProblem("range_wrong", f"{_where(values)}the value {problem}", values, witness.is_undefined)
 
 
-def _check_continuity(predicate: Predicate) -> Finding | None:
-    unproved_finding = Finding(
+def _check_continuity(predicate: Predicate) -> RangeProblem | None:
+    unproved_finding = RangeProblem(
         "continuity_unproved", "could not prove that the value is continuous between its `when` cases"
     )
-    doubtful: list[Task] = []
+    doubtful: list[ProofGoal] = []
     for when in whens(predicate.expression):
         tasks = _doubtful_borders(when, predicate)
         if not tasks:
@@ -187,24 +187,24 @@ def _check_continuity(predicate: Predicate) -> Finding | None:
         if jump is not None:
             values = _by_name(jump.point)
             message = f"{_where(values)}the value jumps from {_number(jump.before)} to {_number(jump.after)}"
-            return Finding("discontinuous", message, values)
-    if not doubtful or _proves_exactly("continuity", predicate, doubtful, Region(predicate.box, {})):
+            return RangeProblem("discontinuous", message, values)
+    if not doubtful or _proves_exactly("continuity", predicate, doubtful, ConstrainedBox(predicate.box, {})):
         return None
     return unproved_finding
 
 
-def _doubtful_borders(when: When, predicate: Predicate) -> list[Task]:
+def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
     """Return the proofs that are still needed where the cases of a ``when`` meet."""
     all_cases = cases(when)
     if len(all_cases) < 2:
         return []
     from tltlc.resolve.range_proof.continuity import agreement, meetings, proves_agreement
 
-    pairs = meetings(all_cases, Region(predicate.box, {}), predicate.bools)
+    pairs = meetings(all_cases, ConstrainedBox(predicate.box, {}), predicate.bools)
     return [agreement(meeting) for meeting in pairs if not proves_agreement(meeting)]
 
 
-def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whole: Region) -> bool:
+def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[ProofGoal], whole: ConstrainedBox) -> bool:
     """Whether sympy proves the remaining tasks, now or in a cached answer."""
     from tltlc.resolve.range_proof import memory
 
@@ -235,7 +235,7 @@ def box_of(
     box: dict[Variable, tuple[float, float]] = {}
     bools = set()
     for variable in variables(expression):
-        declared = signals[variable.name] if isinstance(variable, Signal) else params[variable.name]
+        declared = signals[variable.name] if isinstance(variable, SignalValue) else params[variable.name]
         if declared.type == "bool":
             bools.add(variable)
             box[variable] = (0.0, 1.0)

@@ -13,11 +13,17 @@ from itertools import combinations
 from math import inf
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Expression, Op, Signal
-from tltlc.resolve.range_proof.cases import MOST_MEETING_CASES, Case, Constraint, TooManyCasesError, variables
+from tltlc.expression.tree import Expression, Op, SignalValue
+from tltlc.resolve.range_proof.cases import (
+    MOST_MEETING_CASES,
+    ConstrainedValue,
+    Constraint,
+    TooManyCasesError,
+    variables,
+)
 from tltlc.resolve.range_proof.interval import UndefinedError
-from tltlc.resolve.range_proof.proof import Task, holds_at_once, proves_defined, proves_within
-from tltlc.resolve.range_proof.region import Region, Variable
+from tltlc.resolve.range_proof.proof import ProofGoal, holds_at_once, proves_defined, proves_within
+from tltlc.resolve.range_proof.region import ConstrainedBox, Variable
 
 _PARTS = 30
 
@@ -26,13 +32,15 @@ _PARTS = 30
 class Meeting:
     """Two cases and a region that contains every point where they meet."""
 
-    first: Case
-    second: Case
+    first: ConstrainedValue
+    second: ConstrainedValue
     constraints: tuple[Constraint, ...]
-    region: Region
+    region: ConstrainedBox
 
 
-def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable]) -> Iterator[Meeting]:
+def meetings(
+    all_cases: Sequence[ConstrainedValue], whole: ConstrainedBox, bools: frozenset[Variable]
+) -> Iterator[Meeting]:
     """Yield the pairs of cases with different values that may meet. Raises TooManyCasesError."""
     if len(all_cases) > MOST_MEETING_CASES:
         raise TooManyCasesError
@@ -63,20 +71,20 @@ def proves_agreement(meeting: Meeting) -> bool:
     return proves_within(difference, meeting.region, 0.0, 0.0, _PARTS)
 
 
-def agreement(meeting: Meeting) -> Task:
+def agreement(meeting: Meeting) -> ProofGoal:
     """Return the task of proving that two cases agree where they meet."""
     difference = Op("-", (meeting.first.value, meeting.second.value))
-    return Task(difference, meeting.constraints, 0.0, 0.0)
+    return ProofGoal(difference, meeting.constraints, 0.0, 0.0)
 
 
 def _closed(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
     """Return the constraint on the border: ``>=`` if a signal can come arbitrarily close to it."""
-    if any(isinstance(v, Signal) and v not in bools for v in variables(constraint.difference)):
+    if any(isinstance(v, SignalValue) and v not in bools for v in variables(constraint.difference)):
         return Constraint(constraint.difference, False)
     return constraint
 
 
-def _same_after_substitution(difference: Expression, region: Region) -> bool:
+def _same_after_substitution(difference: Expression, region: ConstrainedBox) -> bool:
     """Whether the difference is zero after substitution.
 
     Each equation that holds on the region is solved for a factor, which is then replaced.

@@ -16,11 +16,11 @@ from typing import Any
 
 import sympy
 
-from tltlc.expression.tree import Const, Expression, Op, Signal
+from tltlc.expression.tree import Const, Expression, Op, SignalValue
 from tltlc.resolve.range_proof.cases import Constraint
 from tltlc.resolve.range_proof.interval import Interval, UndefinedError
 from tltlc.resolve.range_proof.proof import TOLERANCE, proves_within
-from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 from tltlc.resolve.range_proof.work import spend
 
 LARGEST_DEGREE = 8
@@ -243,22 +243,22 @@ def _degree(f: Term, x: Term) -> int:
     return int(max(sympy.degree(above, x), sympy.degree(below, x)))
 
 
-def _region(limits: Sequence[Term], ranges: Ranges) -> Region | None:
-    whole = Region({Signal(symbol.name): side for symbol, side in ranges.items()}, {})
+def _region(limits: Sequence[Term], ranges: Ranges) -> ConstrainedBox | None:
+    whole = ConstrainedBox({SignalValue(symbol.name): side for symbol, side in ranges.items()}, {})
     return whole.where(Constraint(_expression(limit), False) for limit in limits)
 
 
-def _sides(region: Region) -> Ranges:
+def _sides(region: ConstrainedBox) -> Ranges:
     return {sympy.Symbol(variable.name, real=True): side for variable, side in region.box.items()}
 
 
-def _proves_at_once(f: Term, region: Region, strict: bool) -> bool:
+def _proves_at_once(f: Term, region: ConstrainedBox, strict: bool) -> bool:
     if strict:
         return _bound(f, region)[0] > 0
     return proves_within(_expression(f), region, 0.0, inf, _PARTS)
 
 
-def _bound(f: Term, region: Region) -> Interval:
+def _bound(f: Term, region: ConstrainedBox) -> Interval:
     try:
         return bound(_expression(f), region)
     except UndefinedError:
@@ -271,7 +271,7 @@ def _expression(f: Term) -> Expression:
     if below != 1:
         return Op("/", (_expression(above), _expression(below)))
     if f.is_Symbol:
-        return Signal(f.name)
+        return SignalValue(f.name)
     if f.is_number:
         return Const(_number(f))
     if f.is_Add or f.is_Mul:

@@ -16,11 +16,11 @@ from tltlc.resolve.range_proof.cases import Constraint, TooManyCasesError, cases
 from tltlc.resolve.range_proof.elimination import LARGEST_DEGREE, GiveUpError, Prover, Term
 from tltlc.resolve.range_proof.interval import Interval, UndefinedError
 from tltlc.resolve.range_proof.normal_form import MOST_BITS, exact
-from tltlc.resolve.range_proof.proof import Task, proves_defined, proves_within
-from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.proof import ProofGoal, proves_defined, proves_within
+from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 
 
-def proves_all(tasks: Iterable[Task], whole: Region) -> bool:
+def proves_all(tasks: Iterable[ProofGoal], whole: ConstrainedBox) -> bool:
     """Whether each task is proved: its value is defined and within bounds where the constraints hold."""
     try:
         for task in tasks:
@@ -43,7 +43,7 @@ def proves_all(tasks: Iterable[Task], whole: Region) -> bool:
 
 
 def proves_within_exactly(
-    value: Expression, constraints: Sequence[Constraint], region: Region, low: float, high: float
+    value: Expression, constraints: Sequence[Constraint], region: ConstrainedBox, low: float, high: float
 ) -> bool:
     """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE.
 
@@ -70,7 +70,7 @@ def proves_within_exactly(
 class _Translation:
     """Translates expressions to sympy terms, with one symbol per variable and per other function."""
 
-    def __init__(self, region: Region) -> None:
+    def __init__(self, region: ConstrainedBox) -> None:
         self.region = region
         self.ranges: dict[Term, Interval] = {}
         self.equations: list[Term] = []

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Expression, Signal
-from tltlc.resolve.range_proof.cases import Case
+from tltlc.expression.tree import Expression, SignalValue
+from tltlc.resolve.range_proof.cases import ConstrainedValue
 from tltlc.resolve.range_proof.interval import midpoint
 from tltlc.resolve.range_proof.region import Box, Variable
 from tltlc.resolve.range_proof.witness import CLEARLY, Point, points, value_at
@@ -26,7 +26,9 @@ class Jump:
     after: float
 
 
-def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools: frozenset[Variable]) -> Jump | None:
+def find_jump(
+    all_cases: Sequence[ConstrainedValue], expression: Expression, box: Box, bools: frozenset[Variable]
+) -> Jump | None:
     """Return a border point between two cases where the expression clearly jumps.
 
     Returns None if the search finds no such point. The cases belong to one ``when`` in the
@@ -39,7 +41,7 @@ def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools
         if here is None:
             continue
         for variable in box:
-            if variable in bools or not isinstance(variable, Signal):
+            if variable in bools or not isinstance(variable, SignalValue):
                 continue
             for end in _along(start, variable, box, expression):
                 there = _active(all_cases, end)
@@ -55,7 +57,7 @@ def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools
     return None
 
 
-def _active(all_cases: Sequence[Case], point: Point) -> Case | None:
+def _active(all_cases: Sequence[ConstrainedValue], point: Point) -> ConstrainedValue | None:
     for case in all_cases:
         for constraint in case.constraints:
             value = value_at(constraint.difference, point).value
@@ -78,7 +80,7 @@ def _along(start: Point, variable: Variable, box: Box, expression: Expression) -
 
 
 def _jump_between(
-    all_cases: Sequence[Case], expression: Expression, start: Point, end: Point, variable: Variable
+    all_cases: Sequence[ConstrainedValue], expression: Expression, start: Point, end: Point, variable: Variable
 ) -> Jump | None:
     """Bisect between points of different cases down to the border; return the jump there, if any."""
     low, high = start[variable], end[variable]

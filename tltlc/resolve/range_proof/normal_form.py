@@ -9,10 +9,10 @@ from __future__ import annotations
 from fractions import Fraction
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.resolve.range_proof import interval
 from tltlc.resolve.range_proof.interval import Interval
-from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 from tltlc.resolve.range_proof.work import current, spend
 
 Monomial = frozenset[tuple[Expression, int]]
@@ -67,7 +67,7 @@ def _quotient(expression: Expression) -> Quotient:
         exponent = expression.args[-1]
         if expression.op == "^" and isinstance(exponent, Const) and exponent.value == int(exponent.value):
             return _power(quotient(expression.args[0]), int(exponent.value))
-    assert isinstance(expression, (Signal, Param, Op)), "cases have no `when`"
+    assert isinstance(expression, (SignalValue, ParamValue, Op)), "cases have no `when`"
     return Quotient({frozenset([(expression, 1)]): Fraction(1)}, constant(1))
 
 
@@ -81,7 +81,7 @@ def constant(value: Fraction | int) -> Polynomial:
     return {ONE: Fraction(value)} if value else {}
 
 
-def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
+def polynomial_bound(polynomial: Polynomial, region: ConstrainedBox) -> Interval:
     """Return an interval that contains the polynomial's values on a region.
 
     Raises UndefinedError like its factors, and TooLargeError for a coefficient that is not a float.
@@ -230,7 +230,7 @@ def _ratio(a: Polynomial, b: Polynomial) -> Fraction | None:
     return _multiple({m: c for m, c in a.items() if m}, {m: c for m, c in b.items() if m})
 
 
-def _sum_of_terms(polynomial: Polynomial, region: Region) -> Interval:
+def _sum_of_terms(polynomial: Polynomial, region: ConstrainedBox) -> Interval:
     total: Interval = (0.0, 0.0)
     spend(len(polynomial))
     for monomial, coefficient in polynomial.items():

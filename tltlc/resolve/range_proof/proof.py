@@ -14,7 +14,7 @@ from tltlc.core.record import record, replace
 from tltlc.expression.tree import Expression, Op
 from tltlc.resolve.range_proof.cases import Constraints, size
 from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError, meet
-from tltlc.resolve.range_proof.region import Region, bound
+from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 from tltlc.resolve.range_proof.work import spend
 
 TOLERANCE = 1e-9  # the most that rounding may add to a value on a bound
@@ -24,7 +24,7 @@ _FEWEST_PARTS = 10
 
 
 @record
-class Task:
+class ProofGoal:
     """A proof goal: the value is defined and in ``[low, high]`` where all constraints hold."""
 
     value: Expression
@@ -33,7 +33,7 @@ class Task:
     high: float
 
 
-def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
+def unproved(tasks: Sequence[ProofGoal], whole: ConstrainedBox) -> list[ProofGoal]:
     """Return the tasks that are not proved on the whole region; the total work is bounded."""
     nodes = sum(size(task.value, _NODES_OF_ALL) for task in tasks)
     parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
@@ -46,7 +46,7 @@ def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
     return open_tasks
 
 
-def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = MOST_PARTS) -> bool:
+def proves_within(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int = MOST_PARTS) -> bool:
     """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE, on the region.
 
     ``parts`` limits the subdivision.
@@ -60,7 +60,7 @@ def proves_within(value: Expression, region: Region, low: float, high: float, pa
     return _holds_in_parts(value, region, low, high, parts)
 
 
-def holds_at_once(value: Expression, region: Region, low: float, high: float) -> bool:
+def holds_at_once(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
     """Like proves_within, but with one interval evaluation."""
     try:
         return inside(bound(value, region), low, high)
@@ -68,7 +68,7 @@ def holds_at_once(value: Expression, region: Region, low: float, high: float) ->
         return False
 
 
-def proves_defined(value: Expression, region: Region, parts: int = MOST_PARTS) -> bool:
+def proves_defined(value: Expression, region: ConstrainedBox, parts: int = MOST_PARTS) -> bool:
     """Whether the value is provably defined at each point of the region."""
     return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, parts)
 
@@ -78,11 +78,11 @@ def inside(bounds: Interval, low: float, high: float) -> bool:
     return bounds[0] >= low - TOLERANCE and bounds[1] <= high + TOLERANCE
 
 
-def _defined(value: Expression, region: Region) -> bool:
+def _defined(value: Expression, region: ConstrainedBox) -> bool:
     return holds_at_once(value, region, -inf, inf)
 
 
-def _with_ratios(value: Expression, region: Region) -> Region:
+def _with_ratios(value: Expression, region: ConstrainedBox) -> ConstrainedBox:
     """Return the region with bounds on each ratio in a defined value.
 
     The bounds are at least 0 or -1 and at most 0 or 1, where these can be proved.
@@ -104,7 +104,7 @@ def _ratios(value: Expression) -> Iterator[Op]:
             yield value
 
 
-def _proves_by_sign(value: Expression, region: Region, low: float, high: float) -> bool:
+def _proves_by_sign(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
     """Whether the value is provably in bounds by its sign.
 
     For ``n/d`` with d of one sign, the signs of ``n - low * d`` and ``n - high * d`` decide.
@@ -127,7 +127,7 @@ def _proves_by_sign(value: Expression, region: Region, low: float, high: float) 
     return True
 
 
-def _holds_in_parts(value: Expression, region: Region, low: float, high: float, limit: int) -> bool:
+def _holds_in_parts(value: Expression, region: ConstrainedBox, low: float, high: float, limit: int) -> bool:
     parts, tried = [region], 0
     while parts:
         part = parts.pop()

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import copysign, inf, log1p, sqrt
 
 from tltlc.core.record import record, replace
-from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.resolve.range_proof import interval
 from tltlc.resolve.range_proof.cases import Constraint
 from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError
 from tltlc.resolve.range_proof.work import spend
 
-Variable = Signal | Param
+Variable = SignalValue | ParamValue
 Box = Mapping[Variable, Interval]
 
 _ROUNDS = 6
@@ -20,7 +20,7 @@ _FAR_AWAY = 1e6
 
 
 @record
-class Region:
+class ConstrainedBox:
     """The points of a box where some expressions lie within known bounds.
 
     ``nonzero`` expressions are not 0 anywhere. A region may be empty without being recognised as
@@ -31,7 +31,7 @@ class Region:
     known: Mapping[Expression, Interval]
     nonzero: frozenset[Expression] = frozenset()
 
-    def where(self, constraints: Iterable[Constraint]) -> Region | None:
+    def where(self, constraints: Iterable[Constraint]) -> ConstrainedBox | None:
         """Return the part where the constraints hold, with its box narrowed.
 
         Returns None if it is provably empty.
@@ -47,9 +47,9 @@ class Region:
                     nonzero.add(mirrored)
             if constraint.strict:
                 nonzero.add(difference)
-        return Region(self.box, known, frozenset(nonzero)).narrowed()
+        return ConstrainedBox(self.box, known, frozenset(nonzero)).narrowed()
 
-    def narrowed(self) -> Region | None:
+    def narrowed(self) -> ConstrainedBox | None:
         """Return the same points in a box as small as the known bounds allow.
 
         Returns None if the bounds exclude each other.
@@ -70,7 +70,7 @@ class Region:
                 break
         return replace(self, box=box)
 
-    def halves(self) -> tuple[Region, Region] | None:
+    def halves(self) -> tuple[ConstrainedBox, ConstrainedBox] | None:
         """Return the region cut in two across its relatively longest side, or None if no side can be cut."""
         widest = max(self.box, key=lambda variable: _length(self.box[variable]), default=None)
         if widest is None or _length(self.box[widest]) < 1e-9:
@@ -103,7 +103,7 @@ def _operands(constraint: Constraint) -> tuple[Expression, Expression]:
     return left, right
 
 
-def bound(expression: Expression, region: Region) -> Interval:
+def bound(expression: Expression, region: ConstrainedBox) -> Interval:
     """Return an interval that contains every value of an expression without ``when`` on a region.
 
     Raises UndefinedError if the expression may be undefined somewhere in the region.
@@ -113,11 +113,11 @@ def bound(expression: Expression, region: Region) -> Interval:
     return (interval.meet(value, known) or known) if known else value
 
 
-def _bound(expression: Expression, region: Region) -> Interval:
+def _bound(expression: Expression, region: ConstrainedBox) -> Interval:
     spend()
     if isinstance(expression, Const):
         return expression.value, expression.value
-    if isinstance(expression, (Signal, Param)):
+    if isinstance(expression, (SignalValue, ParamValue)):
         return region.box[expression]
     assert isinstance(expression, Op), "cases have no `when`"
     nonzero = expression.op == "/" and bool(region.nonzero) and expression.args[1] in region.nonzero
@@ -193,7 +193,7 @@ class _Narrowing:
         remaining = interval.meet(self._bound(expression), target)
         if remaining is None:
             raise _EmptyError
-        if isinstance(expression, (Signal, Param)):
+        if isinstance(expression, (SignalValue, ParamValue)):
             if self._box[expression] != remaining:
                 self._box[expression] = remaining
                 self._bounds.clear()
@@ -242,7 +242,7 @@ class _Narrowing:
     def _computed(self, expression: Expression) -> Interval | None:
         if isinstance(expression, Const):
             return expression.value, expression.value
-        if isinstance(expression, (Signal, Param)):
+        if isinstance(expression, (SignalValue, ParamValue)):
             return self._box[expression]
         assert isinstance(expression, Op), "cases have no `when`"
         if expression not in self._bounds:

@@ -9,7 +9,7 @@ from math import inf, isfinite, prod
 
 from tltlc.core.record import record
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import LEAST, Const, Expression, Param, Signal, nodes
+from tltlc.expression.tree import LEAST, Const, Expression, ParamValue, SignalValue, nodes
 from tltlc.resolve.range_proof.interval import Interval, midpoint
 from tltlc.resolve.range_proof.region import Box, Variable
 from tltlc.resolve.range_proof.work import OutOfWorkError, spend
@@ -24,7 +24,7 @@ _SPREAD = (1.0, 3.0, 10.0, 100.0, 1e6)  # distances from the finite end of an un
 
 
 @record
-class Witness:
+class SamplePoint:
     """A point with its value, or with the reason why there is no value."""
 
     point: Point
@@ -34,20 +34,20 @@ class Witness:
     """Whether the expression divides by zero there, or takes a root or power that no real number has."""
 
 
-def value_at(expression: Expression, point: Point) -> Witness:
+def value_at(expression: Expression, point: Point) -> SamplePoint:
     """Return the value of an expression at a point, or the reason why there is none."""
     spend(_cost(expression) + len(point) // 4)
-    signals = {variable.name: value for variable, value in point.items() if isinstance(variable, Signal)}
-    params = {variable.name: value for variable, value in point.items() if isinstance(variable, Param)}
+    signals = {variable.name: value for variable, value in point.items() if isinstance(variable, SignalValue)}
+    params = {variable.name: value for variable, value in point.items() if isinstance(variable, ParamValue)}
     try:
         value = evaluate(expression, signals, params)
     except ZeroDivisionError:
-        return Witness(point, None, "divides by zero", is_undefined=True)
+        return SamplePoint(point, None, "divides by zero", is_undefined=True)
     except OverflowError:
-        return Witness(point, None, "is too large to compute")
+        return SamplePoint(point, None, "is too large to compute")
     except ValueError:
-        return Witness(point, None, "takes a root or power that no real number has", is_undefined=True)
-    return Witness(point, value) if isfinite(value) else Witness(point, None, "is too large to compute")
+        return SamplePoint(point, None, "takes a root or power that no real number has", is_undefined=True)
+    return SamplePoint(point, value) if isfinite(value) else SamplePoint(point, None, "is too large to compute")
 
 
 @lru_cache(maxsize=512)
@@ -58,7 +58,7 @@ def _cost(expression: Expression) -> int:
 
 def find_outside(
     expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
-) -> Witness | None:
+) -> SamplePoint | None:
     """Return a point of the box where the value is undefined or clearly outside ``[low, high]``.
 
     Returns None if there is no such point among those tried. Simple points come first; a later
@@ -66,10 +66,10 @@ def find_outside(
     only 0 or 1. Raises OutOfWorkError if no point is found within the step limit.
     """
 
-    def excess(witness: Witness) -> float:
+    def excess(witness: SamplePoint) -> float:
         return inf if witness.value is None else max(low - witness.value, witness.value - high)
 
-    best: Witness | None = None
+    best: SamplePoint | None = None
     try:
         for point in points(expression, box, bools):
             here = value_at(expression, point)
@@ -161,8 +161,12 @@ def _at(side: Interval, fraction: float, is_bool: bool) -> float:
 
 
 def _climb(
-    start: Witness, excess: Callable[[Witness], float], expression: Expression, box: Box, bools: frozenset[Variable]
-) -> Witness:
+    start: SamplePoint,
+    excess: Callable[[SamplePoint], float],
+    expression: Expression,
+    box: Box,
+    bools: frozenset[Variable],
+) -> SamplePoint:
     """Return a local maximum of the excess, by shrinking steps along the axes."""
     best = start
     steps = {v: (high - low) / 8 if isfinite(high - low) else 1.0 for v, (low, high) in box.items() if v not in bools}

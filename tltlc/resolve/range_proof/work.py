@@ -17,7 +17,7 @@ class OutOfWorkError(Exception):
     """A check has used all its steps."""
 
 
-class Work:
+class ProofBudget:
     """The remaining steps, and a cache of answers for as long as the limit is active."""
 
     __slots__ = ("left", "memo")
@@ -27,10 +27,10 @@ class Work:
         self.memo: dict[Any, Any] = {}
 
 
-_CURRENT: ContextVar[Work | None] = ContextVar("work", default=None)
+_CURRENT: ContextVar[ProofBudget | None] = ContextVar("work", default=None)
 
 
-def current() -> Work | None:
+def current() -> ProofBudget | None:
     """Return the active limit, or None."""
     return _CURRENT.get()
 
@@ -45,7 +45,7 @@ def spend(steps: int = 1) -> None:
 
 
 @contextmanager
-def limited(steps: int, *, counts_outside: bool = True) -> Iterator[Work]:
+def limited(steps: int, *, counts_outside: bool = True) -> Iterator[ProofBudget]:
     """Limit the block to ``steps``.
 
     If ``counts_outside``, the steps also count against the enclosing limit, and the block gets no
@@ -53,7 +53,7 @@ def limited(steps: int, *, counts_outside: bool = True) -> Iterator[Work]:
     """
     outer = _CURRENT.get() if counts_outside else None
     allowed = steps if outer is None else min(steps, max(0, outer.left))
-    work = Work(allowed)
+    work = ProofBudget(allowed)
     token = _CURRENT.set(work)
     try:
         yield work

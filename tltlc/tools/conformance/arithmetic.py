@@ -5,14 +5,24 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from tltlc.expression.tree import ArithmeticOp, Condition, ConditionOp, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import (
+    ArithmeticOp,
+    Condition,
+    ConditionOp,
+    Const,
+    Expression,
+    Op,
+    ParamValue,
+    SignalValue,
+    When,
+)
 from tltlc.logic import formula as f
 from tltlc.resolve import spec
-from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import drawn, table
 
-_X, _Y, _SEEN, _GAIN = Signal("x"), Signal("y"), Signal("seen"), Param("gain")
+_X, _Y, _SEEN, _GAIN = SignalValue("x"), SignalValue("y"), SignalValue("seen"), ParamValue("gain")
 _SIGNALS: Final = (spec.Signal("x", "number", None, None), spec.Signal("y", "number", None, None))
 _SEEN_SIGNAL: Final = spec.Signal("seen", "bool", 0.0, 1.0)
 _GAIN_PARAM: Final = spec.Param("gain", "number", 0.3, 0.1, 2.5)
@@ -112,19 +122,19 @@ _EXPRESSIONS: Final[dict[str, tuple[Expression, Expression, tuple[float, ...]]]]
 }
 
 
-def _both(name: str, first: Expression, second: Expression) -> Case:
+def _both(name: str, first: Expression, second: Expression) -> ConformanceCase:
     # The formula asks for this again and again, so that every step shows a value.
     formula = f.always(f.eventually(f.and_(f.atom("first"), f.atom("second"))))
     signals = (*_SIGNALS, _SEEN_SIGNAL) if name == "cases" else _SIGNALS
     fspa = automaton(name, formula, {"first": first, "second": second}, signals, (_GAIN_PARAM,))
-    return Case(fspa, "", ())
+    return ConformanceCase(fspa, "", ())
 
 
-def _function(number: int, name: str) -> Case:
+def _function(number: int, name: str) -> ConformanceCase:
     first, second, pool = _EXPRESSIONS[name]
     fspa = _both(name, first, second).fspa
     draw, pools = Draw(2000 + number), {"x": pool, "y": pool}
-    return Case(fspa, f"Predicates: {name.replace('_', ' ')}.", (drawn(fspa, draw, 40, pools),))
+    return ConformanceCase(fspa, f"Predicates: {name.replace('_', ' ')}.", (drawn(fspa, draw, 40, pools),))
 
 
 _REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float], ...]]]] = {
@@ -149,14 +159,14 @@ _REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float
 """Two predicates, and pairs of x and y at which one of them has no value."""
 
 
-def _refusing(name: str) -> Case:
+def _refusing(name: str) -> ConformanceCase:
     first, second, samples = _REFUSED[name]
     fspa = _both(name, first, second).fspa
     columns = [signal.name for signal in fspa.signals]
     before = [(1, 2), (1.5, 2.5)]
     after = [(1, 2)]
     traces = [table(columns, [*before, sample, *after]) for sample in samples]
-    return Case(fspa, f"Predicates without a value: {name.replace('_', ' ')}.", tuple(traces))
+    return ConformanceCase(fspa, f"Predicates without a value: {name.replace('_', ' ')}.", tuple(traces))
 
 
 CASES: Final[Makers] = {

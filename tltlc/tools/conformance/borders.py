@@ -13,7 +13,7 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.tools.conformance.case import Case, Makers
+from tltlc.tools.conformance.case import ConformanceCase, Makers
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import table
 
@@ -94,7 +94,7 @@ def _any_number(draw: Draw) -> float:
     return sign * ldexp(1 + draw.below(1 << 20) / (1 << 20), draw.below(2046) - 1022)
 
 
-def _case(name: str, borders: tuple[Border, ...]) -> Case:
+def _case(name: str, borders: tuple[Border, ...]) -> ConformanceCase:
     """Return a case with all comparisons, required again and again; in each row at most one is false."""
     numbered = list(enumerate(borders, start=1))
     declarations = "".join(border.declaration(number) for number, border in numbered)
@@ -107,10 +107,12 @@ def _case(name: str, borders: tuple[Border, ...]) -> Case:
         for number, border in numbered
         for values in border.values()
     ]
-    return Case(fspa, "Comparisons next to their thresholds, in ranges of all sizes.", (table(columns, rows),), text)
+    return ConformanceCase(
+        fspa, "Comparisons next to their thresholds, in ranges of all sizes.", (table(columns, rows),), text
+    )
 
 
-def _drawn(name: str, seed: int) -> Case:
+def _drawn(name: str, seed: int) -> ConformanceCase:
     return _case(name, drawn_borders(Draw(seed), 8))
 
 

@@ -8,14 +8,14 @@ from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.expression.tree import Expression, nodes
-from tltlc.expression.tree import Param as NamedParam
-from tltlc.expression.tree import Signal as NamedSignal
+from tltlc.expression.tree import ParamValue as NamedParam
+from tltlc.expression.tree import SignalValue as NamedSignal
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 
 @record
-class Case:
+class ConformanceCase:
     """One case; the name of its automaton is the name of the case.
 
     ``about`` is a sentence on its purpose. ``source`` is the text of its spec, if there is one.
@@ -28,7 +28,7 @@ class Case:
     source: str | None = None
 
 
-Makers = Mapping[str, Callable[[], Case]]
+Makers = Mapping[str, Callable[[], ConformanceCase]]
 """Cases by name, each as a function that builds it, so that one case is built without the others."""
 
 

@@ -16,7 +16,7 @@ from tltlc.expression.tree import Const, Op, nodes
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.tools.conformance import arithmetic, borders, odd_traces, operators, random_cases, shapes
 from tltlc.tools.conformance import file_cases as written
-from tltlc.tools.conformance.case import Case, Makers
+from tltlc.tools.conformance.case import ConformanceCase, Makers
 from tltlc.tools.conformance.expected import COLUMNS, Expected, Refusal, expected
 
 CASES: Final[Makers] = {
@@ -79,7 +79,7 @@ def _is_product(node: Op) -> bool:
     return node.op == "^" and isinstance(exponent, Const) and exponent.value in MULTIPLIED_EXPONENTS
 
 
-def _folder(case: Case, outcomes: Sequence[Expected]) -> backends.Files:
+def _folder(case: ConformanceCase, outcomes: Sequence[Expected]) -> backends.Files:
     """Return the files of one case."""
     name = case.fspa.name
     contents = backends.emit("json", case.fspa)
@@ -100,7 +100,7 @@ def _refusal_text(refusal: Refusal) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
+def _entry(case: ConformanceCase, outcomes: Sequence[Expected]) -> dict[str, Any]:
     """Return the entry of a case in the index."""
     fspa, name = case.fspa, case.fspa.name
     traces = []

@@ -13,7 +13,7 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.evaluate import evaluate
 from tltlc.monitor import Monitor, Step
-from tltlc.monitor.trace_rows import Lines, Table, read_rows
+from tltlc.monitor.trace_rows import TraceLines, TraceTable, read_rows
 from tltlc.monitor.traces import Sample, read_trace
 
 Kind = Literal["no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"]
@@ -97,8 +97,8 @@ def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sam
 
 def _missing(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
     """Return the signals without a column."""
-    table = read_rows(Lines(io.BytesIO(trace), "trace"))
-    header = table.header if isinstance(table, Table) else ()
+    table = read_rows(TraceLines(io.BytesIO(trace), "trace"))
+    header = table.header if isinstance(table, TraceTable) else ()
     return tuple(signal.name for signal in fspa.signals if signal.name not in header)
 
 

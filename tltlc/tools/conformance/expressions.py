@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.expression.tree import ArithmeticOp, Condition, ConditionOp, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import (
+    ArithmeticOp,
+    Condition,
+    ConditionOp,
+    Const,
+    Expression,
+    Op,
+    ParamValue,
+    SignalValue,
+    When,
+)
 from tltlc.resolve import spec
 from tltlc.tools.conformance.draw import Draw
 
@@ -69,5 +79,5 @@ def _leaf(draw: Draw) -> Expression:
     if draw.chance(0.25):
         return Const(draw.one(_NUMBERS))
     if draw.chance(0.2):
-        return Param(draw.one(PARAMS).name)
-    return Signal(draw.one(SIGNALS).name)
+        return ParamValue(draw.one(PARAMS).name)
+    return SignalValue(draw.one(SIGNALS).name)

@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
-from tltlc.tools.conformance.case import Case, Makers
+from tltlc.tools.conformance.case import ConformanceCase, Makers
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import Pools, drawn, lively
 
@@ -36,14 +36,14 @@ _POOLS: Final[dict[str, Pools]] = {
 }
 
 
-def _case(number: int, name: str) -> Case:
+def _case(number: int, name: str) -> ConformanceCase:
     text = _read(f"{name}.tltl").decode()
     (fspa,) = compile_source(SourceFile(f"{name}.tltl", text), CompileOptions(specs=(name,))).automata
     draw = Draw(7000 + number)
     traces = [lively(fspa, draw, 40, _POOLS.get(name, {})), drawn(fspa, draw, 20)]
     if name in _RECORDED:
         traces.insert(0, _read(f"{name}.csv"))
-    return Case(fspa, _ABOUT[name], tuple(traces), text)
+    return ConformanceCase(fspa, _ABOUT[name], tuple(traces), text)
 
 
 def _read(name: str) -> bytes:

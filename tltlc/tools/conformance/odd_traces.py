@@ -8,16 +8,16 @@ from math import inf, nan
 from typing import Final
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Const, Expression, Op, Signal
+from tltlc.expression.tree import Const, Expression, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.resolve import spec
-from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
 
 SIGNALS: Final = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bool", 0.0, 1.0))
 
 
 @record
-class Odd:
+class OddTrace:
     """A trace, the values of ``x`` and ``seen`` in the samples that are read, and the refused line.
 
     ``line`` counts from 1. It is None if everything is read, and 0 if the trace has no sample.
@@ -33,76 +33,76 @@ _ONE: Final = ((0.5, 1.0),)
 _TWO: Final = ((0.5, 1.0), (-0.25, 0.0))
 
 
-def _row(row: bytes) -> Odd:
+def _row(row: bytes) -> OddTrace:
     """Return a trace whose second row is refused."""
-    return Odd(_HEAD + b"0.5,1\n" + row + b"\n0.5,1\n", _ONE, 3)
+    return OddTrace(_HEAD + b"0.5,1\n" + row + b"\n0.5,1\n", _ONE, 3)
 
 
-def _cell(cell: bytes, value: float | None) -> Odd:
+def _cell(cell: bytes, value: float | None) -> OddTrace:
     """Return a trace with a second value of ``x``; None means that the cell is refused."""
     if value is None:
         return _row(cell + b",1")
-    return Odd(_HEAD + b"0.5,1\n" + cell + b",1\n", (*_ONE, (value, 1.0)))
+    return OddTrace(_HEAD + b"0.5,1\n" + cell + b",1\n", (*_ONE, (value, 1.0)))
 
 
-def _truth(cell: bytes, value: float | None) -> Odd:
+def _truth(cell: bytes, value: float | None) -> OddTrace:
     """Return a trace with a second value of ``seen``; None means that the cell is refused."""
     if value is None:
         return _row(b"0.5," + cell)
-    return Odd(_HEAD + b"0.5,1\n0.5," + cell + b"\n", (*_ONE, (0.5, value)))
+    return OddTrace(_HEAD + b"0.5,1\n0.5," + cell + b"\n", (*_ONE, (0.5, value)))
 
 
-def _note(cell: bytes) -> Odd:
+def _note(cell: bytes) -> OddTrace:
     """Return a trace with a cell in a column that nothing reads."""
-    return Odd(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
+    return OddTrace(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
 
 
-def _bad_note(cell: bytes, line: int = 3) -> Odd:
-    return Odd(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
+def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
+    return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 
-LINES: Final[Mapping[str, Odd]] = {
-    "empty file": Odd(b"", line=0),
-    "line ends alone": Odd(b"\n\r\n\n", line=0),
-    "blanks alone": Odd(b" \t\n\t", line=0),
-    "byte order mark alone": Odd(b"\xef\xbb\xbf", line=0),
-    "header alone": Odd(_HEAD, line=0),
-    "header without a line end": Odd(b"x,seen", line=0),
-    "header and blank lines": Odd(_HEAD + b"\n \r\n", line=0),
-    "LF": Odd(b"x,seen\n0.5,1\n-0.25,0\n", _TWO),
-    "CR LF": Odd(b"x,seen\r\n0.5,1\r\n-0.25,0\r\n", _TWO),
-    "LF and CR LF": Odd(b"x,seen\r\n0.5,1\n-0.25,0\r\n", _TWO),
-    "no line end at the end": Odd(b"x,seen\n0.5,1\n-0.25,0", _TWO),
-    "CR at the end": Odd(b"x,seen\r\n0.5,1\r\n-0.25,0\r", _TWO),
-    "blank lines": Odd(b"\n\r\n \nx,seen\n\n0.5,1\n\t \n\r\n-0.25,0\n\n", _TWO),
-    "the line number counts blank lines": Odd(b"\nx,seen\n\n0.5,1\r\n \n0.5,?\n", _ONE, 6),
-    "CR as line end": Odd(b"x,seen\r0.5,1\r", line=1),
+LINES: Final[Mapping[str, OddTrace]] = {
+    "empty file": OddTrace(b"", line=0),
+    "line ends alone": OddTrace(b"\n\r\n\n", line=0),
+    "blanks alone": OddTrace(b" \t\n\t", line=0),
+    "byte order mark alone": OddTrace(b"\xef\xbb\xbf", line=0),
+    "header alone": OddTrace(_HEAD, line=0),
+    "header without a line end": OddTrace(b"x,seen", line=0),
+    "header and blank lines": OddTrace(_HEAD + b"\n \r\n", line=0),
+    "LF": OddTrace(b"x,seen\n0.5,1\n-0.25,0\n", _TWO),
+    "CR LF": OddTrace(b"x,seen\r\n0.5,1\r\n-0.25,0\r\n", _TWO),
+    "LF and CR LF": OddTrace(b"x,seen\r\n0.5,1\n-0.25,0\r\n", _TWO),
+    "no line end at the end": OddTrace(b"x,seen\n0.5,1\n-0.25,0", _TWO),
+    "CR at the end": OddTrace(b"x,seen\r\n0.5,1\r\n-0.25,0\r", _TWO),
+    "blank lines": OddTrace(b"\n\r\n \nx,seen\n\n0.5,1\n\t \n\r\n-0.25,0\n\n", _TWO),
+    "the line number counts blank lines": OddTrace(b"\nx,seen\n\n0.5,1\r\n \n0.5,?\n", _ONE, 6),
+    "CR as line end": OddTrace(b"x,seen\r0.5,1\r", line=1),
     "CR within a line": _row(b"0.5\r,1"),
     "CR CR LF": _row(b"0.5,1\r\r"),
-    "CR on a line of its own": Odd(_HEAD + b"0.5,1\n\r\r\n0.5,1\n", _ONE, 3),
-    "form feed as line end": Odd(b"x,seen\x0c0.5,1\n", line=1),
+    "CR on a line of its own": OddTrace(_HEAD + b"0.5,1\n\r\r\n0.5,1\n", _ONE, 3),
+    "form feed as line end": OddTrace(b"x,seen\x0c0.5,1\n", line=1),
     "vertical tab as a blank line": _row(b"\x0b"),
-    "next line (U+0085) as line end": Odd("x,seen\x850.5,1\n".encode(), line=1),
+    "next line (U+0085) as line end": OddTrace("x,seen\x850.5,1\n".encode(), line=1),
     "line separator (U+2028) in a note": _note("a\u2028b".encode()),
     "no-break space on a line of its own": _row("\u00a0".encode()),
-    "control Z at the end": Odd(_HEAD + b"0.5,1\n\x1a", _ONE, 3),
-    "byte order mark": Odd(b"\xef\xbb\xbfx,seen\n0.5,1\n-0.25,0\n", _TWO),
-    "byte order mark and quotes": Odd(b'\xef\xbb\xbf"x",seen\n0.5,1\n', _ONE),
-    "byte order mark and a blank line": Odd(b"\xef\xbb\xbf\nx,seen\n0.5,1\n", _ONE),
-    "byte order mark twice": Odd(b"\xef\xbb\xbf\xef\xbb\xbfx,seen\n0.5,1\n", line=1),
-    "byte order mark after a blank line": Odd(b"\n\xef\xbb\xbfx,seen\n0.5,1\n", line=2),
+    "control Z at the end": OddTrace(_HEAD + b"0.5,1\n\x1a", _ONE, 3),
+    "byte order mark": OddTrace(b"\xef\xbb\xbfx,seen\n0.5,1\n-0.25,0\n", _TWO),
+    "byte order mark and quotes": OddTrace(b'\xef\xbb\xbf"x",seen\n0.5,1\n', _ONE),
+    "byte order mark and a blank line": OddTrace(b"\xef\xbb\xbf\nx,seen\n0.5,1\n", _ONE),
+    "byte order mark twice": OddTrace(b"\xef\xbb\xbf\xef\xbb\xbfx,seen\n0.5,1\n", line=1),
+    "byte order mark after a blank line": OddTrace(b"\n\xef\xbb\xbfx,seen\n0.5,1\n", line=2),
     "byte order mark before a value": _row(b"\xef\xbb\xbf0.5,1"),
     "byte order mark in a note": _note(b"\xef\xbb\xbf"),
-    "half a byte order mark": Odd(b"\xef\xbbx,seen\n0.5,1\n", line=1),
-    "UTF-16, little end first": Odd("\ufeffx,seen\n0.5,1\n".encode("utf-16-le"), line=1),
-    "UTF-16, big end first": Odd("\ufeffx,seen\n0.5,1\n".encode("utf-16-be"), line=1),
-    "UTF-16 without a mark": Odd("x,seen\n0.5,1\n".encode("utf-16-le"), line=1),
-    "UTF-32": Odd("\ufeffx,seen\n0.5,1\n".encode("utf-32-le"), line=1),
+    "half a byte order mark": OddTrace(b"\xef\xbbx,seen\n0.5,1\n", line=1),
+    "UTF-16, little end first": OddTrace("\ufeffx,seen\n0.5,1\n".encode("utf-16-le"), line=1),
+    "UTF-16, big end first": OddTrace("\ufeffx,seen\n0.5,1\n".encode("utf-16-be"), line=1),
+    "UTF-16 without a mark": OddTrace("x,seen\n0.5,1\n".encode("utf-16-le"), line=1),
+    "UTF-32": OddTrace("\ufeffx,seen\n0.5,1\n".encode("utf-32-le"), line=1),
     "UTF-8": _note("é µ 漢 \U0001f600".encode()),
     "Latin-1": _bad_note("caf\xe9".encode("latin-1")),
-    "Latin-1 in the header": Odd("x,seen,caf\xe9\n0.5,1,-\n".encode("latin-1"), line=1),
+    "Latin-1 in the header": OddTrace("x,seen,caf\xe9\n0.5,1,-\n".encode("latin-1"), line=1),
     "Latin-1 in quotes, on a later line": _bad_note(b'"a\nb\n\xe9"', 5),
-    "UTF-8 that is cut off": Odd(_HEAD + b"0.5,1\n0.5,1,\xe2\x82", _ONE, 3),
+    "UTF-8 that is cut off": OddTrace(_HEAD + b"0.5,1\n0.5,1,\xe2\x82", _ONE, 3),
     "UTF-8 that goes on in the next line": _bad_note(b"\xe2\n\x82\xac"),
     "UTF-8 that is too long": _bad_note(b"\xc0\xaf"),
     "UTF-8 that is too long, of three bytes": _bad_note(b"\xe0\x9f\xbf"),
@@ -115,23 +115,23 @@ LINES: Final[Mapping[str, Odd]] = {
     "NUL in a note": _bad_note(b"a\0b"),
     "NUL in quotes": _bad_note(b'"a\0b"'),
     "NUL behind a value": _row(b"0.5\0,1"),
-    "NUL in the header": Odd(b"x\0,seen\n0.5,1\n", line=1),
-    "NUL on a blank line": Odd(_HEAD + b"0.5,1\n\n\0\n0.5,1\n", _ONE, 4),
-    "NUL at the end": Odd(_HEAD + b"0.5,1\n\0", _ONE, 3),
+    "NUL in the header": OddTrace(b"x\0,seen\n0.5,1\n", line=1),
+    "NUL on a blank line": OddTrace(_HEAD + b"0.5,1\n\n\0\n0.5,1\n", _ONE, 4),
+    "NUL at the end": OddTrace(_HEAD + b"0.5,1\n\0", _ONE, 3),
     "control characters in a note": _note(b"\x01\x1b[31m\x7f\x0b\x0c"),
 }
 
-CELLS: Final[Mapping[str, Odd]] = {
-    "blanks around cells": Odd(b" x\t, seen \n\t0.5 , true\t\n -0.25\t,\t0 \n", _TWO),
-    "quotes": Odd(b'"x","seen"\n"0.5","true"\n"-0.25","0"\n', _TWO),
-    "blanks around quotes": Odd(b' "x"\t, "seen" \n\t"0.5" , "true"\t\n "-0.25"\t,"0" \r\n', _TWO),
+CELLS: Final[Mapping[str, OddTrace]] = {
+    "blanks around cells": OddTrace(b" x\t, seen \n\t0.5 , true\t\n -0.25\t,\t0 \n", _TWO),
+    "quotes": OddTrace(b'"x","seen"\n"0.5","true"\n"-0.25","0"\n', _TWO),
+    "blanks around quotes": OddTrace(b' "x"\t, "seen" \n\t"0.5" , "true"\t\n "-0.25"\t,"0" \r\n', _TWO),
     "blanks within the quotes of a value": _cell(b'" \t-0.25 "', -0.25),
-    "blanks within the quotes of a name": Odd(b'" x",seen\n0.5,1\n', line=1),
+    "blanks within the quotes of a name": OddTrace(b'" x",seen\n0.5,1\n', line=1),
     "a line end within the quotes of a value": _cell(b'"0.5\n"', None),
     "no-break space before a value": _cell("\u00a00.5".encode(), None),
     "no-break space behind a value": _cell("0.5\u00a0".encode(), None),
     "no-break space behind quotes": _cell('"0.5"\u00a0'.encode(), None),
-    "no-break space around a name": Odd("x\u00a0,seen\n0.5,1\n".encode(), line=1),
+    "no-break space around a name": OddTrace("x\u00a0,seen\n0.5,1\n".encode(), line=1),
     "thin space between digits": _cell("0.\u20095".encode(), None),
     "no width before a value": _cell("\u200b0.5".encode(), None),
     "vertical tab behind a value": _cell(b"0.5\x0b", None),
@@ -141,10 +141,10 @@ CELLS: Final[Mapping[str, Odd]] = {
     "text behind quotes in a note": _bad_note(b'"a"b'),
     "quotes behind quotes": _row(b'"0.5" "0",1'),
     "quotes within a note": _note(b'say "hi"'),
-    "quotes that are not closed": Odd(_HEAD + b'0.5,1\n"0.5,1\n0.5,1\n', _ONE, 3),
-    "quotes that are not closed, alone": Odd(_HEAD + b'0.5,1\n"', _ONE, 3),
-    "quotes that are not closed in the header": Odd(b'x,"seen\n0.5,1\n', line=1),
-    "doubled quotes at the end": Odd(_HEAD + b'0.5,1\n0.5,"1""\n', _ONE, 3),
+    "quotes that are not closed": OddTrace(_HEAD + b'0.5,1\n"0.5,1\n0.5,1\n', _ONE, 3),
+    "quotes that are not closed, alone": OddTrace(_HEAD + b'0.5,1\n"', _ONE, 3),
+    "quotes that are not closed in the header": OddTrace(b'x,"seen\n0.5,1\n', line=1),
+    "doubled quotes at the end": OddTrace(_HEAD + b'0.5,1\n0.5,"1""\n', _ONE, 3),
     "a comma in quotes": _note(b'"a, b,"'),
     "quotes in quotes": _note(b'"a ""b"" """'),
     "quotes alone in quotes": _note(b'""""'),
@@ -152,17 +152,17 @@ CELLS: Final[Mapping[str, Odd]] = {
     "CR LF in quotes": _note(b'"a\r\nb\r\n"'),
     "CR in quotes": _note(b'"a\rb"'),
     "a blank line in quotes": _note(b'"a\n\n \nb"'),
-    "a line end in quotes, and the number of a later line": Odd(b'note,x,seen\n"a\nb\n",0.5,1\n-,?,1\n', _ONE, 5),
-    "a row is where it begins": Odd(b'note,x,seen\n-,0.5,1\n"a\nb",0.5,1,1\n', _ONE, 3),
-    "a CR behind several lines in quotes": Odd(b'note,x,seen\n"a\nb",0.5,1\r\n"c\nd", -0.25 ,0\r\n', _TWO),
-    "a quoted cell at the end, with CR LF": Odd(b'x,seen,"note"\r\n0.5,1,"a"\r\n-0.25,0,"" \r\n', _TWO),
+    "a line end in quotes, and the number of a later line": OddTrace(b'note,x,seen\n"a\nb\n",0.5,1\n-,?,1\n', _ONE, 5),
+    "a row is where it begins": OddTrace(b'note,x,seen\n-,0.5,1\n"a\nb",0.5,1,1\n', _ONE, 3),
+    "a CR behind several lines in quotes": OddTrace(b'note,x,seen\n"a\nb",0.5,1\r\n"c\nd", -0.25 ,0\r\n', _TWO),
+    "a quoted cell at the end, with CR LF": OddTrace(b'x,seen,"note"\r\n0.5,1,"a"\r\n-0.25,0,"" \r\n', _TWO),
     "a CR behind quotes": _bad_note(b'"a"\r'),
     "single quotes": _cell(b"'0.5'", None),
     "curly quotes": _cell("“0.5”".encode(), None),
     "backslash before quotes": _bad_note(b'"a\\"b"'),
     "a long cell": _note(b"a" * 140_000),
     "a long cell in quotes": _note(b'"' + b"a " * 70_000 + b'"'),
-    "many columns": Odd(
+    "many columns": OddTrace(
         b"x,seen" + b",n" * 3000 + b"\n0.5,1" + b",-" * 3000 + b"\n-0.25,0" + b",-" * 3000 + b"\n", _TWO
     ),
     "empty cell": _row(b",1"),
@@ -173,19 +173,19 @@ CELLS: Final[Mapping[str, Odd]] = {
     "a cell too few": _row(b"0.5"),
     "a cell too many": _row(b"0.5,1,1"),
     "a comma too many": _row(b"0.5,1,"),
-    "commas behind all rows": Odd(b"x,seen,\n0.5,1,\n-0.25,0,\n", _TWO),
+    "commas behind all rows": OddTrace(b"x,seen,\n0.5,1,\n-0.25,0,\n", _TWO),
     "empty quotes on a line of their own": _row(b'""'),
-    "columns that nothing reads": Odd(b"a,seen,b,x,c\n?,1,,0.5,nan\n,0,-,-0.25,1_0\n", _TWO),
-    "two columns of one name that nothing reads": Odd(b"a,a,,,x,seen\n1,2,,,0.5,1\n", _ONE),
-    "two columns of one name": Odd(b"x,seen,x\n0.5,1,0.5\n", line=1),
-    "two columns of one name, one in quotes": Odd(b'\nx,"seen", seen\n0.5,1,1\n', line=2),
-    "a column that is missing": Odd(b"\nx\n0.5\n", line=2),
-    "a name in capitals": Odd(b"X,seen\n0.5,1\n", line=1),
-    "semicolons": Odd(b"x;seen\n0.5;1\n", line=1),
-    "tabs between columns": Odd(b"x\tseen\n0.5\t1\n", line=1),
-    "a line that tells the separator": Odd(b"sep=,\nx,seen\n0.5,1\n", line=1),
-    "a comment": Odd(b"# x and seen\nx,seen\n0.5,1\n", line=1),
-    "the header again": Odd(_HEAD + b"0.5,1\nx,seen\n", _ONE, 3),
+    "columns that nothing reads": OddTrace(b"a,seen,b,x,c\n?,1,,0.5,nan\n,0,-,-0.25,1_0\n", _TWO),
+    "two columns of one name that nothing reads": OddTrace(b"a,a,,,x,seen\n1,2,,,0.5,1\n", _ONE),
+    "two columns of one name": OddTrace(b"x,seen,x\n0.5,1,0.5\n", line=1),
+    "two columns of one name, one in quotes": OddTrace(b'\nx,"seen", seen\n0.5,1,1\n', line=2),
+    "a column that is missing": OddTrace(b"\nx\n0.5\n", line=2),
+    "a name in capitals": OddTrace(b"X,seen\n0.5,1\n", line=1),
+    "semicolons": OddTrace(b"x;seen\n0.5;1\n", line=1),
+    "tabs between columns": OddTrace(b"x\tseen\n0.5\t1\n", line=1),
+    "a line that tells the separator": OddTrace(b"sep=,\nx,seen\n0.5,1\n", line=1),
+    "a comment": OddTrace(b"# x and seen\nx,seen\n0.5,1\n", line=1),
+    "the header again": OddTrace(_HEAD + b"0.5,1\nx,seen\n", _ONE, 3),
 }
 
 _NUMBERS: Final = (
@@ -212,11 +212,11 @@ _TRUTHS: Final = (
     *(("+1.", 1.0), ("10e-1", 1.0), ('" true "', 1.0)),
 )
 
-VALUES: Final[Mapping[str, Odd]] = {
-    "numbers": Odd(
+VALUES: Final[Mapping[str, OddTrace]] = {
+    "numbers": OddTrace(
         _HEAD + b"".join(f"{cell},1\n".encode() for cell, _ in _NUMBERS), tuple((value, 1.0) for _, value in _NUMBERS)
     ),
-    "truths": Odd(
+    "truths": OddTrace(
         _HEAD + b"".join(f"0.5,{cell}\n".encode() for cell, _ in _TRUTHS), tuple((0.5, value) for _, value in _TRUTHS)
     ),
     **{
@@ -260,13 +260,13 @@ VALUES: Final[Mapping[str, Odd]] = {
         )
     },
     **{
-        f"not finite: {cell}": Odd(_HEAD + b"0.5,1\n" + cell.encode() + b",1\n", (*_ONE, (value, 1.0)))
+        f"not finite: {cell}": OddTrace(_HEAD + b"0.5,1\n" + cell.encode() + b",1\n", (*_ONE, (value, 1.0)))
         for cell, value in (("nan", nan), ("-NaN", nan), ("-Inf", -inf), ("+INFINITY", inf), ("1e400", inf))
     },
     **{f"no truth: {cell}": _truth(cell.encode(), None) for cell in ("2", "-1", "0.5", "yes", "nan", "inf")},
 }
 
-MORE_VALUES: Final[Mapping[str, Odd]] = {
+MORE_VALUES: Final[Mapping[str, OddTrace]] = {
     **{
         f"no number: {cell}": _cell(cell.encode(), None)
         for cell in (
@@ -309,7 +309,7 @@ MORE_VALUES: Final[Mapping[str, Odd]] = {
         )
     },
     **{
-        f"not finite: {cell[:30]}": Odd(_HEAD + b"0.5,1\n" + cell.encode() + b",1\n", (*_ONE, (value, 1.0)))
+        f"not finite: {cell[:30]}": OddTrace(_HEAD + b"0.5,1\n" + cell.encode() + b",1\n", (*_ONE, (value, 1.0)))
         for cell, value in (
             *(("NAN", nan), ("inf", inf), ("-1e999", -inf), ("1e99999999999999999999", inf), ("1" + "0" * 310, inf)),
             ("1.7976931348623159e308", inf),
@@ -320,11 +320,11 @@ MORE_VALUES: Final[Mapping[str, Odd]] = {
         for cell in ("T", "not", "1.0000000000000002", "true1", "5e-324")
     },
     "a very long number": _cell(b"0." + b"0123456789" * 10_000, 0.012345678901234568),
-    "a very long whole number": Odd(_HEAD + b"0.5,1\n" + b"9" * 100_000 + b",1\n", (*_ONE, (inf, 1.0))),
+    "a very long whole number": OddTrace(_HEAD + b"0.5,1\n" + b"9" * 100_000 + b",1\n", (*_ONE, (inf, 1.0))),
     "a very long exponent": _cell(b"5e-" + b"0" * 100_000 + b"1", 0.5),
     "a million zeros and an exponent that takes them back": _cell(b"-0." + b"0" * 1_040_000 + b"25e1040000", -0.25),
     "a million digits and an exponent that takes them back": _cell(b"25" + b"0" * 1_040_000 + b"e-1040002", 0.25),
-    "a million zeros and a larger exponent": Odd(
+    "a million zeros and a larger exponent": OddTrace(
         _HEAD + b"0.5,1\n0." + b"0" * 1_040_000 + b"25e99999999999999999999,1\n", (*_ONE, (inf, 1.0))
     ),
     "a million digits and a smaller exponent": _cell(b"-" + b"9" * 1_040_000 + b"e-99999999999999999999", -0.0),
@@ -332,12 +332,12 @@ MORE_VALUES: Final[Mapping[str, Odd]] = {
 """Values that are not in the corpus, because checking the corpus starts a program for each trace."""
 
 
-def _case(name: str, about: str, odd: Mapping[str, Odd]) -> Case:
-    seen = Op("-", (Op("*", (Const(2.0), Signal("seen"))), Const(1.0)))
-    expressions: dict[str, Expression] = {"a": Signal("x"), "b": seen}
+def _case(name: str, about: str, odd: Mapping[str, OddTrace]) -> ConformanceCase:
+    seen = Op("-", (Op("*", (Const(2.0), SignalValue("seen"))), Const(1.0)))
+    expressions: dict[str, Expression] = {"a": SignalValue("x"), "b": seen}
     formula = f.always(f.eventually(f.and_(f.atom("a"), f.atom("b"))))
     fspa = automaton(name, formula, expressions, SIGNALS, limit=50)
-    return Case(fspa, about, tuple(case.trace for case in odd.values()))
+    return ConformanceCase(fspa, about, tuple(case.trace for case in odd.values()))
 
 
 CASES: Final[Makers] = {

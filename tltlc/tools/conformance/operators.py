@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.logic import formula as f
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Judge
-from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import drawn, lively
 
@@ -39,7 +39,7 @@ _SHAPES: Final[tuple[_Shape, ...]] = (
 )
 
 
-def _case(number: int, shape: _Shape) -> Case:
+def _case(number: int, shape: _Shape) -> ConformanceCase:
     name, formula, judge, limit, infinite = shape
     fspa = automaton(name, formula, limit=limit, judge=judge, infinite=infinite)
     draw = Draw(1000 + number)
@@ -48,7 +48,7 @@ def _case(number: int, shape: _Shape) -> Case:
     lucky = dict.fromkeys("abc", (-0.5, 0.25, 0.5, 1.0, 1.0))
     zeros = dict.fromkeys("abc", (0.0, -0.0))
     traces = (lively(fspa, draw, 24, pools), lively(fspa, draw, 30, lucky), drawn(fspa, draw, 14, zeros))
-    return Case(fspa, f"The formula {fspa.formula}.", traces)
+    return ConformanceCase(fspa, f"The formula {fspa.formula}.", traces)
 
 
 CASES: Final[Makers] = {shape[0]: partial(_case, number, shape) for number, shape in enumerate(_SHAPES)}

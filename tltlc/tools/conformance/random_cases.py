@@ -12,7 +12,7 @@ from tltlc.core.record import EMPTY
 from tltlc.expression.tree import Expression
 from tltlc.logic import formula as f
 from tltlc.resolve.spec import Judge
-from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.expressions import PARAMS, SIGNALS, predicate
 from tltlc.tools.conformance.formulas import formula
@@ -26,22 +26,22 @@ _STATES: Final = range(2, 10)
 """The accepted numbers of states: smaller automata show little, larger ones compile slowly."""
 
 
-def _of_formula(name: str, seed: int, infinite: bool) -> Case:
+def _of_formula(name: str, seed: int, infinite: bool) -> ConformanceCase:
     """Return a case with a random formula over signals."""
     draw = Draw(seed)
     fspa = _automaton(name, draw, infinite)
     pools = {signal.name: _VALUES for signal in fspa.signals}
     traces = tuple(lively(fspa, draw, 20 + 10 * number, pools) for number in range(2))
-    return Case(fspa, f"A random formula: {fspa.formula}.", traces)
+    return ConformanceCase(fspa, f"A random formula: {fspa.formula}.", traces)
 
 
-def _of_predicates(name: str, seed: int) -> Case:
+def _of_predicates(name: str, seed: int) -> ConformanceCase:
     """Return a case with a random formula over random predicates."""
     draw = Draw(seed)
     expressions = {atom: predicate(draw) for atom in _ATOMS}
     fspa = _automaton(name, draw, False, expressions)
     traces = (lively(fspa, draw, 30), drawn(fspa, draw, 12, refused=True))
-    return Case(fspa, f"Random predicates under {fspa.formula}.", traces)
+    return ConformanceCase(fspa, f"Random predicates under {fspa.formula}.", traces)
 
 
 def _automaton(name: str, draw: Draw, infinite: bool, expressions: Mapping[str, Expression] = EMPTY) -> Fspa:

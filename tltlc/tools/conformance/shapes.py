@@ -6,17 +6,17 @@ from functools import partial
 from typing import Final
 
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Expression, Op, Param, Signal
+from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.logic import formula as f
 from tltlc.resolve import spec
-from tltlc.tools.conformance.case import Case, Makers, automaton
+from tltlc.tools.conformance.case import ConformanceCase, Makers, automaton
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import drawn, table
 
 _VALUES: Final = (-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0)
 
 
-def _exclusive(name: str, count: int) -> Case:
+def _exclusive(name: str, count: int) -> ConformanceCase:
     """Return a case with a sequence over atoms of which only one holds at a time."""
     atoms = [f"at_{number}" for number in range(count)]
     order = f.atom(atoms[-1])
@@ -38,32 +38,36 @@ def _exclusive(name: str, count: int) -> Case:
         table(names, [quiet[0], border, quiet[3], clash, quiet[1]]),
         drawn(fspa, draw, 20, {**pools, atoms[0]: _VALUES, "alarm": (-1.0,)}),
     )
-    return Case(fspa, "At most one atom of a group holds at a time.", traces)
+    return ConformanceCase(fspa, "At most one atom of a group holds at a time.", traces)
 
 
-def _decided(name: str, formula: f.Formula, limit: int | None) -> Case:
+def _decided(name: str, formula: f.Formula, limit: int | None) -> ConformanceCase:
     fspa = automaton(name, f.and_(formula, f.or_(f.atom("a"), f.not_(f.atom("a")))), limit=limit)
     rows: list[list[object]] = [[0.5], [-0.5], [0], [1]]
     traces = (table([s.name for s in fspa.signals] or ["a"], rows),)
-    return Case(fspa, f"Decided before anything happens: {fspa.formula}.", traces)
+    return ConformanceCase(fspa, f"Decided before anything happens: {fspa.formula}.", traces)
 
 
-def _one_step() -> Case:
+def _one_step() -> ConformanceCase:
     fspa = automaton("one_step", f.or_(f.eventually(f.atom("a")), f.always(f.atom("b"))), limit=1)
     files: tuple[list[list[float]], ...] = ([[-0.5, -0.5], [1, 1]], [[-0.5, 0.5]] * 3, [[1, -1], [-1, -1]])
     traces = tuple(table(["a", "b"], rows) for rows in files)
-    return Case(fspa, "A limit of one step.", traces)
+    return ConformanceCase(fspa, "A limit of one step.", traces)
 
 
-def _constants() -> Case:
-    expressions: dict[str, Expression] = {"a": Signal("x"), "b": Const(0.25), "c": Op("-", (Param("p"), Const(0.5)))}
+def _constants() -> ConformanceCase:
+    expressions: dict[str, Expression] = {
+        "a": SignalValue("x"),
+        "b": Const(0.25),
+        "c": Op("-", (ParamValue("p"), Const(0.5))),
+    }
     formula = f.and_(f.eventually(f.and_(f.atom("a"), f.atom("b"))), f.always(f.not_(f.atom("c"))))
     signals = (spec.Signal("x", "number", -1.0, 1.0),)
     fspa = automaton("constants", formula, expressions, signals, (spec.Param("p", "number", 0.1, 0.0, 1.0),), limit=9)
-    return Case(fspa, "Atoms that no signal moves.", (drawn(fspa, Draw(3100), 15),))
+    return ConformanceCase(fspa, "Atoms that no signal moves.", (drawn(fspa, Draw(3100), 15),))
 
 
-def _many() -> Case:
+def _many() -> ConformanceCase:
     order = f.atom("g8")
     for number in range(7, 0, -1):
         order = f.then(f.atom(f"g{number}"), order)
@@ -76,20 +80,20 @@ def _many() -> Case:
             rows.append([held.get(name, -0.9) for name in names])
     draw = Draw(3200)
     pools = dict.fromkeys(names, (-0.9, -0.4, 0.3)) | {"alive": (0.5, 0.8, 1.0)}
-    return Case(fspa, "Eight goals in order.", (table(names, rows), drawn(fspa, draw, 40, pools)))
+    return ConformanceCase(fspa, "Eight goals in order.", (table(names, rows), drawn(fspa, draw, 40, pools)))
 
 
 # --- names ----------------------------------------------------------------------------------------
 
 
-def _named(name: str, names: tuple[str, str, str]) -> Case:
+def _named(name: str, names: tuple[str, str, str]) -> ConformanceCase:
     """Return a case with hostile names everywhere a monitor shows or reads a name."""
     first, second, third = names
     formula = f.and_(f.eventually(f.and_(f.atom(first), f.next_(f.atom(second)))), f.always(f.atom(third)))
     fspa = replace(automaton(name, formula, limit=20), doc=f"{first} */ {second}\n\\ {third}")
     pools = {first: _VALUES, second: _VALUES, third: (0.25, 0.5, 0.75)}
     draw = Draw(3300 + len("".join(names)))
-    return Case(fspa, "Names that quote, comment and escape.", (drawn(fspa, draw, 24, pools),))
+    return ConformanceCase(fspa, "Names that quote, comment and escape.", (drawn(fspa, draw, 24, pools),))
 
 
 _NAMES: Final = {
@@ -105,12 +109,12 @@ _NAMES: Final = {
 # --- files ----------------------------------------------------------------------------------------
 
 
-def _ranges() -> Case:
+def _ranges() -> ConformanceCase:
     """Return a case with values out of range: they are clamped, and one warning is given per signal."""
     expressions: dict[str, Expression] = {
-        "near": Op("-", (Const(1.0), Op("/", (Signal("distance"), Const(4.0))))),
-        "loud": Op("*", (Const(3.0), Signal("noise"))),
-        "seen": Op("-", (Op("*", (Const(2.0), Signal("seen"))), Const(1.0))),
+        "near": Op("-", (Const(1.0), Op("/", (SignalValue("distance"), Const(4.0))))),
+        "loud": Op("*", (Const(3.0), SignalValue("noise"))),
+        "seen": Op("-", (Op("*", (Const(2.0), SignalValue("seen"))), Const(1.0))),
     }
     signals = (
         spec.Signal("distance", "length", 0.0, None),
@@ -127,7 +131,7 @@ def _ranges() -> Case:
         [3, 7, "false"],
         [1e300, -1e300, 0],
     ]
-    return Case(fspa, "Values outside their ranges.", (table(["distance", "noise", "seen"], rows),))
+    return ConformanceCase(fspa, "Values outside their ranges.", (table(["distance", "noise", "seen"], rows),))
 
 
 _GOOD: Final = ("0.5", "true")
@@ -136,11 +140,11 @@ _BAD_CELLS: Final = ("", "x", "0x10", "1_000", "1 2", "+-1", "1e", "1,5", ".", "
 _INFINITE: Final = ("nan", "inf", "-inf", "1e400", "-1e999", "NaN", "Infinity")
 
 
-def _cells() -> Case:
+def _cells() -> ConformanceCase:
     """Return a case with ways to write a file, valid ones and others that must be refused."""
     expressions: dict[str, Expression] = {
-        "a": Signal("x"),
-        "b": Op("-", (Op("*", (Const(2.0), Signal("seen"))), Const(1.0))),
+        "a": SignalValue("x"),
+        "b": Op("-", (Op("*", (Const(2.0), SignalValue("seen"))), Const(1.0))),
     }
     signals = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bool", 0.0, 1.0))
     formula = f.always(f.eventually(f.and_(f.atom("a"), f.atom("b"))))
@@ -157,7 +161,7 @@ def _cells() -> Case:
     bad += [f"{start}0.1,{cell}\n0.1,1\n".encode() for cell in ("0.5", "yes", "2")]
     bad += [f"{start}{row}\n0.1,1\n".encode() for row in ("0.1", "0.1,1,2", '0.1,"1')]
     bad += [b"x\n0.5\n", b"seen,y\n1,1\n", b"x,seen,x\n1,1,1\n", b"x,seen\n", b"", b"\n\n"]
-    return Case(fspa, "Ways to write a trace, and cells that must be refused.", (*good, *bad))
+    return ConformanceCase(fspa, "Ways to write a trace, and cells that must be refused.", (*good, *bad))
 
 
 CASES: Final[Makers] = {

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from tltlc.tools.diff.relation import Group, different_atoms
+from tltlc.tools.diff.relation import ExclusiveGroup, different_atoms
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -21,7 +21,7 @@ An entry is None for an artefact, which does not have unused groups.
 """
 
 
-def assumed(a: Fspa, b: Fspa, declared: Declared, *, by_name: bool = False) -> tuple[Group, ...]:
+def assumed(a: Fspa, b: Fspa, declared: Declared, *, by_name: bool = False) -> tuple[ExclusiveGroup, ...]:
     """Return the groups that two specs are compared with, whether or not the specs use them.
 
     If both files are sources, both must declare that atoms are exclusive. An artefact only has the
@@ -33,18 +33,18 @@ def assumed(a: Fspa, b: Fspa, declared: Declared, *, by_name: bool = False) -> t
     if in_a is not None and in_b is not None:
         return tuple(_of_both(in_a, in_b, () if by_name else different_atoms(in_a, in_b)))
     if in_a is not None:
-        return tuple(Group(names, True, False) for names in _unknown(b, in_a, by_name=by_name))
+        return tuple(ExclusiveGroup(names, True, False) for names in _unknown(b, in_a, by_name=by_name))
     if in_b is not None:
-        return tuple(Group(names, False, True) for names in _unknown(a, in_b, by_name=by_name))
+        return tuple(ExclusiveGroup(names, False, True) for names in _unknown(a, in_b, by_name=by_name))
     return ()
 
 
-def _of_both(in_a: Vocabulary, in_b: Vocabulary, different: tuple[str, ...]) -> Iterator[Group]:
+def _of_both(in_a: Vocabulary, in_b: Vocabulary, different: tuple[str, ...]) -> Iterator[ExclusiveGroup]:
     for group_a in _groups(in_a):
         for group_b in _groups(in_b):
             names = tuple(name for name in group_a if name in group_b and name not in different)
             if len(names) > 1:
-                yield Group(names, True, True)
+                yield ExclusiveGroup(names, True, True)
 
 
 def _unknown(artefact: Fspa, source: Vocabulary, *, by_name: bool) -> Iterator[tuple[str, ...]]:

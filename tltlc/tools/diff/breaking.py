@@ -16,12 +16,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.resolve.spec import Atom
 from tltlc.tools.diff import findings as say
 from tltlc.tools.diff.differences import Difference, renamed_params
-from tltlc.tools.diff.pairs import Pair, diff
+from tltlc.tools.diff.pairs import SpecPair, diff
 from tltlc.tools.diff.renaming import renamed_signals, with_names_of, with_signals
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.tools.diff.library import Offer
+    from tltlc.tools.diff.library import OfferedName
     from tltlc.tools.diff.rules import Rules
 
 _OF_ALL: Final = ("clock", "signal", "param", "atom")
@@ -37,12 +37,12 @@ class Version:
 
     automata: tuple[Fspa, ...] = ()
     places: Mapping[str, Label] = EMPTY
-    offers: Mapping[str, Offer] = EMPTY
+    offers: Mapping[str, OfferedName] = EMPTY
     rules: Rules | None = None
 
 
 @record
-class Move:
+class MovedSpec:
     """A spec that moved to another file or has another name, with its old and new place."""
 
     old: Fspa
@@ -52,7 +52,7 @@ class Move:
 
 
 @record
-class Change:
+class FileChange:
     """Two versions of the file at a path. If the file does not exist, its version is empty.
 
     ``moves`` are the specs that moved into the file. Specs that moved are in neither version.
@@ -61,10 +61,10 @@ class Change:
     path: str
     old: Version
     new: Version
-    moves: tuple[Move, ...] = ()
+    moves: tuple[MovedSpec, ...] = ()
 
 
-def breaking(change: Change, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
+def breaking(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
     """Return everything that changed: first the specs, in order, then what they use.
 
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
@@ -85,7 +85,7 @@ def _changed_rules(old: Version, new: Version) -> Iterator[Diagnostic]:
         yield from changed_rules(old.rules, new.rules)
 
 
-def _specs(old: Version, new: Version, moves: Sequence[Move], work: int) -> Iterator[Diagnostic]:
+def _specs(old: Version, new: Version, moves: Sequence[MovedSpec], work: int) -> Iterator[Diagnostic]:
     before = {fspa.name: fspa for fspa in old.automata}
     after = {fspa.name: fspa for fspa in new.automata}
     for name in before:
@@ -111,7 +111,7 @@ def _specs(old: Version, new: Version, moves: Sequence[Move], work: int) -> Iter
     yield from _of_all(pairs, new.places)
 
 
-def compared(old: Fspa, new: Fspa, work: int) -> Pair:
+def compared(old: Fspa, new: Fspa, work: int) -> SpecPair:
     """Return the differences between two versions of a spec.
 
     Atoms with the same name are treated as the same atom, and changes of their values are
@@ -131,12 +131,12 @@ def compared(old: Fspa, new: Fspa, work: int) -> Pair:
     return replace(pair, differences=(*renamings, *pair.differences))
 
 
-def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
+def _of_all(pairs: Sequence[SpecPair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
     """Yield the changes of the clock, signals, params and atoms.
 
     Each change comes once for all specs that use it.
     """
-    users: dict[Difference, list[Pair]] = {}
+    users: dict[Difference, list[SpecPair]] = {}
     for pair in pairs:
         for difference in pair.differences:
             if difference.what in _OF_ALL:

@@ -12,7 +12,7 @@ from tltlc.tools.diff.traces import in_order
 
 if TYPE_CHECKING:
     from tltlc.tools.diff.differences import Difference
-    from tltlc.tools.diff.pairs import FileDiff, Pair
+    from tltlc.tools.diff.pairs import FileDiff, SpecPair
 
 
 def document(report: FileDiff) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def document(report: FileDiff) -> dict[str, Any]:
     }
 
 
-def _pair(pair: Pair) -> dict[str, Any]:
+def _pair(pair: SpecPair) -> dict[str, Any]:
     comparison = pair.comparison
     return {
         "name_a": pair.a.name,
@@ -48,7 +48,7 @@ def _pair(pair: Pair) -> dict[str, Any]:
     }
 
 
-def _beginnings(pair: Pair) -> dict[str, Any] | None:
+def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
     """Return how the traces relate that do not break the specs for good; None if not compared.
 
     They are compared if one spec is over finite traces and the other over infinite traces.
@@ -63,7 +63,7 @@ def _beginnings(pair: Pair) -> dict[str, Any] | None:
     return {"relation": comparison.relation, "only_a": only_a, "only_b": only_b}
 
 
-def _trace(pair: Pair, trace: Trace | None) -> Any:
+def _trace(pair: SpecPair, trace: Trace | None) -> Any:
     """Return a finite trace as a list of samples, an infinite one as its prefix and cycle.
 
     Each sample is the list of atoms that hold.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Union
 
-from tltlc.expression.tree import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 
-Leaf = Union[Const, Signal, Param]
+Leaf = Union[Const, SignalValue, ParamValue]
 
 
 def with_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:

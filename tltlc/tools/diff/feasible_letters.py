@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from tltlc.automaton.compare import Literals, Trace, separating
 from tltlc.core.record import replace
-from tltlc.expression.tree import Const, Param
+from tltlc.expression.tree import Const, ParamValue
 from tltlc.tools.diff.expression_shapes import Leaf, with_leaves
 from tltlc.tools.witness.samples import Realiser
 
@@ -102,6 +102,6 @@ def _atoms(fspa: Fspa) -> list[Atom]:
     values = {param.name: param.value for param in fspa.params}
 
     def bound(leaf: Leaf) -> Leaf:
-        return Const(values[leaf.name]) if isinstance(leaf, Param) else leaf
+        return Const(values[leaf.name]) if isinstance(leaf, ParamValue) else leaf
 
     return [replace(atom, expression=with_leaves(atom.expression, bound)) for atom in fspa.atoms]

@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
 from tltlc.resolve.spec import Atom, Param, Signal, ValueType
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.differences import Difference
-from tltlc.tools.diff.pairs import Pair
+from tltlc.tools.diff.pairs import SpecPair
 from tltlc.tools.diff.phrases import ends_text, listed, sample_text, type_text, value_text, values_text
 from tltlc.tools.diff.traces import step_lines
 from tltlc.tools.diff.values import Apart
@@ -53,7 +53,7 @@ def spec_added(name: str, place: Label) -> Diagnostic:
     return Diagnostic("TLT0752", f"the spec `{name}` is new", (place,), "nothing needs to be done", COMPATIBLE)
 
 
-def other_traces(pair: Pair, place: Label) -> Diagnostic:
+def other_traces(pair: SpecPair, place: Label) -> Diagnostic:
     """TLT0753: a spec accepts different traces than before."""
     name, comparison = pair.b.name, pair.comparison
     if comparison.only_a is None:
@@ -131,7 +131,7 @@ def param(difference: Difference, new_name: str | None, place: Label) -> Diagnos
     return Diagnostic("TLT0756", title, (place,), "set it to a value inside: others are an error now", BREAKING)
 
 
-def atom(difference: Difference, others: Sequence[str], pair: Pair, place: Label) -> Diagnostic:
+def atom(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
     """TLT0757: an atom has other values, and so do ``others``, atoms of the same predicate."""
     assert difference.apart is not None
     types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
@@ -241,7 +241,7 @@ def was(place: Label) -> Label:
     return replace(place, message="it was here")
 
 
-def _trace(pair: Pair, trace: Trace) -> str:
+def _trace(pair: SpecPair, trace: Trace) -> str:
     """Return a trace after a colon.
 
     One line stays on the same line. Several lines get lines of their own, up to ``_MOST_LINES``.

@@ -8,8 +8,8 @@ from typing import Literal, cast
 
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Signal as SignalNode
-from tltlc.grammar.tree import Argument, Call, LetDecl, Name, Parameter, PredicateDecl, SignalDecl
+from tltlc.expression.tree import SignalValue as SignalNode
+from tltlc.grammar.tree import Argument, CallExpr, LetDecl, NameExpr, Parameter, PredicateDecl, SignalDecl
 from tltlc.resolve import units
 from tltlc.resolve.predicates import predicate
 from tltlc.resolve.problem import ResolutionError
@@ -22,7 +22,7 @@ Kind = Literal["signal", "param", "predicate", "let", "entity"]
 
 
 @record
-class Offer:
+class OfferedName:
     """The declaration behind a name that a library offers.
 
     ``is_own`` is true if the library declares it itself instead of importing it. ``value`` is set
@@ -41,16 +41,16 @@ class Offer:
     meanings: Mapping[int, Meaning] = EMPTY
 
 
-def offers(env: Env) -> Mapping[str, Offer]:
+def offers(env: Env) -> Mapping[str, OfferedName]:
     """Return what a module that resolved without errors offers, by name."""
     return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
 
 
-def _offer(name: str, binding: Binding, env: Env) -> Offer:
+def _offer(name: str, binding: Binding, env: Env) -> OfferedName:
     declaration, context = binding.declaration, env.context
     parameters = declaration.parameters if isinstance(declaration, (SignalDecl, PredicateDecl, LetDecl)) else ()
     place = Label(binding.scope.source, binding.span)
-    offer = Offer(name, binding.kind, parameters, place, binding.scope is env.scope)
+    offer = OfferedName(name, binding.kind, parameters, place, binding.scope is env.scope)
     if binding.kind == "signal":
         info = context.signal_infos[binding.name]
         return replace(offer, value=info.of(info.parameters))
@@ -91,8 +91,8 @@ def _meaning(binding: Binding, given: tuple[Parameter, ...], env: Env) -> Meanin
             SignalNode(signal.name), dimension, low, high, signal.name, is_bool=type_ == "bool", call=(signal.base, ())
         )
     span = binding.span
-    arguments = tuple(Argument(parameter.name, Name(parameter.name, span), span) for parameter in given)
-    use = Call(binding.name, arguments, span, span) if arguments else Name(binding.name, span)
+    arguments = tuple(Argument(parameter.name, NameExpr(parameter.name, span), span) for parameter in given)
+    use = CallExpr(binding.name, arguments, span, span) if arguments else NameExpr(binding.name, span)
     try:
         value = predicate(use, binding, replace(env, local=local, symbolic=True)).value
     except ResolutionError:

@@ -13,10 +13,10 @@ from tltlc.tools.diff.values import apart
 
 if TYPE_CHECKING:
     from tltlc.resolve.spec import ValueType
-    from tltlc.tools.diff.library import Offer
+    from tltlc.tools.diff.library import OfferedName
 
 
-def changed_offers(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterator[Diagnostic]:
+def changed_offers(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
     """Yield the changes, in the order of the old declarations.
 
     New declarations break nothing. Changes of imported declarations are reported only for the file
@@ -33,7 +33,7 @@ def changed_offers(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterat
             yield from _changed(before, after)
 
 
-def _params(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterator[Diagnostic]:
+def _params(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
     old_params, new_params = (
         [offer.value for offer in offers.values() if isinstance(offer.value, Param)] for offers in (old, new)
     )
@@ -49,7 +49,7 @@ def _params(old: Mapping[str, Offer], new: Mapping[str, Offer]) -> Iterator[Diag
             yield say.param(difference, None, new[name].place)
 
 
-def _changed(before: Offer, after: Offer) -> Iterator[Diagnostic]:
+def _changed(before: OfferedName, after: OfferedName) -> Iterator[Diagnostic]:
     """Yield the changes of a signal, predicate or let."""
     why = _other_parameters(before, after)
     if why:
@@ -74,7 +74,7 @@ def _changed(before: Offer, after: Offer) -> Iterator[Diagnostic]:
                 return
 
 
-def _other_parameters(before: Offer, after: Offer) -> str | None:
+def _other_parameters(before: OfferedName, after: OfferedName) -> str | None:
     """Return why a formerly valid use is no longer valid; None if all uses still are."""
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)

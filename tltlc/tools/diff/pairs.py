@@ -10,14 +10,14 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.tools.diff.assumed_exclusive import Declared, assumed
 from tltlc.tools.diff.differences import Difference, differences
-from tltlc.tools.diff.relation import Comparison, Group, compare
+from tltlc.tools.diff.relation import Comparison, ExclusiveGroup, compare
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
 
 @record
-class Pair:
+class SpecPair:
     """A spec of A and a spec of B, and what is different in B."""
 
     a: Fspa
@@ -41,7 +41,7 @@ class FileDiff:
 
     a: str
     b: str
-    pairs: tuple[Pair, ...]
+    pairs: tuple[SpecPair, ...]
     only_a: tuple[str, ...] = ()
     only_b: tuple[str, ...] = ()
 
@@ -71,7 +71,7 @@ def diff_files(
     """
     ours, theirs = a[1], b[1]
 
-    def pair(one: Fspa, other: Fspa) -> Pair:
+    def pair(one: Fspa, other: Fspa) -> SpecPair:
         return diff(one, other, by_name, work, assumed(one, other, declared, by_name=by_name), real=True)
 
     if one_each:
@@ -92,17 +92,17 @@ def diff(
     b: Fspa,
     by_name: bool = False,
     work: int = DEFAULT_WORK,
-    exclusive: Sequence[Group] = (),
+    exclusive: Sequence[ExclusiveGroup] = (),
     *,
     real: bool = False,
-) -> Pair:
+) -> SpecPair:
     """Return the differences from one spec to another, with the arguments of :func:`compare`.
 
     Errors are as in :func:`diff_files`.
     """
     try:
         comparison = compare(a, b, by_name=by_name, real=real, work=work, exclusive=exclusive)
-        return Pair(a, b, comparison, differences(a, b))
+        return SpecPair(a, b, comparison, differences(a, b))
     except OutOfWork:
         title = f"comparing the two versions of `{a.name}` takes too long"
         if a.name != b.name:

@@ -26,7 +26,7 @@ OF_B: Final = " of B"
 
 
 @record
-class Group:
+class ExclusiveGroup:
     """Atoms of which at most one holds at a time, and which of the two specs declare this."""
 
     names: tuple[str, ...]
@@ -55,7 +55,7 @@ class Comparison:
     only_b: Trace | None = None
     split: tuple[str, ...] = ()
     impossible: tuple[Literals, ...] = ()
-    exclusive: tuple[Group, ...] = ()
+    exclusive: tuple[ExclusiveGroup, ...] = ()
     beginnings: Comparison | None = None
 
 
@@ -66,7 +66,7 @@ def compare(
     by_name: bool = False,
     real: bool = False,
     work: int = DEFAULT_WORK,
-    exclusive: Iterable[Group] = (),
+    exclusive: Iterable[ExclusiveGroup] = (),
 ) -> Comparison:
     """Return how the traces that B accepts relate to the traces that A accepts.
 
@@ -112,31 +112,31 @@ def _unbroken(fspa: Fspa) -> Fspa:
     return replace(fspa, semantics="finite", acceptance=(), states=states)
 
 
-def _own_groups(one: Fspa, other: Fspa) -> list[Group]:
+def _own_groups(one: Fspa, other: Fspa) -> list[ExclusiveGroup]:
     """Return the groups of the automata."""
     return [
-        Group(tuple(fspa.atoms[atom].name for atom in group), fspa is one, fspa is other)
+        ExclusiveGroup(tuple(fspa.atoms[atom].name for atom in group), fspa is one, fspa is other)
         for fspa in (one, other)
         for group in fspa.exclusive
     ]
 
 
-def _together(groups: Iterable[Group], known: set[str]) -> tuple[Group, ...]:
+def _together(groups: Iterable[ExclusiveGroup], known: set[str]) -> tuple[ExclusiveGroup, ...]:
     """Return the groups restricted to known atoms, without duplicates.
 
     A split atom has another name and so is not known.
     """
     of_known = [replace(group, names=tuple(name for name in group.names if name in known)) for group in groups]
-    merged: dict[frozenset[str], Group] = {}
+    merged: dict[frozenset[str], ExclusiveGroup] = {}
     for group in of_known:
         wider = [wide for wide in of_known if set(group.names) <= set(wide.names)]
         in_a, in_b = any(wide.in_a for wide in wider), any(wide.in_b for wide in wider)
         if len(group.names) > 1:
-            merged.setdefault(frozenset(group.names), Group(group.names, in_a, in_b))
+            merged.setdefault(frozenset(group.names), ExclusiveGroup(group.names, in_a, in_b))
     return tuple(merged.values())
 
 
-def _never(groups: Iterable[Group], own: Iterable[Group]) -> Iterator[Literals]:
+def _never(groups: Iterable[ExclusiveGroup], own: Iterable[ExclusiveGroup]) -> Iterator[Literals]:
     """Yield the pairs of atoms in groups that the automata do not have themselves."""
     known = [set(group.names) for group in own]
     for group in groups:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.tools.diff.breaking import Change, Move, Version, compared
+from tltlc.tools.diff.breaking import FileChange, MovedSpec, Version, compared
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -27,7 +27,7 @@ class _Side:
     fspa: Fspa
 
 
-def followed(changes: Sequence[Change], work: int = DEFAULT_WORK) -> tuple[Change, ...]:
+def followed(changes: Sequence[FileChange], work: int = DEFAULT_WORK) -> tuple[FileChange, ...]:
     """Return the changes with moved and renamed specs recorded as moves.
 
     A removed spec moved to a file where a spec of its name is new. Otherwise it was renamed to a
@@ -46,7 +46,7 @@ def followed(changes: Sequence[Change], work: int = DEFAULT_WORK) -> tuple[Chang
     return tuple(_with(change, number, matches, changes) for number, change in enumerate(changes))
 
 
-def _only(version: Version, other_version: Version, number: int, change: Change) -> Iterator[_Side]:
+def _only(version: Version, other_version: Version, number: int, change: FileChange) -> Iterator[_Side]:
     """Yield the specs of one version of a source file that the other version does not have."""
     names = {fspa.name for fspa in other_version.automata}
     if change.path.endswith(_SOURCE):
@@ -69,12 +69,14 @@ def _means_the_same(old: _Side, new: _Side, work: int) -> bool:
         return False
 
 
-def _with(change: Change, number: int, matches: Sequence[tuple[_Side, _Side]], changes: Sequence[Change]) -> Change:
+def _with(
+    change: FileChange, number: int, matches: Sequence[tuple[_Side, _Side]], changes: Sequence[FileChange]
+) -> FileChange:
     """Return a change without the specs that moved; specs that moved here are listed as moves."""
     moved_away = [old.fspa for old, _ in matches if old.number == number]
     moved_here = [(old, new) for old, new in matches if new.number == number]
     moves = (
-        Move(old.fspa, new.fspa, changes[old.number].old.places[old.fspa.name], change.new.places[new.fspa.name])
+        MovedSpec(old.fspa, new.fspa, changes[old.number].old.places[old.fspa.name], change.new.places[new.fspa.name])
         for old, new in moved_here
     )
     return replace(

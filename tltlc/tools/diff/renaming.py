@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, Param, Signal, When, nodes
+from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When, nodes
 from tltlc.tools.diff.differences import plain
 from tltlc.tools.diff.expression_shapes import Leaf, with_leaves
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.spec import Atom
-    from tltlc.resolve.spec import Param as ParamValue
+    from tltlc.resolve.spec import Param as SpecParam
 
 
 def with_names_of(old: Fspa, new: Fspa) -> Fspa:
@@ -46,7 +46,7 @@ def renamed_signals(old: Fspa, new: Fspa) -> dict[str, str]:
         read = [
             (one.name, two.name)
             for one, two in zip(nodes(was), nodes(now), strict=False)
-            if isinstance(one, Signal) and isinstance(two, Signal)
+            if isinstance(one, SignalValue) and isinstance(two, SignalValue)
         ]
         likely = {
             one: two for one, two in read if one not in new_types and two not in types and types[one] == new_types[two]
@@ -71,7 +71,7 @@ def with_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
 
 def _with_signals(expression: Expression, names: Mapping[str, str]) -> Expression:
     def renamed(leaf: Leaf) -> Leaf:
-        return Signal(names.get(leaf.name, leaf.name)) if isinstance(leaf, Signal) else leaf
+        return SignalValue(names.get(leaf.name, leaf.name)) if isinstance(leaf, SignalValue) else leaf
 
     return with_leaves(expression, renamed)
 
@@ -82,11 +82,11 @@ def _form(expression: Expression, of: Fspa) -> object:
     return tuple(_token(node, params) for node in nodes(expression))
 
 
-def _token(node: Expression | Condition, params: Mapping[str, ParamValue]) -> object:
+def _token(node: Expression | Condition, params: Mapping[str, SpecParam]) -> object:
     """Return a key for a node without its children, except for their number."""
-    if isinstance(node, Param):
+    if isinstance(node, ParamValue):
         return "param", plain(params[node.name])
-    if isinstance(node, (Const, Signal)):
+    if isinstance(node, (Const, SignalValue)):
         return node
     if isinstance(node, When):
         return "when", len(node.cases)

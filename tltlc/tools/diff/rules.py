@@ -14,7 +14,7 @@ from tltlc.tools.diff.differences import are_exclusive
 if TYPE_CHECKING:
     from tltlc.diagnostics.diagnostic import Diagnostic
     from tltlc.grammar.tree import Module
-    from tltlc.resolve.spec import Program
+    from tltlc.resolve.spec import ResolvedFile
 
 
 @record
@@ -29,7 +29,7 @@ class Rules:
     clock: Label | None = None
 
 
-def rules(module: Module, program: Program) -> Rules:
+def rules(module: Module, program: ResolvedFile) -> Rules:
     """Return the rules of a module that resolved without errors."""
     own = [declaration for declaration in module.declarations if isinstance(declaration, ExclusiveDecl)]
     words = program.exclusive

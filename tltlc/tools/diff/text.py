@@ -17,8 +17,8 @@ from tltlc.tools.diff.traces import block, step_lines, told
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
-    from tltlc.tools.diff.pairs import FileDiff, Pair
-    from tltlc.tools.diff.relation import Group, Relation
+    from tltlc.tools.diff.pairs import FileDiff, SpecPair
+    from tltlc.tools.diff.relation import ExclusiveGroup, Relation
 
 _RELATIONS: Final = {
     "equivalent": ("B accepts the same traces as A", ""),
@@ -61,7 +61,7 @@ def text(report: FileDiff) -> str:
     return "\n\n".join(paragraphs) + "\n"
 
 
-def _pair(pair: Pair) -> Iterator[str]:
+def _pair(pair: SpecPair) -> Iterator[str]:
     """Yield the paragraphs about a pair of specs."""
     comparison = pair.comparison
     name = pair.a.name if pair.a.name == pair.b.name else f"{pair.a.name} and {pair.b.name}"
@@ -91,7 +91,7 @@ def _pair(pair: Pair) -> Iterator[str]:
         yield "\n".join([*lines, *(f"    {sentence(difference, pair)}" for difference in pair.differences)])
 
 
-def _exclusive(groups: Sequence[Group]) -> str:
+def _exclusive(groups: Sequence[ExclusiveGroup]) -> str:
     lines = ["  judged on traces in which at most one of these holds at a time:"]
     lines += [
         f"    {listed(group.names, _MOST_ATOMS)} (exclusive in {'A' if group.in_a else 'B'} alone)" for group in groups
@@ -118,7 +118,7 @@ def _left_out(impossible: Sequence[Literals]) -> str:
     return "\n".join(lines)
 
 
-def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
+def _trace(pair: SpecPair, trace: Trace, by: str, other: str) -> Iterator[str]:
     """Yield a trace in words and, if a test can show the difference, as a ``test`` block."""
     outcome = told(pair, trace)
     is_whole = pair.comparison.relation is not None
@@ -152,7 +152,7 @@ def _indented(text: str) -> str:
     return "\n".join(f"    {line}" if line else "" for line in text.rstrip("\n").splitlines())
 
 
-def sentence(difference: Difference, pair: Pair) -> str:
+def sentence(difference: Difference, pair: SpecPair) -> str:
     """Return one difference in words."""
     a, b, name = difference.a, difference.b, difference.name
     match difference.what:
@@ -174,7 +174,7 @@ def sentence(difference: Difference, pair: Pair) -> str:
             return f"{difference.what} `{name}`: {_declared(a)} in A, {_declared(b)} in B"
 
 
-def _atom(difference: Difference, pair: Pair) -> str:
+def _atom(difference: Difference, pair: SpecPair) -> str:
     if difference.apart is None:
         return "another expression in B; no sample was found at which its value differs"
     types = {signal.name: signal.type for signal in (*pair.a.signals, *pair.b.signals)}

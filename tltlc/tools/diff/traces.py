@@ -15,7 +15,7 @@ from tltlc.tools.witness.blocks import test_block, values
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
-    from tltlc.tools.diff.pairs import Pair
+    from tltlc.tools.diff.pairs import SpecPair
 
 
 @record
@@ -30,7 +30,7 @@ class Told:
     b: State
 
 
-def told(pair: Pair, trace: Trace) -> Told:
+def told(pair: SpecPair, trace: Trace) -> Told:
     """Return the states that the two specs of a pair reach by a trace over the atoms of both."""
     letters = (*trace.prefix, *trace.cycle)
     split = pair.comparison.split
@@ -38,7 +38,7 @@ def told(pair: Pair, trace: Trace) -> Told:
     return Told(trace, a, _state(pair.b, [own_letter(letter, split, pair.b, OF_B) for letter in letters]))
 
 
-def block(pair: Pair, outcome: Told, title: str) -> tuple[str, str] | None:
+def block(pair: SpecPair, outcome: Told, title: str) -> tuple[str, str] | None:
     """Return a ``test`` block for a trace, and which spec it tests.
 
     It tests B, or A if only A has all atoms of the trace. Returns None if no test can show the
@@ -63,7 +63,7 @@ def own_letter(letter: Letter, split: Iterable[str], fspa: Fspa, ending: str) ->
     return frozenset(of_both.get(name, name) for name in letter if name in known or name in of_both)
 
 
-def step_lines(pair: Pair, letters: Sequence[Letter]) -> list[str]:
+def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
     """Return lines with what holds at each step; equal consecutive steps share a line.
 
     Lines look like ``step 1: alive`` and ``steps 2 to 9: nothing holds``.
@@ -76,7 +76,7 @@ def step_lines(pair: Pair, letters: Sequence[Letter]) -> list[str]:
     return lines
 
 
-def in_order(pair: Pair, letter: Letter) -> list[str]:
+def in_order(pair: SpecPair, letter: Letter) -> list[str]:
     """Return the atoms of a letter: atoms of A in their order, then other atoms of B."""
     split = pair.comparison.split
     names = [atom.name + (OF_A if atom.name in split else "") for atom in pair.a.atoms]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from tltlc.core.record import record
 from tltlc.expression.tree import Const, Expression, Op, nodes
-from tltlc.expression.tree import Param as ParamNode
-from tltlc.expression.tree import Signal as SignalNode
+from tltlc.expression.tree import ParamValue as ParamNode
+from tltlc.expression.tree import SignalValue as SignalNode
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa

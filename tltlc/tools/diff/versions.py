@@ -11,10 +11,10 @@ from tltlc.tools.diff.breaking import Version
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.pipeline import Session
-    from tltlc.resolve.spec import Program
+    from tltlc.resolve.spec import ResolvedFile
 
 
-def of_specs(program: Program, automata: tuple[Fspa, ...]) -> Version:
+def of_specs(program: ResolvedFile, automata: tuple[Fspa, ...]) -> Version:
     """Return the version of a compiled source."""
     return Version(automata, {spec.name: Label(spec.source, spec.name_span) for spec in program.specs})
 

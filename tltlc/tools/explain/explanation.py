@@ -50,7 +50,7 @@ class StateRow:
 
 
 @record
-class Failure:
+class TrapCondition:
     """A condition that breaks the spec for good, and the states in which it does.
 
     ``everywhere`` is true if it does so in every state that is not decided yet.
@@ -71,7 +71,7 @@ class WayStep:
 
 
 @record
-class Way:
+class ExampleTrace:
     """A trace to success or failure.
 
     Over infinite traces, ``cycle`` is the index of the first step that repeats for ever.
@@ -102,7 +102,7 @@ class Explanation:
     level: str | None
     outline: Outline | None
     exclusive: tuple[tuple[str, ...], ...]
-    failures: tuple[Failure, ...]
+    failures: tuple[TrapCondition, ...]
     judge: str
     ending: str
     limit_steps: int | None
@@ -110,8 +110,8 @@ class Explanation:
     spec_size: int
     states: tuple[StateRow, ...]
     counting: tuple[tuple[int, ...], ...]
-    succeed: Way | None
-    fail: Way | None
+    succeed: ExampleTrace | None
+    fail: ExampleTrace | None
 
 
 def explain(fspa: Fspa) -> Explanation:
@@ -181,7 +181,7 @@ def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
     )
 
 
-def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[Failure, ...]:
+def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, ...]:
     """Return what leads into a trap, one entry for each reason.
 
     Reasons that apply in every undecided state come first.
@@ -193,7 +193,7 @@ def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[Failure, ...]:
         if edge.source not in broken and edge.target in broken:
             for reason in guard.args if guard.op == "or" else (guard,):
                 sources.setdefault(_words(reason), {})[edge.source] = None
-    failures = [Failure(when, tuple(states), set(states) == open_) for when, states in sources.items()]
+    failures = [TrapCondition(when, tuple(states), set(states) == open_) for when, states in sources.items()]
     return tuple(sorted(failures, key=lambda failure: (not failure.everywhere, failure.states)))
 
 
@@ -208,7 +208,7 @@ def _found(moves: Moves, accept: bool) -> Witness | None:
     return witness if moves.fspa.states[edge.target].verdict == "violated" else None
 
 
-def _way(fspa: Fspa, witness: Witness | None) -> Way | None:
+def _way(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
     """Return the witness in words; consecutive steps with the same text are one step."""
     if witness is None:
         return None
@@ -222,4 +222,4 @@ def _way(fspa: Fspa, witness: Witness | None) -> Way | None:
             steps[-1] = WayStep(steps[-1].times + 1, condition, state)
             continue
         steps.append(WayStep(1, condition, state))
-    return Way(tuple(steps), cycle)
+    return ExampleTrace(tuple(steps), cycle)

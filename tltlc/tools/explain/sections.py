@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from tltlc.backends.drawing.folding import span
 from tltlc.core.record import record
-from tltlc.tools.explain.explanation import ANYTHING, Explanation, Failure, StateRow, Way
+from tltlc.tools.explain.explanation import ANYTHING, ExampleTrace, Explanation, StateRow, TrapCondition
 from tltlc.tools.explain.judgement import limit_text
 
 _MOST_RANGES = 3
@@ -28,7 +28,7 @@ class List:
 
 
 @record
-class Table:
+class SectionTable:
     """Rows of cells under a header."""
 
     header: tuple[str, ...]
@@ -40,7 +40,7 @@ class Section:
     """Blocks under a heading. A block that is a string is a paragraph."""
 
     heading: str
-    blocks: tuple[str | List | Table, ...]
+    blocks: tuple[str | List | SectionTable, ...]
 
 
 def document(explained: Explanation) -> tuple[Section, ...]:
@@ -94,7 +94,7 @@ def failure_texts(explained: Explanation) -> tuple[str, ...]:
     return (*texts, *([f"and {rest} more"] if rest else ()))
 
 
-def _failure(failure: Failure) -> str:
+def _failure(failure: TrapCondition) -> str:
     if failure.everywhere:
         return f"{failure.when}, at any step"
     numbers = [str(state) for state in failure.states[:_MOST_STATES]]
@@ -102,7 +102,7 @@ def _failure(failure: Failure) -> str:
     return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{ellipsis}"
 
 
-def _states(explained: Explanation) -> tuple[str | Table, ...]:
+def _states(explained: Explanation) -> tuple[str | SectionTable, ...]:
     """Return a table with a row for each state.
 
     States that differ only in a count share a row.
@@ -114,7 +114,9 @@ def _states(explained: Explanation) -> tuple[str | Table, ...]:
         for state in explained.states
         if state.id not in inside
     ]
-    table = Table(("State", "Verdict", "To go", "What remains", "What leads on"), tuple(map(_row, rows[:_MOST_ROWS])))
+    table = SectionTable(
+        ("State", "Verdict", "To go", "What remains", "What leads on"), tuple(map(_row, rows[:_MOST_ROWS]))
+    )
     rest = sum(map(len, rows[_MOST_ROWS:]))
     return (table, f"And {rest} more states; `--format json` shows all of them.") if rest else (table,)
 
@@ -154,7 +156,7 @@ def _numbers(states: list[int]) -> str:
     return ", ".join(texts if len(texts) <= _MOST_RANGES else [*texts[: _MOST_RANGES - 1], "…", texts[-1]])
 
 
-def _way(way: Way | None, otherwise: str) -> tuple[str | List, ...]:
+def _way(way: ExampleTrace | None, otherwise: str) -> tuple[str | List, ...]:
     if way is None:
         return (otherwise,)
     cycle = () if way.cycle is None else way.steps[way.cycle :]

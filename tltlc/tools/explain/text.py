@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 
 from tltlc.tools.explain.explanation import Explanation
-from tltlc.tools.explain.sections import List, Section, Table, document
+from tltlc.tools.explain.sections import List, Section, SectionTable, document
 
 _WIDTH = 100
 _GAP = "  "
@@ -42,7 +42,7 @@ def _list(block: List) -> Iterator[str]:
         yield from _wrapped(item, _WIDTH, initial_indent=indent + mark, subsequent_indent=indent + " " * len(mark))
 
 
-def _table(table: Table) -> Iterator[str]:
+def _table(table: SectionTable) -> Iterator[str]:
     """Yield the lines of a table. The last two columns share the width that the others leave."""
     rows = (table.header, *table.rows)
     widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]

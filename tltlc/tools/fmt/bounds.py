@@ -13,7 +13,7 @@ _WHOLE: Final = re.compile("[0-9]{1,9}")
 _WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
 
 
-def forms(node: tree.Unary, number: Callable[[tree.Number], str]) -> dict[str, str]:
+def forms(node: tree.Unary, number: Callable[[tree.NumberExpr], str]) -> dict[str, str]:
     """Return the forms of an operator's bound, by the names ``words`` and ``brackets``.
 
     Words look like ``within 3 steps``, brackets like ``[0,3]``. A bound may have only one of these
@@ -40,7 +40,7 @@ def forms(node: tree.Unary, number: Callable[[tree.Number], str]) -> dict[str, s
     return {**texts, "words": f"{_WORD[node.op]} {phrase}"} if phrase else texts
 
 
-def _in_brackets(op: str, high: tree.Number, text: str) -> str | None:
+def _in_brackets(op: str, high: tree.NumberExpr, text: str) -> str | None:
     """Return the last sample of ``within`` or ``for`` as it appears in brackets, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None
@@ -50,7 +50,7 @@ def _in_brackets(op: str, high: tree.Number, text: str) -> str | None:
     return str(int(count) - 1) if op == "G" and _WHOLE.fullmatch(count) and int(count) else None
 
 
-def _in_words(op: str, high: tree.Number, text: str) -> str | None:
+def _in_words(op: str, high: tree.NumberExpr, text: str) -> str | None:
     """Return the words of ``within`` or ``for`` for a bound from now until ``high``, or None."""
     if high.unit not in _STEPS:
         return text if op == "F" else None

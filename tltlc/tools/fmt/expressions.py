@@ -56,7 +56,7 @@ class Expressions:
         If it does not fit there, it gets lines of its own at ``indent``.
         """
         # Cases are easiest to read below each other, even if they are short.
-        has_cases = isinstance(node, tree.When)
+        has_cases = isinstance(node, tree.WhenExpr)
         text = None if has_cases else self.fitting(node, 1)
         if text is not None:
             self._page.put(f" {text}")
@@ -74,7 +74,7 @@ class Expressions:
         It starts on a new line if its first operand takes several lines.
         """
         self._page.comments(node.span.start, indent)
-        if isinstance(node, tree.Binary) and self.fitting(next(chain(node))[1]) is None:
+        if isinstance(node, tree.BinaryExpr) and self.fitting(next(chain(node))[1]) is None:
             self._page.end_line(indent)
         self.put(node, indent)
 
@@ -148,20 +148,20 @@ class Expressions:
                 self._page.comments(node.body.span.start, inner)
                 self._page.end_line(inner)
                 self.put(node.body, inner, behind)
-            case tree.Group():
+            case tree.GroupExpr():
                 self.put_in_brackets([Item("", node.inner, node.inner.span)], node.span.end, behind)
-            case tree.Call():
+            case tree.CallExpr():
                 self._page.put(node.name)
                 self.put_in_brackets([*map(argument, node.arguments)], node.span.end, behind)
-            case tree.When():
+            case tree.WhenExpr():
                 self._put_when(node, indent)
-            case tree.Binary() if not is_speed(node):
+            case tree.BinaryExpr() if not is_speed(node):
                 self._put_chain(node, indent, behind)
             case _:
                 self._page.comments(node.span.end, indent)
                 self._page.put(self._flat.text(node, _ENDLESS) or "")
 
-    def _put_chain(self, node: tree.Binary, indent: int, behind: int) -> None:
+    def _put_chain(self, node: tree.BinaryExpr, indent: int, behind: int) -> None:
         """Write operands on lines that begin with their operators.
 
         Comments move in front of the operators.
@@ -175,7 +175,7 @@ class Expressions:
                 self._page.put(self._flat.infix(operator.op))
             self.put(operand, indent + STEP, last)
 
-    def _put_when(self, node: tree.When, indent: int) -> None:
+    def _put_when(self, node: tree.WhenExpr, indent: int) -> None:
         """Write each case on a line, with the values in one column if they fit."""
         column = self._value_column(node, indent)
         for case in node.cases:
@@ -191,7 +191,7 @@ class Expressions:
         self._page.put("otherwise:".ljust(column - indent))
         self.put_value(node.otherwise, indent + STEP)
 
-    def _value_column(self, node: tree.When, indent: int) -> int:
+    def _value_column(self, node: tree.WhenExpr, indent: int) -> int:
         """Return the column where the values of all cases can begin, or 0 if there is none.
 
         It is one blank after the end of the widest condition.
@@ -250,12 +250,12 @@ class Expressions:
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
         """Whether the only large element shares lines with the brackets, as in ``clamp(min(``."""
         large = [item.value for item in items if not _is_simple(item.value)]
-        if len(large) != 1 or not isinstance(large[0], (tree.Call, tree.Group)):
+        if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):
             return False
         inner = large[0].span
         if self._page.has_comment(inner.start) or self._page.has_comment(end, inner.end):
             return False
-        opening = large[0].name if isinstance(large[0], tree.Call) else ""
+        opening = large[0].name if isinstance(large[0], tree.CallExpr) else ""
         small = [self._flat.text(item.value) or "" for item in items if item.value and item.value is not large[0]]
         return sum(len(item.head) + 2 for item in items) + len("".join(small)) + len(opening) <= room
 
@@ -265,7 +265,7 @@ def argument(node: tree.Argument) -> Item:
     return Item(f"{node.name} = " if node.name else "", node.value, node.span)
 
 
-def name(node: tree.Name) -> Item:
+def name(node: tree.NameExpr) -> Item:
     """Return the item for a name in a list of names."""
     return Item(node.name, None, node.span)
 
@@ -273,4 +273,4 @@ def name(node: tree.Name) -> Item:
 def _is_simple(node: Expr | None) -> bool:
     while isinstance(node, tree.Unary) and node.op == "-":
         node = node.operand
-    return isinstance(node, (tree.Name, tree.Number, tree.Constant))
+    return isinstance(node, (tree.NameExpr, tree.NumberExpr, tree.Constant))

@@ -37,20 +37,20 @@ class Flat:
         if room <= 0:
             return None
         match node:
-            case tree.Name():
+            case tree.NameExpr():
                 text: str | None = node.name
-            case tree.Number():
+            case tree.NumberExpr():
                 text = self.number(node)
-            case tree.Call():
+            case tree.CallExpr():
                 inner = self._arguments(node, room - len(node.name) - 2)
                 text = None if inner is None else f"{node.name}({inner})"
-            case tree.Binary():
+            case tree.BinaryExpr():
                 text = self._chain(node, room)
             case tree.Unary():
                 head = self.prefix(node)
                 operand = self.text(node.operand, room - len(head))
                 text = None if operand is None else head + operand
-            case tree.Group():
+            case tree.GroupExpr():
                 inner = self.text(node.inner, room - 2)
                 text = None if inner is None else f"({inner})"
             case tree.Constant():
@@ -60,11 +60,11 @@ class Flat:
                 head = f"{self.quantifier(node)} ({entities}): "
                 operand = self.text(node.body, room - len(head))
                 text = None if operand is None else head + operand
-            case tree.When():
+            case tree.WhenExpr():
                 text = self._when(node, room)
         return text if text is not None and len(text) <= room else None
 
-    def number(self, node: tree.Number) -> str:
+    def number(self, node: tree.NumberExpr) -> str:
         """Return a number as it is written, with a space before its unit."""
         written = self._source.slice(node.span)
         if node.unit is None:
@@ -84,7 +84,7 @@ class Flat:
         """Return the beginning of a quantifier: ``all x in``."""
         return f"{'all' if node.all else 'any'} {node.variable} in"
 
-    def _arguments(self, node: tree.Call, room: int) -> str | None:
+    def _arguments(self, node: tree.CallExpr, room: int) -> str | None:
         texts: list[str] = []
         for argument in node.arguments:
             head = f"{argument.name} = " if argument.name else ""
@@ -95,7 +95,7 @@ class Flat:
             room -= len(head) + len(text) + 2
         return ", ".join(texts)
 
-    def _chain(self, node: tree.Binary, room: int) -> str | None:
+    def _chain(self, node: tree.BinaryExpr, room: int) -> str | None:
         texts: list[str] = []
         for operator, operand in chain(node):
             head = self.infix(operator.op) if operator else ""
@@ -108,11 +108,11 @@ class Flat:
 
     def _speed(self, node: Expr, room: int) -> str | None:
         """Return a speed: ``20 m/s``."""
-        assert isinstance(node, tree.Binary)
+        assert isinstance(node, tree.BinaryExpr)
         denominator = self.text(node.right, room)
         return None if denominator is None else f"{self.text(node.left)}/{denominator}"
 
-    def _when(self, node: tree.When, room: int) -> str | None:
+    def _when(self, node: tree.WhenExpr, room: int) -> str | None:
         texts: list[str] = []
         for case in node.cases:
             condition, value = self.text(case.condition, room), self.text(case.value, room)
@@ -124,7 +124,7 @@ class Flat:
         return None if value is None else f"{''.join(texts)}otherwise: {value}"
 
 
-def chain(node: tree.Binary) -> Iterator[tuple[tree.Binary | None, Expr]]:
+def chain(node: tree.BinaryExpr) -> Iterator[tuple[tree.BinaryExpr | None, Expr]]:
     """Yield the operands of operators with the same precedence, in order.
 
     Each operand comes with the operator before it.
@@ -133,10 +133,10 @@ def chain(node: tree.Binary) -> Iterator[tuple[tree.Binary | None, Expr]]:
         yield None, node
         return
     level = _LEVEL.get(node.op, node.op)
-    waiting: list[tuple[tree.Binary | None, Expr]] = [(None, node)]
+    waiting: list[tuple[tree.BinaryExpr | None, Expr]] = [(None, node)]
     while waiting:
         operator, part = waiting.pop()
-        if isinstance(part, tree.Binary) and _LEVEL.get(part.op, part.op) == level and not is_speed(part):
+        if isinstance(part, tree.BinaryExpr) and _LEVEL.get(part.op, part.op) == level and not is_speed(part):
             waiting += ((part, part.right), (operator, part.left))
         else:
             yield operator, part
@@ -144,12 +144,12 @@ def chain(node: tree.Binary) -> Iterator[tuple[tree.Binary | None, Expr]]:
 
 def is_speed(node: Expr) -> bool:
     """Whether this is a quotient with units, such as ``20 m/s``, which is never broken."""
-    if not isinstance(node, tree.Binary) or node.op != "/":
+    if not isinstance(node, tree.BinaryExpr) or node.op != "/":
         return False
-    denominator = node.right.left if isinstance(node.right, tree.Binary) else node.right
+    denominator = node.right.left if isinstance(node.right, tree.BinaryExpr) else node.right
     return (
-        isinstance(node.left, tree.Number)
+        isinstance(node.left, tree.NumberExpr)
         and node.left.unit is not None
-        and isinstance(denominator, tree.Name)
+        and isinstance(denominator, tree.NameExpr)
         and denominator.name in _PER
     )

@@ -38,7 +38,11 @@ class Style:
         if bound:
             # `F[2,3]` is easiest to read in letters.
             spelling = f"{(self.letters or self.prefix)[node.op].rstrip()}{bound['brackets']} "
-        return spelling.rstrip() if isinstance(node.operand, tree.Group) and not self.space_before_bracket else spelling
+        return (
+            spelling.rstrip()
+            if isinstance(node.operand, tree.GroupExpr) and not self.space_before_bracket
+            else spelling
+        )
 
 
 def _style(notation: Notation, others: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None) -> Style:

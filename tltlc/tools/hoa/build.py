@@ -20,7 +20,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.resolve.spec import Judge
 from tltlc.tools.hoa.checks import is_finite
 from tltlc.tools.hoa.conditions import Acceptance
-from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, Move, Transitions
+from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, HoaTransitions, Move
 from tltlc.tools.hoa.tree import Hoa
 
 _MOST_PROBLEMS: Final = 5
@@ -69,11 +69,11 @@ def automaton_of(
         OutOfStates: more than ``state_budget`` states are reached.
     """
     letters: Diagrams[Any] = Diagrams(work)
-    moves = _moves(hoa, Transitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
+    moves = _moves(hoa, HoaTransitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
     return (_finite if is_finite(hoa) else _infinite)(hoa, moves, letters)
 
 
-def _moves(hoa: Hoa, transitions: Transitions, state_budget: int) -> Moves:
+def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
     moves: Moves = {}

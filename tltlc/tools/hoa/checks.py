@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.core.source import Span
 from tltlc.tools.hoa.problems import DETERMINISTIC, broken, other_kind
-from tltlc.tools.hoa.tree import Header, Hoa, Sets, Targets, Term
+from tltlc.tools.hoa.tree import Header, Hoa, HoaExpression, Sets, Targets
 
 FINITE: Final = "Tltlc-semantics:"
 """The header with which tltlc marks automata over finite traces."""
@@ -89,7 +89,7 @@ def _check_states(hoa: Hoa) -> None:
         _check_set(hoa, max(sets.numbers, default=-1), sets.span)
 
 
-def _check_condition(hoa: Hoa, condition: Term) -> None:
+def _check_condition(hoa: Hoa, condition: HoaExpression) -> None:
     """Raise TltlError, TLT0651, if an acceptance condition uses a set that does not exist."""
     for term in condition.args:
         _check_condition(hoa, term)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from tltlc.automaton.infinite.mark_conditions import Clause, Kind, Marks, Skeleton, clauses
+from tltlc.automaton.infinite.mark_conditions import Kind, MarkClause, Marks, Skeleton, clauses
 from tltlc.automaton.work import Work
-from tltlc.tools.hoa.tree import Hoa, Term
+from tltlc.tools.hoa.tree import Hoa, HoaExpression
 
 
 class Acceptance:
@@ -21,14 +21,14 @@ class Acceptance:
         kinds: list[Kind] = [kind for kind, _, _ in self._places]
         disjuncts = clauses(skeleton, kinds, [None] * len(kinds), work)
         if isinstance(disjuncts, bool):
-            disjuncts = [Clause(frozenset(), frozenset())] if disjuncts else []
+            disjuncts = [MarkClause(frozenset(), frozenset())] if disjuncts else []
         self.clauses = tuple(disjuncts)
 
     def marks(self, sets: Collection[int]) -> Marks:
         """Return the marks of an edge in these sets."""
         return frozenset(place for (_, number, outside), place in self._places.items() if (number in sets) != outside)
 
-    def _skeleton(self, term: Term) -> Skeleton:
+    def _skeleton(self, term: HoaExpression) -> Skeleton:
         if term.op in ("fin", "inf"):
             number = term.value
             assert isinstance(number, int)

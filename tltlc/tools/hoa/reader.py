@@ -14,7 +14,7 @@ from lark.visitors import Transformer_NonRecursive
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.tools.hoa.problems import broken, other_kind
-from tltlc.tools.hoa.tree import Alias, Edge, Header, Hoa, Name, Sets, State, Targets, Term
+from tltlc.tools.hoa.tree import Alias, Header, Hoa, HoaEdge, HoaExpression, HoaState, HoaString, Sets, Targets
 
 _OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*(?:"|\\?\Z)|/\*', re.DOTALL)
 """A string in quotes, whose end may be missing, or the beginning of a comment."""
@@ -162,7 +162,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
     def __init__(self, source: SourceFile) -> None:
         super().__init__()
         self._source = source
-        self._labels: dict[str, Term] = {}
+        self._labels: dict[str, HoaExpression] = {}
         self._start = 0
         """The position in the file of the text that is being parsed: labels are parsed separately."""
 
@@ -171,9 +171,9 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         if version != "v1":
             suggestion = "this reads version 1 of the format, `HOA: v1`"
             raise broken(self._source, self._span(version), f"`{_short(version)}` is no version known", suggestion)
-        states = tuple(item for item in items if isinstance(item, State))
+        states = tuple(item for item in items if isinstance(item, HoaState))
         header: dict[str, list[Any]] = {}
-        for kind, value, span in (item for item in items if not isinstance(item, State)):
+        for kind, value, span in (item for item in items if not isinstance(item, HoaState)):
             known = header.setdefault(kind, [])
             if known and kind in _ONCE:
                 raise broken(self._source, span, f"`{kind}` stands here again", "keep one of the two")
@@ -205,22 +205,22 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         """``Start: 0``."""
         return "Start:", targets, targets.span
 
-    def atoms(self, word: Token, count: Token, *names: Name) -> Any:
+    def atoms(self, word: Token, count: Token, *names: HoaString) -> Any:
         """``AP: 2 "a" "b"``."""
         if self._number(count) != len(names):
             title = f"`AP:` says {count}, and {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
             raise broken(self._source, self._span(word), title, "give the number of names")
         return "AP:", names, self._span(word)
 
-    def alias(self, name: Token, term: Term) -> Any:
+    def alias(self, name: Token, term: HoaExpression) -> Any:
         """``Alias: @a 0 & !1``."""
         return "Alias:", Alias(str(name), term, self._span(name)), self._span(name)
 
-    def acceptance(self, word: Token, sets: Token, condition: Term) -> Any:
+    def acceptance(self, word: Token, sets: Token, condition: HoaExpression) -> Any:
         """``Acceptance: 2 Fin(0) & Inf(1)``."""
         return "Acceptance:", (self._number(sets), condition), self._span(word)
 
-    def name(self, word: Token, text: Name) -> Any:
+    def name(self, word: Token, text: HoaString) -> Any:
         """``name: "G F a"``."""
         return "name:", text, self._span(word)
 
@@ -230,16 +230,18 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
 
     # The methods for the body.
 
-    def state(self, label: Token | None, number: Token, name: Name | None, sets: Sets, *edges: Edge) -> State:
+    def state(
+        self, label: Token | None, number: Token, name: HoaString | None, sets: Sets, *edges: HoaEdge
+    ) -> HoaState:
         """``State: 0 "F a" {0}`` and its edges."""
         text = None if name is None else name.text
-        return State(self._number(number), text, self._label(label), sets, edges, self._span(number))
+        return HoaState(self._number(number), text, self._label(label), sets, edges, self._span(number))
 
-    def edge(self, label: Token | None, targets: Targets, sets: Sets) -> Edge:
+    def edge(self, label: Token | None, targets: Targets, sets: Sets) -> HoaEdge:
         """``[0 & !1] 3 {0}``."""
-        return Edge(self._label(label), targets, sets)
+        return HoaEdge(self._label(label), targets, sets)
 
-    def _label(self, label: Token | None) -> Term | None:
+    def _label(self, label: Token | None) -> HoaExpression | None:
         """Parse a label in square brackets; equal labels share one term, with the positions of the first."""
         if label is None:
             return None
@@ -265,44 +267,44 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         """``3``, or ``3 & 4``."""
         return Targets(tuple(map(self._number, states)), self._span(states[0], states[-1]))
 
-    def string(self, text: Token) -> Name:
+    def string(self, text: Token) -> HoaString:
         """A string in double quotes."""
         whole = self._span(text)
-        return Name(_ESCAPE.sub(_escaped, text[1:-1]), Span(whole.start + 1, whole.end - 1))
+        return HoaString(_ESCAPE.sub(_escaped, text[1:-1]), Span(whole.start + 1, whole.end - 1))
 
     # Boolean expressions.
 
-    def any_of(self, *terms: Term) -> Term:
+    def any_of(self, *terms: HoaExpression) -> HoaExpression:
         """Operands of ``|``."""
-        return terms[0] if len(terms) == 1 else Term("or", terms)
+        return terms[0] if len(terms) == 1 else HoaExpression("or", terms)
 
-    def all_of(self, *terms: Term) -> Term:
+    def all_of(self, *terms: HoaExpression) -> HoaExpression:
         """Operands of ``&``."""
-        return terms[0] if len(terms) == 1 else Term("and", terms)
+        return terms[0] if len(terms) == 1 else HoaExpression("and", terms)
 
-    def negation(self, _: Token, term: Term) -> Term:
+    def negation(self, _: Token, term: HoaExpression) -> HoaExpression:
         """``!0``."""
-        return Term("not", (term,))
+        return HoaExpression("not", (term,))
 
-    def atom(self, index: Token) -> Term:
+    def atom(self, index: Token) -> HoaExpression:
         """``0``."""
-        return Term("atom", (), self._number(index), False, self._span(index))
+        return HoaExpression("atom", (), self._number(index), False, self._span(index))
 
-    def aliased(self, name: Token) -> Term:
+    def aliased(self, name: Token) -> HoaExpression:
         """``@a``."""
-        return Term("alias", (), str(name), False, self._span(name))
+        return HoaExpression("alias", (), str(name), False, self._span(name))
 
-    def constant(self, word: Token) -> Term:
+    def constant(self, word: Token) -> HoaExpression:
         """``t`` or ``f``."""
-        return Term("true" if word.type == "TRUE" else "false")
+        return HoaExpression("true" if word.type == "TRUE" else "false")
 
-    def set(self, kind: Token, outside: Token | None, number: Token) -> Term:
+    def set(self, kind: Token, outside: Token | None, number: Token) -> HoaExpression:
         """``Fin(0)`` or ``Inf(!0)``."""
         if kind not in ("Fin", "Inf"):
             title, suggestion = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
             raise broken(self._source, self._span(kind), title, suggestion)
         op: Any = kind.lower()
-        return Term(op, (), self._number(number), outside is not None, self._span(number))
+        return HoaExpression(op, (), self._number(number), outside is not None, self._span(number))
 
     # Tokens.
 

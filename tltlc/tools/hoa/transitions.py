@@ -8,7 +8,7 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.tools.hoa.problems import DETERMINISTIC, broken
-from tltlc.tools.hoa.tree import Edge, Hoa, State, Term
+from tltlc.tools.hoa.tree import Hoa, HoaEdge, HoaExpression, HoaState
 
 _MOST_UNLABELLED: Final = 64
 YES, NO = "yes", "no"
@@ -21,7 +21,7 @@ NOT_ALLOWED: Final = None
 """The value on letters that ``exclusive`` rules out."""
 
 
-class Transitions:
+class HoaTransitions:
     """The moves of states, as functions of letters over ``atoms``, which are names.
 
     ``allowed`` is a function of the letter to :data:`YES` or :data:`NO`; letters that are not
@@ -39,7 +39,7 @@ class Transitions:
                 raise broken(hoa.source, alias.span, f"`{alias.name}` is declared again", "rename one")
             self._aliases[alias.name] = self._function(alias.term)
 
-    def moves(self, state: State) -> int:
+    def moves(self, state: HoaState) -> int:
         """Return the moves of a state, as a function of the letter to :data:`Move` or :data:`NOT_ALLOWED`.
 
         Raises TltlError: TLT0651 if a label is wrong; TLT0653 if two edges are taken on some
@@ -60,13 +60,13 @@ class Transitions:
 
         return letters.mapped(move, step, {})
 
-    def _labelled(self, state: State) -> int:
+    def _labelled(self, state: HoaState) -> int:
         """Return the places of the edges that a letter takes, at most two: two are enough for a counterexample."""
         letters = self._letters
         edges = letters.leaf(())
         for place, edge in enumerate(state.edges):
 
-            def also(taken: tuple[int, ...], yes: str, place: int = place, edge: Edge = edge) -> tuple[int, ...]:
+            def also(taken: tuple[int, ...], yes: str, place: int = place, edge: HoaEdge = edge) -> tuple[int, ...]:
                 if yes == NO or len(taken) > 1 or any(_same(edge, state.edges[other]) for other in taken):
                     return taken
                 return (*taken, place)
@@ -76,7 +76,7 @@ class Transitions:
             edges = letters.combined(also, edges, self._of_label(label), {})
         return edges
 
-    def _unlabelled(self, state: State) -> int:
+    def _unlabelled(self, state: HoaState) -> int:
         """Return the place of the edge that a letter takes, if edges have no labels.
 
         The first edge is for the letter without atoms, the next one for the letter with atom 0
@@ -98,12 +98,12 @@ class Transitions:
 
     # --- labels -----------------------------------------------------------------------------------
 
-    def _of_label(self, label: Term) -> int:
+    def _of_label(self, label: HoaExpression) -> int:
         if id(label) not in self._known:
             self._known[id(label)] = self._function(label)
         return self._known[id(label)]
 
-    def _function(self, term: Term) -> int:
+    def _function(self, term: HoaExpression) -> int:
         """Return a label as a function to :data:`YES` or :data:`NO`."""
         letters = self._letters
         yes, no = letters.leaf(YES), letters.leaf(NO)
@@ -133,7 +133,7 @@ class Transitions:
             raise broken(self._hoa.source, term.span, title, "name one of those, or add it to `AP:`")
         return letters.node(term.value, no, yes)
 
-    def _is_unlabelled(self, state: State) -> bool:
+    def _is_unlabelled(self, state: HoaState) -> bool:
         """Whether the edges of a state have no labels and stand for the letters in order; False without edges.
 
         Raises TltlError, TLT0651, if only some edges have labels, or an edge has a label and its
@@ -149,7 +149,7 @@ class Transitions:
             raise self._label_problem(unlabelled[0], "this edge has no label, and others of its state have one")
         return bool(unlabelled)
 
-    def _label_problem(self, edge: Edge, title: str) -> TltlError:
+    def _label_problem(self, edge: HoaEdge, title: str) -> TltlError:
         suggestion = "label the state alone, all of its edges, or none of them"
         return broken(self._hoa.source, edge.targets.span, title, suggestion)
 
@@ -161,7 +161,7 @@ class Transitions:
         names = [name if place in present else f"!{name}" for place, name in enumerate(self._atoms)]
         return " & ".join(names) or "true"
 
-    def _not_one(self, state: State, taken: tuple[int, ...], letter: str) -> Diagnostic:
+    def _not_one(self, state: HoaState, taken: tuple[int, ...], letter: str) -> Diagnostic:
         source = self._hoa.source
         if not taken:
             title = f"this automaton is not complete: state {state.number} has no edge for `{letter}`"
@@ -172,6 +172,6 @@ class Transitions:
         return Diagnostic("TLT0653", title, labels, DETERMINISTIC)
 
 
-def _same(one: Edge, other: Edge) -> bool:
+def _same(one: HoaEdge, other: HoaEdge) -> bool:
     """Whether two edges have the same target and the same sets: a file may contain an edge twice."""
     return one.targets.states == other.targets.states and set(one.sets.numbers) == set(other.sets.numbers)

@@ -9,7 +9,7 @@ from tltlc.core.source import SourceFile, Span
 
 
 @record
-class Term:
+class HoaExpression:
     """A Boolean expression over atoms, or an acceptance condition over sets.
 
     ``value`` is the index of an ``atom``, the name of an ``alias``, or the number of the set of a
@@ -17,7 +17,7 @@ class Term:
     """
 
     op: Literal["true", "false", "not", "and", "or", "atom", "alias", "fin", "inf"]
-    args: tuple[Term, ...] = ()
+    args: tuple[HoaExpression, ...] = ()
     value: int | str = 0
     outside: bool = False
     span: Span = Span(0, 0)
@@ -40,28 +40,28 @@ class Targets:
 
 
 @record
-class Edge:
+class HoaEdge:
     """An edge; if ``label`` is None, the state's label applies, or the edge is for the letter of its position."""
 
-    label: Term | None
+    label: HoaExpression | None
     targets: Targets
     sets: Sets
 
 
 @record
-class State:
+class HoaState:
     """A state; ``span`` is the span of its number."""
 
     number: int
     name: str | None
-    label: Term | None
+    label: HoaExpression | None
     sets: Sets
-    edges: tuple[Edge, ...]
+    edges: tuple[HoaEdge, ...]
     span: Span
 
 
 @record
-class Name:
+class HoaString:
     """A string without its quotes, with escapes resolved; ``span`` is the span between the quotes."""
 
     text: str
@@ -73,7 +73,7 @@ class Alias:
     """A name for a Boolean expression over atoms and earlier aliases."""
 
     name: str
-    term: Term
+    term: HoaExpression
     span: Span
 
 
@@ -93,10 +93,10 @@ class Hoa:
     source: SourceFile
     count: int | None
     starts: tuple[Targets, ...]
-    atoms: tuple[Name, ...]
+    atoms: tuple[HoaString, ...]
     aliases: tuple[Alias, ...]
     sets: int
-    condition: Term
-    name: Name | None
+    condition: HoaExpression
+    name: HoaString | None
     headers: tuple[Header, ...]
-    states: tuple[State, ...]
+    states: tuple[HoaState, ...]

@@ -17,14 +17,14 @@ from tltlc.grammar.allow_index import Silencing
 from tltlc.grammar.tree import Comment
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import without
-from tltlc.tools.lint.rule import Finding, removal
+from tltlc.tools.lint.rule import LintFinding, removal
 
 CODE: Final = "TLT0427"
 SEVERITY: Final[Severity] = "warning"
 _INTENDED: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}\b)")
 
 
-def silenced(view: View, findings: Iterable[Finding]) -> list[Finding]:
+def silenced(view: View, findings: Iterable[LintFinding]) -> list[LintFinding]:
     """Return the findings that no comment silences, plus findings about the comments themselves.
 
     A comment silences findings in its own file. Each code that the linted file allows in vain gets
@@ -80,7 +80,7 @@ class _Undecided:
         return index >= 0 and self._specs[index].covers(place)
 
 
-def _in_vain(allowance: Allowed, fix: Fix | None) -> Finding:
+def _in_vain(allowance: Allowed, fix: Fix | None) -> LintFinding:
     """Return the finding for an allowed code that silences nothing.
 
     ``fix`` removes the comment. It is None if the comment allows other codes with effect; then the
@@ -89,21 +89,21 @@ def _in_vain(allowance: Allowed, fix: Fix | None) -> Finding:
     where = "in this file" if allowance.places is None else "here"
     title = f"this allows {allowance.code}, which is not found {where}"
     label = Label(allowance.source, allowance.span)
-    return Finding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, (fix,) if fix else ()))
+    return LintFinding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, (fix,) if fix else ()))
 
 
-def _without_code(comment: Comment, source: SourceFile) -> Finding:
+def _without_code(comment: Comment, source: SourceFile) -> LintFinding:
     title, suggestion = "this comment allows nothing", "name a code, e.g. `// tltlc: allow TLT0419`"
-    return Finding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))
+    return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))
 
 
 def _is_misspelt(comment: Comment) -> bool:
     return bool(_INTENDED.match(comment.text)) and not is_allowing(comment)
 
 
-def _misspelt(comment: Comment, source: SourceFile) -> Finding:
+def _misspelt(comment: Comment, source: SourceFile) -> LintFinding:
     title, suggestion = (
         "this comment allows nothing",
         "write `// tltlc: allow`, with two slashes, and the code behind it",
     )
-    return Finding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))
+    return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), suggestion, SEVERITY))

@@ -9,8 +9,8 @@ from typing import Final, Literal, Protocol
 from tltlc.io.limits import WORK
 from tltlc.resolve.range_proof.cases import TooManyCasesError, cases
 from tltlc.resolve.range_proof.check import box_of
-from tltlc.resolve.range_proof.proof import TOLERANCE, Task, unproved
-from tltlc.resolve.range_proof.region import Region
+from tltlc.resolve.range_proof.proof import TOLERANCE, ProofGoal, unproved
+from tltlc.resolve.range_proof.region import ConstrainedBox
 from tltlc.resolve.range_proof.witness import points, value_at
 from tltlc.resolve.range_proof.work import OutOfWorkError, limited
 from tltlc.resolve.spec import Atom, Param, Signal
@@ -65,8 +65,8 @@ def is_always(sign: Sign, atom: Atom, of: Declares) -> bool:
     try:
         with limited(WORK["check of a predicate"]):
             box, _ = box_of(atom.expression, *_declared(of))
-            tasks = [Task(case.value, case.constraints, low, high) for case in cases(atom.expression)]
-            return not unproved(tasks, Region(box, {}))
+            tasks = [ProofGoal(case.value, case.constraints, low, high) for case in cases(atom.expression)]
+            return not unproved(tasks, ConstrainedBox(box, {}))
     except (OutOfWorkError, TooManyCasesError, RecursionError):
         return False
 

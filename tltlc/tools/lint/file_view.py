@@ -12,7 +12,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar.tree import Binary, Call, Clause, Expr, Group, Module, Name, Quantified, SpecDecl
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, GroupExpr, Module, NameExpr, Quantified, SpecDecl
 from tltlc.grammar.walk import children
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.phrases import is_state
@@ -20,7 +20,7 @@ from tltlc.resolve import formulas
 from tltlc.resolve.imports import Loaded
 from tltlc.resolve.kinds import entity
 from tltlc.resolve.problem import ResolutionError
-from tltlc.resolve.spec import Program, Spec
+from tltlc.resolve.spec import ResolvedFile, Spec
 from tltlc.resolve.values import Env
 from tltlc.tools.lint.names import Mentioned, mentions
 
@@ -135,7 +135,7 @@ class SpecView:
         """
         for formula in self.formulas():
             for part in formula.parts():
-                if isinstance(part.tree, (Name, Call)) or _is_comparison(part.tree):
+                if isinstance(part.tree, (NameExpr, CallExpr)) or _is_comparison(part.tree):
                     part_formula = part.formula()
                     if part_formula is not None and name in part_formula.atoms():
                         return Label(part.source, part.tree.span, message)
@@ -157,7 +157,7 @@ class View:
     specs: tuple[SpecView, ...]
     said: tuple[Diagnostic, ...]
     elsewhere: Container[str] = frozenset()
-    program: Program = Program((), ())
+    program: ResolvedFile = ResolvedFile((), ())
 
     @property
     def source(self) -> SourceFile:
@@ -180,15 +180,15 @@ def operand(part: Expression) -> str:
     It has brackets if it needs them.
     """
     tree = inner(part.tree)
-    return f"({part.text})" if isinstance(tree, (Binary, Quantified)) and not _is_comparison(tree) else part.text
+    return f"({part.text})" if isinstance(tree, (BinaryExpr, Quantified)) and not _is_comparison(tree) else part.text
 
 
 def _is_comparison(tree: Expr) -> bool:
-    return isinstance(tree, Binary) and tree.op in _COMPARISONS
+    return isinstance(tree, BinaryExpr) and tree.op in _COMPARISONS
 
 
 def inner(tree: Expr) -> Expr:
     """Return an expression without the brackets around it."""
-    while isinstance(tree, Group):
+    while isinstance(tree, GroupExpr):
         tree = tree.inner
     return tree

@@ -13,7 +13,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix
 from tltlc.grammar.allow_comments import spoken_of
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
-from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
 _MOST: Final = 8
@@ -24,14 +24,14 @@ Errors = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]
 
 
 @record
-class Offer:
+class OfferedFix:
     """A fix that can be applied as it is, with its diagnostic."""
 
     diagnostic: Diagnostic
     fix: Fix
 
 
-def of_findings(findings: Iterable[Finding], module: Module) -> Iterator[Offer]:
+def of_findings(findings: Iterable[LintFinding], module: Module) -> Iterator[OfferedFix]:
     """Yield the fixes of lint findings in a module, as ``tltlc lint --fix`` applies them.
 
     A fix must not change what the ``allow`` comments of the module apply to. If the module has such
@@ -47,13 +47,13 @@ def of_findings(findings: Iterable[Finding], module: Module) -> Iterator[Offer]:
                     tried[fix.edits] = keeping_scopes(module, fix.edits)
                 edits = tried.get(fix.edits)
             if edits:
-                yield Offer(finding.diagnostic, replace(fix, edits=edits))
+                yield OfferedFix(finding.diagnostic, replace(fix, edits=edits))
 
 
-def of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: Errors) -> Iterator[Offer]:
+def of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: Errors) -> Iterator[OfferedFix]:
     """Yield the fixes of these diagnostics about a text that leave fewer errors in it."""
     candidates = [
-        Offer(diagnostic, fix)
+        OfferedFix(diagnostic, fix)
         for diagnostic in islice(diagnostics, _MOST)
         if _is_in(source, diagnostic)
         for fix in diagnostic.fixes

@@ -12,7 +12,7 @@ from tltlc.grammar.allow_comments import spoken_of
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
 from tltlc.pipeline import CompileOptions
-from tltlc.tools.lint.rule import Finding
+from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.run import findings, view_of
 from tltlc.tools.lint.scopes import after, keeping_scopes
 
@@ -30,7 +30,7 @@ class Fixed:
 
     source: SourceFile
     fixed: tuple[Diagnostic, ...]
-    left: tuple[Finding, ...]
+    left: tuple[LintFinding, ...]
 
 
 def fix(
@@ -47,7 +47,7 @@ def fix(
     Errors: the same as :func:`tltlc.tools.lint.run.lint`.
     """
 
-    def linted(text: SourceFile) -> tuple[Module, tuple[Finding, ...]]:
+    def linted(text: SourceFile) -> tuple[Module, tuple[LintFinding, ...]]:
         view = replace(view_of(text, options or CompileOptions()), elsewhere=elsewhere)
         return view.module, findings(view, levels)
 
@@ -66,7 +66,7 @@ def fix(
     return Fixed(module.source, tuple(fixed), left)
 
 
-def _applied(module: Module, left: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
+def _applied(module: Module, left: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
     """Apply all fixes that do not overlap and do not change what comments apply to.
 
     Returns the new text and the diagnostics that were fixed.
@@ -81,12 +81,12 @@ def _applied(module: Module, left: tuple[Finding, ...]) -> tuple[SourceFile, lis
     return after(module.source, edits), [finding.diagnostic for finding in applied]
 
 
-def _without_overlaps(findings: Iterable[Finding]) -> list[Finding]:
+def _without_overlaps(findings: Iterable[LintFinding]) -> list[LintFinding]:
     """Return the findings whose edits do not overlap with those of an earlier finding.
 
     Two findings may share an edit.
     """
-    accepted: list[Finding] = []
+    accepted: list[LintFinding] = []
     spans: list[tuple[int, int]] = []
     known: set[Edit] = set()
     for finding in findings:
@@ -106,18 +106,18 @@ def _overlaps(span: tuple[int, int], spans: list[tuple[int, int]]) -> bool:
     return any(other < end and start < stop for other, stop in spans[max(0, place - 1) : place + 1])
 
 
-def _edits(findings: Iterable[Finding]) -> tuple[Edit, ...]:
+def _edits(findings: Iterable[LintFinding]) -> tuple[Edit, ...]:
     return tuple(dict.fromkeys(edit for finding in findings for edit in finding.fix))
 
 
-def _keeping_scopes(module: Module, findings: Sequence[Finding]) -> tuple[list[Finding], tuple[Edit, ...]]:
+def _keeping_scopes(module: Module, findings: Sequence[LintFinding]) -> tuple[list[LintFinding], tuple[Edit, ...]]:
     """Return the findings that can be fixed together, and their edits.
 
     Their fixes do not change what comments apply to. This tries all findings at once and then
     halves, because most files have few findings that cannot be fixed. It stops after ``WORK["fixes
     tried"]`` attempts.
     """
-    applied: list[Finding] = []
+    applied: list[LintFinding] = []
     edits: tuple[Edit, ...] = ()
     waiting = [list(findings)]
     for _ in range(WORK["fixes tried"]):

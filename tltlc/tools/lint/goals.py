@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.grammar import walk
-from tltlc.grammar.tree import Binary, Quantified, Unary
+from tltlc.grammar.tree import BinaryExpr, Quantified, Unary
 from tltlc.tools.lint.file_view import Expression, SpecView, inner
 
 
@@ -41,7 +41,7 @@ def is_of_implications(value: Expression) -> bool:
     As a goal it would be met as soon as the conditions of the implications do not hold.
     """
     trees = (part.tree for part in conjuncts(value))
-    return all(isinstance(tree, Binary) and tree.op == "implies" for tree in trees)
+    return all(isinstance(tree, BinaryExpr) and tree.op == "implies" for tree in trees)
 
 
 def _inside(value: Expression) -> Iterator[Expression]:
@@ -55,9 +55,9 @@ def _inside(value: Expression) -> Iterator[Expression]:
         operands = part.children()
         if isinstance(tree, Unary) and tree.op == "F":
             yield from operands
-        elif isinstance(tree, Binary) and tree.op == "then":
+        elif isinstance(tree, BinaryExpr) and tree.op == "then":
             operands = [part.at(step) for step in walk.operands(tree, "then")]
             yield from operands
-        elif isinstance(tree, Binary) and tree.op == "implies":
+        elif isinstance(tree, BinaryExpr) and tree.op == "implies":
             operands = operands[1:]
         waiting += reversed(operands)

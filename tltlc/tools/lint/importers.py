@@ -18,7 +18,7 @@ Each match consumes all of its characters, so nothing is scanned twice.
 
 
 @record
-class Words:
+class ImporterNames:
     """The imports of a file and every name outside its comments.
 
     An import is stored as the last part of its name, without ``.tltl``.
@@ -48,7 +48,7 @@ class Used:
         return place < len(self.backwards) and self.backwards[place].startswith(reversed_suffix)
 
 
-def words(path: str, text: str) -> Words:
+def words(path: str, text: str) -> ImporterNames:
     """Return the words of a file, which need not compile.
 
     If the file imports nothing, its names do not matter and are left out.
@@ -61,17 +61,17 @@ def words(path: str, text: str) -> Words:
             targets.add(_stem(quoted or name.replace(".", "/")))
         names.add(name)
         previous = name
-    return Words(_stem(path), frozenset(targets), frozenset(names) if targets else frozenset())
+    return ImporterNames(_stem(path), frozenset(targets), frozenset(names) if targets else frozenset())
 
 
-def used_elsewhere(path: str, others: Iterable[Words]) -> Container[str]:
+def used_elsewhere(path: str, others: Iterable[ImporterNames]) -> Container[str]:
     """Return every name in those ``others`` that import this file.
 
     This includes files that import it through others. Files with the same name in different folders
     are not distinguished, so the result may have names that are not really used from this file.
     """
     remaining, reached = list(others), {_stem(path)}
-    importers: list[Words] = []
+    importers: list[ImporterNames] = []
     while importing := [file for file in remaining if file.imports & reached]:
         remaining = [file for file in remaining if not file.imports & reached]
         reached |= {file.stem for file in importing}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator
 
 from tltlc.core.record import record
-from tltlc.grammar.tree import Call, Declaration, Expr, Module, Name, Quantified, SpecDecl
+from tltlc.grammar.tree import CallExpr, Declaration, Expr, Module, NameExpr, Quantified, SpecDecl
 from tltlc.grammar.walk import expressions, parts
 
 _FORMULAS = ("reach", "keep", "avoid", "require")
@@ -30,7 +30,7 @@ def mentions(module: Module) -> frozenset[str]:
 def _in_declaration(declaration: Declaration) -> Iterator[str]:
     for expression in _expressions(declaration):
         for part in parts(expression):
-            if isinstance(part, (Name, Call)):
+            if isinstance(part, (NameExpr, CallExpr)):
                 yield part.name
             elif isinstance(part, Quantified):
                 yield from (entity.name for entity in part.entities)

@@ -9,10 +9,10 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.expression.tree import Condition, Const, Op, When, nodes
-from tltlc.expression.tree import Param as ParamNode
-from tltlc.expression.tree import Signal as SignalNode
+from tltlc.expression.tree import ParamValue as ParamNode
+from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.logic.formula import Formula, always, and_, atom, not_
-from tltlc.resolve.spec import Atom, Param, Part, Signal
+from tltlc.resolve.spec import Atom, Conjunct, Param, Signal
 from tltlc.tools.lint.atom_signs import can_be, is_always
 from tltlc.tools.lint.file_view import SpecView
 
@@ -32,13 +32,13 @@ class _Declared:
     params: tuple[Param, ...]
 
 
-def relations(spec: SpecView, names: Collection[str]) -> tuple[Part, ...]:
+def relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, ...]:
     """Return which of these atoms, or their negations, exclude each other, as parts of the spec.
 
     This follows from the ranges of signals. Every relation in the result is proved.
     """
     formulas = (always(not_(pair)) for pair in _pairs(spec, names))
-    return tuple(Part(formula, spec.spec.source, spec.spec.name_span) for formula in formulas)
+    return tuple(Conjunct(formula, spec.spec.source, spec.spec.name_span) for formula in formulas)
 
 
 def is_impossible(spec: SpecView) -> bool:

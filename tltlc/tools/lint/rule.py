@@ -27,7 +27,7 @@ class Remark:
 
 
 @record
-class Rule:
+class LintRule:
     """A lint rule. The page of ``code`` says what it finds, what to write instead, and why.
 
     ``check`` is a pure function from a file to remarks. ``supersedes`` are the codes of less
@@ -42,7 +42,7 @@ class Rule:
 
 
 @record
-class Finding:
+class LintFinding:
     """A diagnostic of the linter."""
 
     diagnostic: Diagnostic

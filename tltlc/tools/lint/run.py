@@ -12,7 +12,7 @@ from tltlc.grammar.tree import SpecDecl
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint.allow import silenced
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import Finding, Rule
+from tltlc.tools.lint.rule import LintFinding, LintRule
 from tltlc.tools.lint.rules import rules
 
 _COUNTS: Final = {"note": 0, "warning": 1, "error": 2}
@@ -23,7 +23,7 @@ def lint(
     options: CompileOptions | None = None,
     elsewhere: Container[str] = frozenset(),
     levels: Mapping[str, str] = EMPTY,
-) -> tuple[Finding, ...]:
+) -> tuple[LintFinding, ...]:
     """Return the findings about a file that compiles, in the order of its text.
 
     They include the compiler's own warnings. All specs of the file are checked, even if the options
@@ -35,13 +35,13 @@ def lint(
     return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere), levels)
 
 
-def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[Finding, ...]:
+def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
     """Return the findings of the compiler and the rules in the order of the text.
 
     Findings that comments or ``levels`` silence are left out. A finding supersedes another one only
     if it is shown itself and its severity is at least as high.
     """
-    all_findings = [Finding(diagnostic) for diagnostic in view.said]
+    all_findings = [LintFinding(diagnostic) for diagnostic in view.said]
     supersedes: dict[str, tuple[str, ...]] = {}
     for rule in rules():
         # A rule looks at the body of a quantifier once for each entity, and reports the same for all.
@@ -60,7 +60,7 @@ def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[Finding, ..
     return tuple(sorted(remaining, key=lambda finding: _place(finding, view.source)))
 
 
-def levelled(all_findings: Iterable[Finding], levels: Mapping[str, str]) -> tuple[Finding, ...]:
+def levelled(all_findings: Iterable[LintFinding], levels: Mapping[str, str]) -> tuple[LintFinding, ...]:
     """Return the findings with their severities set by ``levels``, which maps codes to levels.
 
     Findings with the level ``allow`` are left out.
@@ -83,14 +83,14 @@ def view_of(source: SourceFile, options: CompileOptions) -> View:
     return View(module, resolved.env, resolved.modules, specs, session.reported, program=session.program)
 
 
-def _at(finding: Finding, severity: str) -> Finding:
+def _at(finding: LintFinding, severity: str) -> LintFinding:
     return replace(finding, diagnostic=replace(finding.diagnostic, severity=severity))
 
 
-def _found(rule: Rule, view: View) -> Iterator[Finding]:
+def _found(rule: LintRule, view: View) -> Iterator[LintFinding]:
     for remark in rule.check(view):
         fixes = (remark.fix,) if remark.fix else ()
-        yield Finding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
+        yield LintFinding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
@@ -103,7 +103,7 @@ def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) ->
     return any(label.source == place.source and label.span.covers(place.span) for label in labels for place in places)
 
 
-def _place(finding: Finding, source: SourceFile) -> tuple[bool, int, str]:
+def _place(finding: LintFinding, source: SourceFile) -> tuple[bool, int, str]:
     """Return the sort key of a finding. Findings in imported files come first."""
     label = finding.diagnostic.labels[0] if finding.diagnostic.labels else None
     return label is not None and label.source == source, label.span.start if label else 0, finding.diagnostic.code

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 Samples = int
 """A set of samples of all traces."""
@@ -37,7 +37,7 @@ class Bits:
         self.counterexamples: Verdicts = _set(accepted, len(traces))
         self.everything: Verdicts = self.traces | self.counterexamples
 
-    def _mask(self, traces: Sequence[Recorded], name: str | None, backwards: bool) -> Samples:
+    def _mask(self, traces: Sequence[LabelledTrace], name: str | None, backwards: bool) -> Samples:
         """Return the samples at which an atom holds, or all samples for None."""
         pieces = []
         for trace in traces:

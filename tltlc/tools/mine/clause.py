@@ -9,7 +9,7 @@ from tltlc.tools.mine.bits import Bits, Verdicts
 
 
 @record
-class Clause:
+class MinedClause:
     """One clause: its ``text``, its number of ``atoms``, and the traces that it ``accepts``.
 
     ``asked`` are the traces in which the clause is not vacuous, e.g. those in which the trigger of
@@ -25,16 +25,16 @@ class Clause:
     asked: Verdicts
 
 
-Conjunction = tuple[Clause, ...]
+Conjunction = tuple[MinedClause, ...]
 """Clauses of one spec, in the order in which they are written."""
 
 
-def atoms_of(clauses: Sequence[Clause]) -> int:
+def atoms_of(clauses: Sequence[MinedClause]) -> int:
     """Return how many atoms the clauses name together."""
     return sum(clause.atoms for clause in clauses)
 
 
-def accepted_by(clauses: Iterable[Clause], bits: Bits) -> Verdicts:
+def accepted_by(clauses: Iterable[MinedClause], bits: Bits) -> Verdicts:
     """Return the traces that satisfy all of the clauses."""
     accepted = bits.everything
     for clause in clauses:

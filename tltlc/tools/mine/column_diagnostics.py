@@ -28,7 +28,7 @@ class Columns:
 
 
 @record
-class Odd:
+class OddColumns:
     """Columns that some traces lack, or that hold values other than `true` and `false` there.
 
     ``names`` are the columns, ``traces`` the traces; ``others`` selects the second case.
@@ -52,7 +52,7 @@ class Odd:
         return Diagnostic("TLT0763", title, help=suggestion, severity="warning")
 
 
-def uneven(traces: Sequence[Columns], *, truths: bool) -> tuple[Odd, ...]:
+def uneven(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]:
     """Return the columns that at most half of the traces lack, grouped by these traces.
 
     ``truths``: also return columns with values other than `true` and `false` in fewer than half of
@@ -66,7 +66,7 @@ def uneven(traces: Sequence[Columns], *, truths: bool) -> tuple[Odd, ...]:
             groups.setdefault((lacking, False), []).append(name)
         elif truths and others and not lacking and 2 * len(others) < len(traces):
             groups.setdefault((others, True), []).append(name)
-    return tuple(Odd(*key, tuple(names)) for key, names in groups.items())
+    return tuple(OddColumns(*key, tuple(names)) for key, names in groups.items())
 
 
 def some(names: Sequence[str]) -> str:

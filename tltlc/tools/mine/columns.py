@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from tltlc.monitor.trace_rows import Lines, Table, cell_number, read_rows
+from tltlc.monitor.trace_rows import TraceLines, TraceTable, cell_number, read_rows
 
 Row = Sequence[tuple[str, bool]]
 
@@ -21,7 +21,7 @@ def columns(data: bytes, name: str) -> dict[str, bool]:
     truths: dict[str, bool] = {}
     count = 0
     seen: dict[str, int] = {}
-    for row in _rows(Lines(io.BytesIO(data), name)):
+    for row in _rows(TraceLines(io.BytesIO(data), name)):
         count += 1
         for column, is_truth in row:
             truths[column] = truths.get(column, True) and is_truth
@@ -45,9 +45,9 @@ def shared(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
     }
 
 
-def _rows(lines: Lines) -> Iterator[Row]:
+def _rows(lines: TraceLines) -> Iterator[Row]:
     trace = read_rows(lines)
-    if isinstance(trace, Table):
+    if isinstance(trace, TraceTable):
         for cells in trace.rows:
             yield [(name, cell_number(cell) in (0, 1)) for name, cell in zip(trace.header, cells, strict=True)]
     elif trace is not None:

@@ -14,9 +14,9 @@ from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.mine.clause import Conjunction
-from tltlc.tools.mine.evidence import Evidence, Recorded
-from tltlc.tools.mine.measure import Figures
-from tltlc.tools.mine.vocabulary import Words
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
+from tltlc.tools.mine.measure import Support
+from tltlc.tools.mine.vocabulary import MiningVocabulary
 from tltlc.tools.witness.blocks import values
 
 _NAME: Final = "mined_candidate_"
@@ -24,13 +24,13 @@ _NAME: Final = "mined_candidate_"
 
 
 @record
-class Judgement:
+class TraceVerdict:
     """The verdict of an automaton on a trace.
 
     It says whether the automaton accepts the trace, and at which sample (from 1) it was violated.
     """
 
-    trace: Recorded
+    trace: LabelledTrace
     accepted: bool
     violated_at: int | None
 
@@ -41,13 +41,13 @@ class Proposal:
 
     clauses: Conjunction
     fspa: Fspa
-    traces: tuple[Judgement, ...]
-    counterexamples: tuple[Judgement, ...]
+    traces: tuple[TraceVerdict, ...]
+    counterexamples: tuple[TraceVerdict, ...]
 
     @property
-    def figures(self) -> Figures:
+    def figures(self) -> Support:
         """Its figures according to the automaton."""
-        return Figures(
+        return Support(
             sum(judgement.accepted for judgement in self.traces),
             len(self.traces),
             sum(not judgement.accepted for judgement in self.counterexamples),
@@ -56,7 +56,7 @@ class Proposal:
 
 
 def confirmed(
-    ranked: Sequence[Conjunction], evidence: Evidence, words: Words, options: CompileOptions, top: int
+    ranked: Sequence[Conjunction], evidence: Evidence, words: MiningVocabulary, options: CompileOptions, top: int
 ) -> tuple[Proposal, ...]:
     """Return the first ``top`` conjunctions that differ in meaning, judged by their automata.
 
@@ -80,7 +80,7 @@ def confirmed(
     return tuple(proposals)
 
 
-def judge(fspa: Fspa, trace: Recorded) -> Judgement:
+def judge(fspa: Fspa, trace: LabelledTrace) -> TraceVerdict:
     """Return the judgement of the automaton on a trace of atoms."""
     run = _Run(fspa)
     violated_at = None
@@ -88,7 +88,7 @@ def judge(fspa: Fspa, trace: Recorded) -> Judgement:
         run.step(letter)
         if violated_at is None and run.state.verdict == "violated":
             violated_at = number
-    return Judgement(trace, run.state.accepting, violated_at)
+    return TraceVerdict(trace, run.state.accepting, violated_at)
 
 
 class _Run:
@@ -110,7 +110,7 @@ class _Run:
         self.state = self._fspa.states[target]
 
 
-def _compiled(batch: Sequence[Conjunction], words: Words, options: CompileOptions) -> tuple[Fspa, ...]:
+def _compiled(batch: Sequence[Conjunction], words: MiningVocabulary, options: CompileOptions) -> tuple[Fspa, ...]:
     text = words.library.text + "".join(
         f"\nspec {_NAME}{number} {{\n" + "".join(f"    {clause.text}\n" for clause in clauses) + "}\n"
         for number, clauses in enumerate(batch)

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.tools.mine.bits import Bits, Verdicts, count
 from tltlc.tools.mine.candidates import ALIKE, length
-from tltlc.tools.mine.clause import Clause, Conjunction, accepted_by, atoms_of
+from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_by, atoms_of
 from tltlc.tools.mine.measure import figures
 from tltlc.tools.mine.templates import BOUNDED
 
@@ -18,7 +18,9 @@ POOL: Final = 60
 """The most clauses of each template that conjunctions are built from."""
 
 
-def conjunctions(clauses: Sequence[Clause], bits: Bits, least: int, most_atoms: int) -> Iterator[list[Conjunction]]:
+def conjunctions(
+    clauses: Sequence[MinedClause], bits: Bits, least: int, most_atoms: int
+) -> Iterator[list[Conjunction]]:
     """Yield conjunctions of two or more clauses, in portions; each portion takes a short time.
 
     Many portions are empty. ``least`` and ``most_atoms`` are as for sequences.
@@ -44,7 +46,7 @@ def conjunctions(clauses: Sequence[Clause], bits: Bits, least: int, most_atoms: 
         yield [conjunction for conjunction, _ in beam]
 
 
-def _pool(clauses: Sequence[Clause]) -> list[Clause]:
+def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
     """Return the first clauses of each template, in order.
 
     The limit per template keeps many good clauses of one template from crowding out the others.

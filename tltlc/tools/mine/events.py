@@ -8,7 +8,7 @@ from math import inf, isqrt
 from typing import Final
 
 from tltlc.io.limits import WORK
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 MOST_EVENTS: Final = isqrt(WORK["mined pairs"])
 """The most atoms that are related to each other: every ordered pair is tried."""
@@ -35,7 +35,7 @@ def best_events(evidence: Evidence, events: Sequence[str], most: int = MOST_EVEN
     return [name for name in events if name in chosen]
 
 
-def _first_samples(trace: Recorded) -> dict[str, float]:
+def _first_samples(trace: LabelledTrace) -> dict[str, float]:
     """Return the sample (from 0) at which each atom first holds."""
     firsts: dict[str, float] = {}
     for number, letter in enumerate(trace.letters):

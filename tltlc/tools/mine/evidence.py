@@ -7,7 +7,7 @@ from tltlc.core.record import record
 
 
 @record
-class Recorded:
+class LabelledTrace:
     """A trace: its name, and the set of atoms that hold at each sample.
 
     There is at least one sample.
@@ -25,12 +25,12 @@ class Evidence:
     (:mod:`tltlc.tools.mine.mutants`).
     """
 
-    traces: tuple[Recorded, ...]
-    counterexamples: tuple[Recorded, ...]
+    traces: tuple[LabelledTrace, ...]
+    counterexamples: tuple[LabelledTrace, ...]
     made_up: bool = False
 
     @property
-    def all(self) -> tuple[Recorded, ...]:
+    def all(self) -> tuple[LabelledTrace, ...]:
         """The traces, then the counterexamples."""
         return (*self.traces, *self.counterexamples)
 

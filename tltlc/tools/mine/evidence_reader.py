@@ -10,10 +10,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine.column_diagnostics import Columns, uneven
 from tltlc.tools.mine.columns import columns, shared
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
 from tltlc.tools.mine.reading import Tell, TraceFile, check, read, silent
-from tltlc.tools.mine.vocabulary import Words, of_columns, of_library
+from tltlc.tools.mine.vocabulary import MiningVocabulary, of_columns, of_library
 
 
 def gathered(
@@ -22,7 +22,7 @@ def gathered(
     library: SourceFile | None,
     options: ResolveOptions,
     tell: Tell = silent,
-) -> tuple[Words, Evidence, tuple[Diagnostic, ...]]:
+) -> tuple[MiningVocabulary, Evidence, tuple[Diagnostic, ...]]:
     """Return the atoms, the evidence in these atoms, and warnings.
 
     Without ``bad`` traces, counterexamples are generated.
@@ -57,7 +57,9 @@ def gathered(
     return words, Evidence(traces, counterexamples), (*warnings, *notices, *bad_notices, *contradictions)
 
 
-def _contradictions(traces: Sequence[Recorded], counterexamples: Sequence[Recorded]) -> tuple[Diagnostic, ...]:
+def _contradictions(
+    traces: Sequence[LabelledTrace], counterexamples: Sequence[LabelledTrace]
+) -> tuple[Diagnostic, ...]:
     """Return a warning that names the first trace that equals a counterexample in atoms, if any."""
     known = {trace.letters: trace.name for trace in traces}
     trace_names = {trace.name for trace in traces}

@@ -20,7 +20,7 @@ PRICE: Final = 0.01
 
 
 @record
-class Figures:
+class Support:
     """How many of the traces satisfy a proposal, and how many of the counterexamples violate it."""
 
     accepted: int
@@ -43,7 +43,7 @@ class Figures:
         return round(self.support + self.separation - 1.0 - PRICE * atoms, 9)
 
 
-def figures(bits: Bits, accepted: Verdicts) -> Figures:
+def figures(bits: Bits, accepted: Verdicts) -> Support:
     """Return the figures of a proposal that accepts these traces."""
     traces, counterexamples = count(bits.traces), count(bits.counterexamples)
-    return Figures(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)
+    return Support(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)

@@ -13,7 +13,7 @@ from random import Random
 from typing import Final
 
 from tltlc.automaton.compare import Letter
-from tltlc.tools.mine.evidence import Evidence, Recorded
+from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 _SEED: Final = 1
 _ROUNDS: Final = 10
@@ -23,7 +23,7 @@ Run = tuple[Letter, int]
 """A letter and the number of samples in a row at which it holds."""
 
 
-def with_mutants(traces: Sequence[Recorded]) -> Evidence:
+def with_mutants(traces: Sequence[LabelledTrace]) -> Evidence:
     """Return the traces with generated counterexamples, the same ones for any order of the traces.
 
     Each trace is mutated in these ways: it is cut before the last sample at which an atom becomes
@@ -33,17 +33,17 @@ def with_mutants(traces: Sequence[Recorded]) -> Evidence:
     random = Random(_SEED)
     good = {trace.letters for trace in traces}
     throughout = _throughout(traces)
-    mutants: dict[tuple[Letter, ...], Recorded] = {}
+    mutants: dict[tuple[Letter, ...], LabelledTrace] = {}
     ordered = sorted(traces, key=lambda trace: ([sorted(letter) for letter in trace.letters], trace.name))
     for number in range(max(len(ordered), _ROUNDS)):
         trace = ordered[number % len(ordered)]
         for kind, letters in _mutants(trace.letters, throughout, number, random):
             if letters and letters not in good and letters not in mutants:
-                mutants[letters] = Recorded(f"{trace.name}, {kind}", letters)
+                mutants[letters] = LabelledTrace(f"{trace.name}, {kind}", letters)
     return Evidence(tuple(traces), tuple(mutants.values()), made_up=True)
 
 
-def _throughout(traces: Sequence[Recorded]) -> list[str]:
+def _throughout(traces: Sequence[LabelledTrace]) -> list[str]:
     """Return the atoms that hold at every sample of every trace."""
     every = frozenset.intersection(*(letter for trace in traces for letter in trace.letters))
     return sorted(every)

@@ -10,10 +10,10 @@ from tltlc.tools.mine.clause import atoms_of
 from tltlc.tools.mine.confirm import Proposal
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.reasons import reasons
-from tltlc.tools.mine.search import Search
+from tltlc.tools.mine.search import SpecSearch
 
 
-def document(proposals: Sequence[Proposal], evidence: Evidence, search: Search, *, whole: bool) -> dict[str, Any]:
+def document(proposals: Sequence[Proposal], evidence: Evidence, search: SpecSearch, *, whole: bool) -> dict[str, Any]:
     """Return the proposals with their figures.
 
     ``whole``: the search came to its end, and no limit left anything out.

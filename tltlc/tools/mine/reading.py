@@ -12,8 +12,8 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.samples import MonitorError, Samples, check_exclusive
 from tltlc.monitor.traces import Sample, read_trace
 from tltlc.resolve.spec import Signal
-from tltlc.tools.mine.evidence import Recorded
-from tltlc.tools.mine.vocabulary import Words
+from tltlc.tools.mine.evidence import LabelledTrace
+from tltlc.tools.mine.vocabulary import MiningVocabulary
 
 Tell = Callable[[str], None]
 """A callback for progress messages, called at least once per file."""
@@ -32,8 +32,8 @@ class TraceFile:
 
 
 def read(
-    files: Sequence[TraceFile], words: Words, tell: Tell = silent
-) -> tuple[tuple[Recorded, ...], tuple[Diagnostic, ...]]:
+    files: Sequence[TraceFile], words: MiningVocabulary, tell: Tell = silent
+) -> tuple[tuple[LabelledTrace, ...], tuple[Diagnostic, ...]]:
     """Return the traces, and warnings about values that had to be clamped, each once.
 
     Raises:
@@ -48,7 +48,7 @@ def read(
     for file in files:
         tell(f"reading {file.name}")
         try:
-            traces.append(Recorded(file.name, tuple(_letters(file, samples, words, known))))
+            traces.append(LabelledTrace(file.name, tuple(_letters(file, samples, words, known))))
         except MonitorError as error:
             raise MonitorError(_in_trace(file, error.diagnostics)) from None
         warnings += _in_trace(file, notices)
@@ -67,7 +67,7 @@ def _rows(file: TraceFile, signals: Sequence[Signal]) -> Iterator[Sample]:
 
 
 def _letters(
-    file: TraceFile, samples: Samples, words: Words, known: dict[tuple[float, ...], Letter]
+    file: TraceFile, samples: Samples, words: MiningVocabulary, known: dict[tuple[float, ...], Letter]
 ) -> Iterator[Letter]:
     """Yield the letters of a trace.
 

@@ -13,7 +13,7 @@ from tltlc.core.record import record
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, count
 from tltlc.tools.mine.candidates import Candidates
-from tltlc.tools.mine.clause import Clause, Conjunction, accepted_by, atoms_of
+from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_by, atoms_of
 from tltlc.tools.mine.conjunctions import best, conjunctions
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
 from tltlc.tools.mine.evidence import Evidence
@@ -23,7 +23,7 @@ from tltlc.tools.mine.templates import clauses
 
 
 @record
-class Options:
+class MiningOptions:
     """Options of a search.
 
     ``min_support`` is the least share of the traces that must satisfy a proposal, in (0, 1].
@@ -34,10 +34,10 @@ class Options:
     max_length: int = 12
 
 
-class Search:
+class SpecSearch:
     """Searches for specs that the traces satisfy and the counterexamples violate."""
 
-    def __init__(self, evidence: Evidence, options: Options) -> None:
+    def __init__(self, evidence: Evidence, options: MiningOptions) -> None:
         self.bits = Bits(evidence)
         self._backwards = Bits(evidence, backwards=True)
         # Atoms that change at random still have some order, which generated counterexamples always break.
@@ -116,11 +116,11 @@ class Search:
             if count(bits.none(bits.complement(samples)) & bits.traces) < self._least
         ]
 
-    def _add_all(self, portion: Iterable[Clause]) -> None:
+    def _add_all(self, portion: Iterable[MinedClause]) -> None:
         for clause in portion:
             self._add(clause)
 
-    def _add(self, clause: Clause) -> None:
+    def _add(self, clause: MinedClause) -> None:
         self.tried += 1
         if count(clause.accepts & self.bits.traces) >= self._least and self.bits.counterexamples & ~clause.accepts:
             self._found.add((clause,), clause.accepts)

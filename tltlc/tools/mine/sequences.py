@@ -19,7 +19,7 @@ from typing import Final
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.io.limits import WORK
 from tltlc.tools.mine.bits import Bits, Samples, Verdicts, count
-from tltlc.tools.mine.clause import Clause
+from tltlc.tools.mine.clause import MinedClause
 from tltlc.tools.mine.measure import figures
 from tltlc.tools.mine.templates import clause
 from tltlc.tools.witness.blocks import bracketed
@@ -34,7 +34,7 @@ MOST_PARTS: Final = 16
 """The most steps that are combined into choices at one place."""
 
 
-class Step:
+class SequenceStep:
     """One step of a sequence: its text, its samples, and its atoms (`and` and `or` count as one)."""
 
     __slots__ = ("atoms", "samples", "text")
@@ -43,13 +43,13 @@ class Step:
         self.text, self.atoms, self.samples = text, atoms, samples
 
 
-Steps = tuple[Step, ...]
+Steps = tuple[SequenceStep, ...]
 Found = tuple[Steps, Verdicts]
 
 
 def sequences(
     bits: Bits, atoms: Collection[str], least: int, most_atoms: int, *, again: bool = True, work: Work | None = None
-) -> Iterator[list[Clause]]:
+) -> Iterator[list[MinedClause]]:
     """Yield the sequences of these atoms that at least ``least`` traces satisfy, in portions.
 
     They name at most ``most_atoms`` atoms; `and` and `or` count as one each. ``again``: a step may
@@ -75,12 +75,12 @@ class _Sequences:
     """Builds sequences from their steps."""
 
     def __init__(
-        self, bits: Bits, material: Sequence[Step], least: int, most_atoms: int, *, again: bool, work: Work
+        self, bits: Bits, material: Sequence[SequenceStep], least: int, most_atoms: int, *, again: bool, work: Work
     ) -> None:
         self._bits, self._material, self._least, self._most_atoms = bits, material, least, most_atoms
         self._again, self._work = again, work
         # Sequences are compared by the identity of their steps, so each choice is created once.
-        self._choices: dict[tuple[Step, Step], Step] = {}
+        self._choices: dict[tuple[SequenceStep, SequenceStep], SequenceStep] = {}
 
     def extended(self, sequence: Steps, known: Mapping[Steps, Verdicts]) -> Iterator[Found]:
         """Yield the unknown sequences with one more step, at any place, that have the support."""
@@ -109,11 +109,13 @@ class _Sequences:
             if after:
                 left = bits.after_first(after[0].samples & left)
 
-    def _chosen(self, parts: Sequence[tuple[Step, Verdicts]], room: int) -> Iterator[tuple[Step, Verdicts]]:
+    def _chosen(
+        self, parts: Sequence[tuple[SequenceStep, Verdicts]], room: int
+    ) -> Iterator[tuple[SequenceStep, Verdicts]]:
         """Yield the choices between two steps that together have the support, with their traces."""
         bits = self._bits
 
-        def worth(part: tuple[Step, Verdicts]) -> tuple[float, int, str]:
+        def worth(part: tuple[SequenceStep, Verdicts]) -> tuple[float, int, str]:
             return (-figures(bits, part[1]).score(part[0].atoms), part[0].atoms, part[0].text)
 
         best = sorted((part for part in parts if part[1] & bits.traces), key=worth)[:MOST_PARTS]
@@ -122,23 +124,23 @@ class _Sequences:
             if one.atoms + other.atoms < room and count(accepts & bits.traces) >= self._least:
                 yield self._choice(one, other), accepts
 
-    def _choice(self, one: Step, other: Step) -> Step:
+    def _choice(self, one: SequenceStep, other: SequenceStep) -> SequenceStep:
         if (one.atoms, one.text) > (other.atoms, other.text):
             one, other = other, one
         choice = self._choices.get((one, other))
         if choice is None:
             text = f"({one.text} or {other.text})"
-            choice = Step(text, one.atoms + other.atoms + 1, one.samples | other.samples)
+            choice = SequenceStep(text, one.atoms + other.atoms + 1, one.samples | other.samples)
             self._choices[one, other] = choice
         return choice
 
 
-def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[Clause], None, list[Step]]:
+def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedClause], None, list[SequenceStep]]:
     """Return the atoms that hold in some of the traces, then the pairs that hold in most traces.
 
     Yields empty portions many times, so that the caller may stop.
     """
-    single = [Step(bracketed(name), 1, bits.holds[name]) for name in atoms]
+    single = [SequenceStep(bracketed(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.some(step.samples) & bits.traces]
     known = {step.samples for step in single}
     pairs: list[tuple[int, str, Samples]] = []
@@ -151,7 +153,7 @@ def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[Clause], Non
                 pairs.append((-met, f"({one.text} and {other.text})", both))
         pairs = sorted(pairs)[:MOST_PAIRS]
         yield []
-    return [*single, *(Step(text, 3, both) for _, text, both in pairs)]
+    return [*single, *(SequenceStep(text, 3, both) for _, text, both in pairs)]
 
 
 def _met(rest: Steps, left: Samples, bits: Bits) -> Verdicts:
@@ -182,6 +184,6 @@ def _beam(extensions: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
     return plain + compound
 
 
-def _clause(sequence: Steps, accepts: Verdicts, bits: Bits) -> Clause:
+def _clause(sequence: Steps, accepts: Verdicts, bits: Bits) -> MinedClause:
     text = "reach " + " then ".join(step.text for step in sequence)
     return clause("reach", text, sum(step.atoms for step in sequence), accepts, bits.everything)

@@ -11,10 +11,10 @@ from typing import Final
 from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace
 from tltlc.tools.mine.bits import Bits
-from tltlc.tools.mine.confirm import Judgement, Proposal
+from tltlc.tools.mine.confirm import Proposal, TraceVerdict
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.reasons import reasons
-from tltlc.tools.mine.vocabulary import Words, of_columns
+from tltlc.tools.mine.vocabulary import MiningVocabulary, of_columns
 from tltlc.tools.witness.blocks import expectations, test_block
 
 _WIDTH: Final = 96
@@ -45,7 +45,7 @@ def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, p
     return "\n".join(parts)
 
 
-def declarations(proposals: Sequence[Proposal], words: Words, imported: str | None) -> str:
+def declarations(proposals: Sequence[Proposal], words: MiningVocabulary, imported: str | None) -> str:
     """Return the declarations of the names in proposals, and of nothing else.
 
     Without a library, these are the columns. With a library, ``imported`` is the line that imports
@@ -83,7 +83,7 @@ def _sentence(text: str) -> str:
 def _tests(proposal: Proposal) -> Iterator[str]:
     atoms = {atom.name for atom in proposal.fspa.atoms}
 
-    def changes(judged: Judgement) -> tuple[int, int]:
+    def changes(judged: TraceVerdict) -> tuple[int, int]:
         """Return how many lines a trace takes, and how many samples."""
         letters = judged.trace.letters
         return sum(1 for _ in groupby(letter & atoms for letter in letters)), len(letters)

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator
 from typing import Final
 
 from tltlc.tools.mine.bits import Bits, Verdicts, count
-from tltlc.tools.mine.clause import Clause
+from tltlc.tools.mine.clause import MinedClause
 from tltlc.tools.witness.blocks import bracketed
 
 BOUNDED: Final = "bounded response"
@@ -22,7 +22,7 @@ _LEAST_ASKED: Final = 3
 """The least number of traces in which a response must be triggered before its delay is meaningful."""
 
 
-def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[Clause]]:
+def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
     """Yield every instance over the atoms, in small portions, except those vacuous in all traces.
 
     Two atoms are related only if both are ``events``: an atom that holds throughout is covered by
@@ -34,12 +34,12 @@ def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int
         yield [instance for instance in portion if instance.asked & instance.accepts & forwards.traces]
 
 
-def clause(kind: str, text: str, atoms: int, accepts: int, asked: int) -> Clause:
+def clause(kind: str, text: str, atoms: int, accepts: int, asked: int) -> MinedClause:
     """Return a clause of a template."""
-    return Clause(kind, KINDS.index(kind), text, atoms, accepts, asked)
+    return MinedClause(kind, KINDS.index(kind), text, atoms, accepts, asked)
 
 
-def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[Clause]]:
+def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
     """Yield the instances, in portions of one atom or one pair."""
     occurs = {name: forwards.some(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
@@ -53,7 +53,7 @@ def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least:
                 yield [*related, *_bounded(first, second, forwards, least)]
 
 
-def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict[str, int]) -> Iterator[Clause]:
+def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict[str, int]) -> Iterator[MinedClause]:
     a, b = bracketed(first), bracketed(second)
     here, there = forwards.holds[first], forwards.holds[second]
     asked = occurs[first]
@@ -77,7 +77,7 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
     yield clause("response", f"require always ({a} implies eventually {b})", 2, answered, asked)
 
 
-def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[Clause]:
+def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
     """Yield a response within the smallest bound that enough of the traces keep to.
 
     Yields nothing if that bound is 0 or above LONGEST_BOUND, or if too few traces trigger the

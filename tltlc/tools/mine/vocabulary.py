@@ -15,7 +15,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
-from tltlc.expression.tree import Signal, nodes
+from tltlc.expression.tree import SignalValue, nodes
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
@@ -37,7 +37,7 @@ _MOST_INSTANCES: Final = WORK["mined instances"]
 
 
 @record
-class Words:
+class MiningVocabulary:
     """The vocabulary for reading traces and writing specs.
 
     ``library`` declares everything; ``entities`` are those that the original library did not
@@ -55,7 +55,7 @@ class Words:
     unread: int = 0
 
 
-def of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> Words:
+def of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> MiningVocabulary:
     """Return the atoms of a library whose signals are all among the columns of the traces.
 
     These are predicates and `bool` signals of entities, and the atoms of the library's own specs.
@@ -87,7 +87,7 @@ def of_library(library: SourceFile, columns: Collection[str], options: ResolveOp
     readable = _readable(plain, texts, columns, options)
     if readable is None:
         raise _unreadable(library, _resolved(plain, texts, options), columns)
-    return Words(extended, missing, _reader(readable), unread=unread)
+    return MiningVocabulary(extended, missing, _reader(readable), unread=unread)
 
 
 def _unreadable(library: SourceFile, words: Vocabulary | None, columns: Collection[str]) -> TltlError:
@@ -98,7 +98,7 @@ def _unreadable(library: SourceFile, words: Vocabulary | None, columns: Collecti
     return TltlError([Diagnostic("TLT0760", title, help=suggestion)])
 
 
-def of_columns(columns: Mapping[str, bool]) -> Words:
+def of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
     """Return the columns that are true or false, as atoms.
 
     ``left_out`` are the other columns, including those that are ``misnamed``.
@@ -122,7 +122,7 @@ def of_columns(columns: Mapping[str, bool]) -> Words:
     reader = _reader(readable)
     read = {atom.name for atom in reader.atoms}
     left_out = tuple(name for name in columns if name not in read and name not in unread)
-    return Words(library, (), reader, left_out, frozenset(left_out).intersection(names), len(unread))
+    return MiningVocabulary(library, (), reader, left_out, frozenset(left_out).intersection(names), len(unread))
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:
@@ -246,7 +246,7 @@ def _readable(
     names = [
         atom.name
         for atom in resolved.atoms
-        if all(node.name in columns for node in nodes(atom.expression) if isinstance(node, Signal))
+        if all(node.name in columns for node in nodes(atom.expression) if isinstance(node, SignalValue))
     ]
     if names == list(texts):
         return resolved

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from tltlc.core.record import record
-from tltlc.tools.witness.nearest import Nearest
-from tltlc.tools.witness.samples import Obstacle
+from tltlc.tools.witness.nearest import NearestEdges
+from tltlc.tools.witness.samples import UnsatisfiedLiterals
 from tltlc.tools.witness.traces import Witness
-from tltlc.tools.witness.transitions import Move, Moves
+from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 
 @record
@@ -19,7 +19,7 @@ class Untaken:
     """
 
     edge: int
-    obstacles: tuple[Obstacle, ...]
+    obstacles: tuple[UnsatisfiedLiterals, ...]
 
 
 @record
@@ -37,10 +37,10 @@ def cover(moves: Moves) -> Cover:
     edge. Over infinite traces, these are beginnings of traces.
     """
     edges = moves.fspa.edges
-    nearest = Nearest(
+    nearest = NearestEdges(
         [[(edge, edges[edge].target) for edge in leaving if moves.move(edge)] for leaving in moves.leaving]
     )
-    traces: list[tuple[Move, ...]] = []
+    traces: list[tuple[SampledEdge, ...]] = []
     while trace := tuple(_trace(moves, nearest)):
         traces.append(trace)
     traces.sort(key=len)
@@ -49,7 +49,7 @@ def cover(moves: Moves) -> Cover:
     return Cover(tuple(_with_news(traces)), tuple(untaken))
 
 
-def _trace(moves: Moves, nearest: Nearest) -> Iterator[Move]:
+def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
     """Yield the moves of a trace from the initial state that takes edges which no trace has taken.
 
     It yields nothing if there is no such trace.
@@ -63,7 +63,7 @@ def _trace(moves: Moves, nearest: Nearest) -> Iterator[Move]:
         state = moves.fspa.edges[way[-1]].target
 
 
-def _with_news(traces: Iterable[tuple[Move, ...]]) -> Iterator[Witness]:
+def _with_news(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
     """Yield the traces as witnesses, each with the steps that are the first to take their edge."""
     seen: set[int] = set()
     for trace in traces:

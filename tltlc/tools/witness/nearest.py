@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tltlc.automaton.infinite.graphs import components
 
 
-class Nearest:
+class NearestEdges:
     """Finds paths to the nearest wanted edge. Edges can only stop being wanted.
 
     ``leaving`` has for each state its edges as pairs of an index and a target, in the order in

@@ -14,7 +14,7 @@ from tltlc.core.record import record
 from tltlc.monitor import MonitorError
 from tltlc.monitor.samples import Samples, check_exclusive, shown
 from tltlc.resolve.spec import Signal
-from tltlc.tools.witness.search import Group, Point, groups
+from tltlc.tools.witness.search import AtomGroup, Point, groups
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -24,7 +24,7 @@ Sample = dict[str, float]
 
 
 @record
-class Obstacle:
+class UnsatisfiedLiterals:
     """The reason why there is no sample: literals that no sample was found to make true together.
 
     ``literals`` are indices of atoms with the wanted truth value. There are as few as could be
@@ -44,7 +44,7 @@ class Unrealised:
     """The first step of a trace, from 1, for which no sample was found, and the reason."""
 
     step: int
-    obstacle: Obstacle
+    obstacle: UnsatisfiedLiterals
 
 
 class Realiser:
@@ -54,13 +54,13 @@ class Realiser:
         self._fspa = fspa
         self._samples = Samples(fspa, None, [])
         self._groups = groups(fspa)
-        self._known: dict[Implicant, Sample | Obstacle] = {}
+        self._known: dict[Implicant, Sample | UnsatisfiedLiterals] = {}
 
-    def letter(self, letter: Letter) -> Sample | Obstacle:
+    def letter(self, letter: Letter) -> Sample | UnsatisfiedLiterals:
         """Return a sample at which exactly the atoms of a letter hold."""
         return self.literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
 
-    def literals(self, wanted: Implicant) -> Sample | Obstacle:
+    def literals(self, wanted: Implicant) -> Sample | UnsatisfiedLiterals:
         """Return a sample at which the literals are true.
 
         Other atoms do not hold if possible.
@@ -69,17 +69,17 @@ class Realiser:
             self._known[wanted] = self._found(wanted)
         return self._known[wanted]
 
-    def obstacles(self, letter: Letter) -> tuple[Obstacle, ...]:
+    def obstacles(self, letter: Letter) -> tuple[UnsatisfiedLiterals, ...]:
         """Return why a letter has no sample; empty if it has one.
 
         There is an obstacle for each group of atoms that share signals and have no solution.
         """
         sample = self.letter(letter)
-        if not isinstance(sample, Obstacle):
+        if not isinstance(sample, UnsatisfiedLiterals):
             return ()
         polarity = {i: atom.name in letter for i, atom in enumerate(self._fspa.atoms)}
         points = [_point(group, polarity) for group in self._groups]
-        return tuple(point for point in points if isinstance(point, Obstacle)) or (sample,)
+        return tuple(point for point in points if isinstance(point, UnsatisfiedLiterals)) or (sample,)
 
     def letter_of(self, sample: Mapping[str, float]) -> Letter:
         """Return the letter of a sample."""
@@ -88,18 +88,18 @@ class Realiser:
     def _letter(self, values: tuple[float, ...]) -> Letter:
         return frozenset(atom.name for atom, value in zip(self._fspa.atoms, values, strict=True) if value > 0.0)
 
-    def _found(self, wanted: Implicant) -> Sample | Obstacle:
+    def _found(self, wanted: Implicant) -> Sample | UnsatisfiedLiterals:
         polarity = dict(wanted)
         sample: Sample = {}
         for group in self._groups:
             point = _point(group, polarity)
-            if isinstance(point, Obstacle):
+            if isinstance(point, UnsatisfiedLiterals):
                 return point
             sample.update(point)
         try:
             check_exclusive(self._fspa, self._samples.atom_values(sample, 1), 1)
         except MonitorError:
-            return Obstacle(wanted)
+            return UnsatisfiedLiterals(wanted)
         return {signal.name: sample[signal.name] for signal in self._fspa.signals}
 
 
@@ -109,7 +109,7 @@ def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[Sample, ...] | Unrea
     trace_samples: list[Sample] = []
     for step, letter in enumerate(letters, start=1):
         sample = realiser.letter(letter)
-        if isinstance(sample, Obstacle):
+        if isinstance(sample, UnsatisfiedLiterals):
             return Unrealised(step, sample)
         trace_samples.append(sample)
     return tuple(trace_samples)
@@ -137,17 +137,17 @@ def _cell(signal: Signal, value: float) -> str:
     return shown(value)
 
 
-def _point(group: Group, polarity: Mapping[int, bool]) -> Point | Obstacle:
+def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> Point | UnsatisfiedLiterals:
     """Return values of a group's signals at which its atoms have the wanted truth values.
 
     Atoms without a wanted truth value do not hold if possible.
     """
     wanted = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
     point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(wanted)
-    return Obstacle(_least(wanted, group)) if point is None else point
+    return UnsatisfiedLiterals(_least(wanted, group)) if point is None else point
 
 
-def _least(literals: Implicant, group: Group) -> Implicant:
+def _least(literals: Implicant, group: AtomGroup) -> Implicant:
     """Return literals for which nothing is found, without those that are not needed."""
     for literal in literals:
         fewer = tuple(other for other in literals if other != literal)

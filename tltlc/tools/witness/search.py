@@ -14,7 +14,7 @@ from sys import float_info
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import Const, Expression, Op, nodes
-from tltlc.expression.tree import Signal as Variable
+from tltlc.expression.tree import SignalValue as Variable
 from tltlc.resolve.range_proof.interval import Interval, midpoint
 from tltlc.resolve.range_proof.region import Box
 from tltlc.resolve.range_proof.region import Variable as AnyVariable
@@ -40,7 +40,7 @@ _LARGE = 1e6
 _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
 
 
-class Group:
+class AtomGroup:
     """Atoms that share signals, directly or through other atoms.
 
     ``atoms`` and the literals use indices into the atoms of the automaton.
@@ -259,7 +259,7 @@ def _is_positive(node: Expression) -> bool:
     return isinstance(node, Const) and node.value > 0
 
 
-def groups(fspa: Fspa) -> tuple[Group, ...]:
+def groups(fspa: Fspa) -> tuple[AtomGroup, ...]:
     """Return the atoms of an automaton in groups that share no signal, in order of the atoms."""
     used = [_signals(atom.expression) for atom in fspa.atoms]
     merged: list[tuple[list[int], set[str]]] = []
@@ -275,7 +275,8 @@ def groups(fspa: Fspa) -> tuple[Group, ...]:
     merged.sort(key=lambda group: min(group[0]))
     signals = fspa.signals
     return tuple(
-        Group(fspa, sorted(atoms), [signal for signal in signals if signal.name in names]) for atoms, names in merged
+        AtomGroup(fspa, sorted(atoms), [signal for signal in signals if signal.name in names])
+        for atoms, names in merged
     )
 
 

@@ -8,7 +8,7 @@ from tltlc.automaton.fspa import Edge, Fspa, Pair, State
 from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import record, replace
 from tltlc.tools.witness.samples import Sample
-from tltlc.tools.witness.transitions import Move, Moves
+from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -26,7 +26,7 @@ class Witness:
     """
 
     kind: Kind
-    moves: tuple[Move, ...]
+    moves: tuple[SampledEdge, ...]
     cycle: int | None = None
     news: tuple[int, ...] = ()
 

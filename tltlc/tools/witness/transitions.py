@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
-from tltlc.tools.witness.samples import Obstacle, Realiser, Sample
+from tltlc.tools.witness.samples import Realiser, Sample, UnsatisfiedLiterals
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -19,7 +19,7 @@ _MOST_PRIMES = 500
 
 
 @record
-class Move:
+class SampledEdge:
     """An edge, by index, with a sample that takes it.
 
     ``prime`` is the prime of the edge's guard that the sample satisfies.
@@ -36,10 +36,10 @@ class Moves:
 
     def __init__(self, fspa: Fspa) -> None:
         self.fspa = fspa
-        self.obstacles: dict[int, tuple[Obstacle, ...]] = {}
+        self.obstacles: dict[int, tuple[UnsatisfiedLiterals, ...]] = {}
         """For each examined edge that no sample was found to take, the obstacles."""
         self._realiser = Realiser(fspa)
-        self._known: dict[int, Move | None] = {}
+        self._known: dict[int, SampledEdge | None] = {}
 
     @cached_property
     def leaving(self) -> tuple[tuple[int, ...], ...]:
@@ -49,7 +49,7 @@ class Moves:
             leaving[edge.source].append(index)
         return tuple(map(tuple, leaving))
 
-    def move(self, edge: int) -> Move | None:
+    def move(self, edge: int) -> SampledEdge | None:
         """Return the simplest sample that takes an edge, or None.
 
         It satisfies the first prime of the guard, in order, for which a sample is found.
@@ -58,22 +58,22 @@ class Moves:
             self._known[edge] = self._found(edge)
         return self._known[edge]
 
-    def _found(self, edge: int) -> Move | None:
-        obstacles: list[Obstacle] = []
+    def _found(self, edge: int) -> SampledEdge | None:
+        obstacles: list[UnsatisfiedLiterals] = []
         for prime in self.fspa.edges[edge].guard.primes[:_MOST_PRIMES]:
             sample = self._realiser.literals(prime)
-            if not isinstance(sample, Obstacle):
-                return Move(edge, prime, self._realiser.letter_of(sample), sample)
+            if not isinstance(sample, UnsatisfiedLiterals):
+                return SampledEdge(edge, prime, self._realiser.letter_of(sample), sample)
             obstacles.append(sample)
         self.obstacles[edge] = tuple(dict.fromkeys(obstacles))
         return None
 
-    def way(self, start: int, is_last: Callable[[int], bool]) -> tuple[Move, ...] | None:
+    def way(self, start: int, is_last: Callable[[int], bool]) -> tuple[SampledEdge, ...] | None:
         """Return the moves of a shortest path from a state to a wanted last edge, or None.
 
         ``is_last`` decides by index which edges are wanted. The path has at least one move.
         """
-        before: dict[int, tuple[int, Move] | None] = {start: None}
+        before: dict[int, tuple[int, SampledEdge] | None] = {start: None}
         queue = deque([start])
         while queue:
             state = queue.popleft()
@@ -89,8 +89,8 @@ class Moves:
         return None
 
 
-def _moves_to(state: int, before: dict[int, tuple[int, Move] | None]) -> tuple[Move, ...]:
-    moves: list[Move] = []
+def _moves_to(state: int, before: dict[int, tuple[int, SampledEdge] | None]) -> tuple[SampledEdge, ...]:
+    moves: list[SampledEdge] = []
     while (step := before[state]) is not None:
         state, move = step
         moves.append(move)

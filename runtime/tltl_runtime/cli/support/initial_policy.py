@@ -18,7 +18,7 @@ from tltl_runtime.stealth.level import Level, Sensors
 from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.training.run.initial_policy import weights_hash
 from tltl_runtime.training.run.run import Run
-from tltl_runtime.training.run.settings import Settings
+from tltl_runtime.training.run.settings import TrainingSettings
 from tltl_runtime.training.run.settings_file import read_values
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
 
@@ -53,7 +53,7 @@ def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
     return name, variant or "v0"
 
 
-def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> Settings:
+def as_its_policy(settings: TrainingSettings, begun: Beginning, config: Path | None) -> TrainingSettings:
     """Return the settings with the policy's network.
 
     Raises:

@@ -33,7 +33,7 @@ from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 def command(
     levels: tuple[str, ...],
     inputs: Sequence[cli.Input],
-    settings: cli.Settings,
+    settings: cli.CompileSettings,
     report: cli.Report,
     sensors: Mapping[str, Any],
     plan: Path | None,
@@ -57,7 +57,7 @@ class _Check:
     """Checks levels and reports each remark only once, even if it applies to several variants."""
 
     def __init__(
-        self, inputs: Sequence[cli.Input], settings: cli.Settings, report: cli.Report, sensors: Mapping[str, Any]
+        self, inputs: Sequence[cli.Input], settings: cli.CompileSettings, report: cli.Report, sensors: Mapping[str, Any]
     ) -> None:
         self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
         self._said: set[object] = set()

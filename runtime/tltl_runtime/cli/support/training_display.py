@@ -25,7 +25,7 @@ from tltl_runtime.cli.support.training_text import (
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.ppo.distributed import peers
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, Run
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
@@ -40,7 +40,7 @@ class Display(Protocol):
     def recorded(self, tried: Tried) -> None:
         """Show the progress of recording the demonstrations that precede the training."""
 
-    def trained(self, report: Report) -> None:
+    def trained(self, report: TrainingReport) -> None:
         """Show a report of the training."""
 
 
@@ -70,7 +70,7 @@ class _Nothing:
     def recorded(self, tried: Tried) -> None:
         pass
 
-    def trained(self, report: Report) -> None:
+    def trained(self, report: TrainingReport) -> None:
         pass
 
 
@@ -99,7 +99,7 @@ class _Lines:
         wanted = self._run.settings.imitation.demonstrations
         self._print(recording_line(tried, wanted), always=tried.path is None or tried.kept == wanted)
 
-    def trained(self, report: Report) -> None:
+    def trained(self, report: TrainingReport) -> None:
         first, self._has_trained, self._has_searched = not self._has_trained, True, False
         if first and report.imitated:
             self._print(imitated_line(report.imitated), always=True)

@@ -26,7 +26,7 @@ from tltl_runtime.cli.support.training_text import (
 from tltl_runtime.support.number_text import duration, number, percent, share
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.imitation.demonstrations import Tried
-from tltl_runtime.training.run.report import Report, Window
+from tltl_runtime.training.run.report import EpisodeWindow, TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, Run
 from tltl_runtime.training.run.settings import Stop
 from tltlc.api import Fspa, State, label_text
@@ -48,7 +48,7 @@ class Picture:
 
     def __init__(self, run: Run, console: Console) -> None:
         self._run, self._console = run, console
-        self._last: Report | None = None
+        self._last: TrainingReport | None = None
         self._searched: Searched | None = None
         self._recorded: Tried | None = None
         self._confirmation = ""
@@ -64,7 +64,7 @@ class Picture:
         """Store the progress of recording demonstrations."""
         self._recorded = tried
 
-    def trained(self, report: Report) -> None:
+    def trained(self, report: TrainingReport) -> None:
         """Store a report of the training."""
         self._last, self._at, self._searched = report, time.monotonic(), None
         if report.confirmation:
@@ -103,7 +103,7 @@ class Picture:
         table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
         return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
-    def _body(self, report: Report, bar: int, room: int) -> RenderableType:
+    def _body(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
         """The picture after an iteration, in ``room`` lines.  With less room, it shows fewer states."""
         now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
         space = [Text()] if room >= _SPACED else []
@@ -123,7 +123,7 @@ class Picture:
             *(Text(line, no_wrap=True, overflow="ellipsis") for line in lines),
         )
 
-    def _kept(self, now: float, report: Report) -> str:
+    def _kept(self, now: float, report: TrainingReport) -> str:
         if self._checkpoint is not None:
             text = f"last checkpoint {duration(now - self._checkpoint)} ago"
         else:
@@ -131,7 +131,7 @@ class Picture:
         return text if report.stop else f"{text}; Ctrl-C writes one to go on from"
 
 
-def _success(report: Report, stop: Stop, bar: int) -> Table:
+def _success(report: TrainingReport, stop: Stop, bar: int) -> Table:
     """The pass rate, and the progress towards the stopping rule."""
     window, row, wanted = report.window, report.unbroken, stop.windows * stop.episodes
     table = _grid(bar)
@@ -143,14 +143,14 @@ def _success(report: Report, stop: Stop, bar: int) -> Table:
     return table
 
 
-def _ended(window: Window, shown: int, states: int) -> str:
+def _ended(window: EpisodeWindow, shown: int, states: int) -> str:
     if not window.count:
         return "no episode has ended yet"
     of_states = f" ({shown} of {states} states)" if shown < states else ""
     return f"where the last {window.count} episodes ended{of_states}"
 
 
-def _states(window: Window, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
+def _states(window: EpisodeWindow, fspa: Fspa, states: tuple[State, ...], count: int, bar: int) -> Table:
     """The ``count`` states in which most of the last episodes ended, with what remained to be satisfied there."""
     shown = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
@@ -164,7 +164,7 @@ def _states(window: Window, fspa: Fspa, states: tuple[State, ...], count: int, b
     return table
 
 
-def _figures(report: Report, stop: Stop, since: float) -> list[str]:
+def _figures(report: TrainingReport, stop: Stop, since: float) -> list[str]:
     """The lines with figures, ``since`` seconds after the report."""
     window, iteration = report.window, report.iteration
     best = "" if report.best_pass_rate is None else f"; best so far: met in {percent(report.best_pass_rate)}"

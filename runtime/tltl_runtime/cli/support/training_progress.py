@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 
 from tltl_runtime.cli.support.training_display import display
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, RUN, Run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.vector.errors import WorkerError
 from tltlc.api import Diagnostic, TltlError
 
 
-def train_shown(run: Run, *, resume: bool, again: str) -> Report:
+def train_shown(run: Run, *, resume: bool, again: str) -> TrainingReport:
     """Train to the end, show the progress, and return the last report.
 
     ``again`` is the command that resumes a stopped training.

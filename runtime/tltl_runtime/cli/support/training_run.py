@@ -48,7 +48,7 @@ from tltl_runtime.training.run.run import (
     read_run,
     resume_command,
 )
-from tltl_runtime.training.run.settings import Settings, read_settings
+from tltl_runtime.training.run.settings import TrainingSettings, read_settings
 from tltl_runtime.training.run.settings_file import read_values
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace
 
@@ -127,7 +127,7 @@ def begins_with(asked: Asked) -> Beginning | None:
     return None if asked.policy is None else beginning(asked.policy)
 
 
-def new_settings(asked: Asked, begun: Beginning | None) -> Settings:
+def new_settings(asked: Asked, begun: Beginning | None) -> TrainingSettings:
     """The settings of a new training; raises the errors of :func:`read_settings` and :func:`as_its_policy`."""
     settings = _with_limits(read_settings(asked.config), asked)
     settings = replace(settings, method=_or(asked.method, settings.method))
@@ -215,7 +215,7 @@ def _check_folder(folder: Path) -> None:
         raise TltlError([Diagnostic("TLT0873", title, help=help_)])
 
 
-def _check_demonstrations(folder: Path | None, settings: Settings) -> None:
+def _check_demonstrations(folder: Path | None, settings: TrainingSettings) -> None:
     """Check the folder of demonstrations.
 
     Raises:
@@ -234,7 +234,7 @@ def _usage(message: str) -> click.UsageError:
     return click.UsageError(message, click.get_current_context())
 
 
-def _with_file(settings: Settings, path: Path) -> Settings:
+def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
     """Update settings from a file; raises the errors of :func:`read_settings`."""
     for table, values in read_values(fileio.read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
@@ -242,7 +242,7 @@ def _with_file(settings: Settings, path: Path) -> Settings:
     return settings
 
 
-def _with_limits(settings: Settings, asked: Asked) -> Settings:
+def _with_limits(settings: TrainingSettings, asked: Asked) -> TrainingSettings:
     """Update settings with the options for limits, workers and device."""
     stop, rollout = settings.stop, settings.rollout
     if asked.workers == "ray":
@@ -261,7 +261,7 @@ def _or(asked: T | None, known: T) -> T:
     return known if asked is None else asked
 
 
-def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
+def _differences(run: Run, asked: Asked, settings: TrainingSettings) -> Iterator[str]:
     """Yield a sentence for each difference between a training and the options."""
     where = f"the training in `{run.folder}`"
     if asked.level is not None:

@@ -8,14 +8,14 @@ from tltl_runtime.support.number_text import duration, number, share
 from tltl_runtime.training.exploration.search import Exploration, Searched
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.imitation.imitation_data import Imitated
-from tltl_runtime.training.run.report import Confirmation, Report
+from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.settings import Stop
 
 SEARCH_IS_LOST: Final = "Ctrl-C stops it; a search that is not over then begins anew."
 SEARCHED_AGAIN: Final = "the pass rate rises no more: ways are searched by chance from where episodes failed"
 
 
-def line(report: Report, stop: Stop) -> str:
+def line(report: TrainingReport, stop: Stop) -> str:
     """Describe a report in one line."""
     window = report.window
     parts = [f"iteration {report.iteration.number}: {report.steps:,} steps in {duration(report.seconds)}"]
@@ -79,7 +79,7 @@ def confirmation_line(number: int, confirmation: Confirmation) -> str:
     return f"not confirmed after iteration {number}: fresh episode {confirmation.met + 1} of {confirmation.of} failed"
 
 
-def seconds_left(report: Report, stop: Stop) -> float:
+def seconds_left(report: TrainingReport, stop: Stop) -> float:
     """The estimated seconds until a limit ends the training, at its speed since the search."""
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
@@ -91,6 +91,6 @@ def minutes(number: float) -> str:
     return f"{number:g} minute{'s' * (number != 1)}"
 
 
-def rate(report: Report) -> float:
+def rate(report: TrainingReport) -> float:
     """Steps per second of the last iteration; 0 if a finished training had no iteration."""
     return report.iteration.steps / ((report.iteration.collect_s + report.iteration.learn_s) or 1.0)

@@ -42,7 +42,7 @@ _MEETS: Final = Subgoal(other="meets the spec")
 def target_of(fspa: Fspa, atom: int) -> str | None:
     """The entity that the player must approach for an atom to hold; None unless the atom depends on just that."""
     expression = fspa.atoms[atom].expression
-    names = {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.Signal)}
+    names = {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.SignalValue)}
     if len(names) != 1:
         return None
     (name,) = names
@@ -58,7 +58,8 @@ def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | N
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
     if (
         target is None
-        or {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.Param)} - params.keys()
+        or {node.name for node in expressions.nodes(expression) if isinstance(node, expressions.ParamValue)}
+        - params.keys()
     ):
         return None
     near, far = 0.0, _FAR

@@ -14,7 +14,7 @@ from tltl_runtime.regression.suite.level_texts import level_texts
 from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.play import JudgedCase
-from tltl_runtime.regression.verdict.verdict import Change, Judgement, Verdict
+from tltl_runtime.regression.verdict.verdict import FigureChange, Judgement, Verdict
 from tltl_runtime.stealth.levels.place import shown_variant
 from tltlc.api import Diagnostic, TltlError, record
 
@@ -38,7 +38,7 @@ class CaseReport:
     rate_interval: tuple[float, float] = (0.0, 1.0)
     figures: Figures | None = None
     baseline: Figures | None = None
-    changes: tuple[Change, ...] = ()
+    changes: tuple[FigureChange, ...] = ()
     explanation: tuple[Finding, ...] = ()
     edits: tuple[str, ...] = ()
     played: Identity | None = None

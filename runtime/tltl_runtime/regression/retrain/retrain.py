@@ -12,7 +12,13 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.regression.explain.account import Account, summaries_of
-from tltl_runtime.regression.retrain.retrained import Best, Retrained, Trained, outcome_of, sentence
+from tltl_runtime.regression.retrain.retrained import (
+    BestFailedEpisode,
+    FinishedRetraining,
+    Retrained,
+    outcome_of,
+    sentence,
+)
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
@@ -187,7 +193,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, on_episode: Callab
     return result
 
 
-def trained_of(run: Run) -> Trained:
+def trained_of(run: Run) -> FinishedRetraining:
     """Summarize the finished training in ``run.folder``.
 
     Raises:
@@ -201,7 +207,7 @@ def trained_of(run: Run) -> Trained:
         raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then goes on to its end")])
     # Successes of the agent count, too: they may be shorter than the search's, or the only ones.
     lengths = [int(length) for process in state.processes for length in process.get("way_lengths", ())]
-    return Trained(
+    return FinishedRetraining(
         end=end,
         steps=state.steps,
         seconds=round(state.seconds, 1),
@@ -232,15 +238,15 @@ def _played(
     return accounts, recording, interval
 
 
-def _best(accounts: Sequence[Account], fspa: Fspa) -> Best | None:
+def _best(accounts: Sequence[Account], fspa: Fspa) -> BestFailedEpisode | None:
     failed = [account for account in accounts if not account.summary.success]
     if not failed:
         return None
     farthest = max(failed, key=lambda account: account.summary.progress)
-    return Best(farthest.summary.progress, label_text(fspa, farthest.summary.unmet))
+    return BestFailedEpisode(farthest.summary.progress, label_text(fspa, farthest.summary.unmet))
 
 
-def _inputs(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:
+def _inputs(ready: Ready, weights: str, trained: FinishedRetraining, error: float, own: Sequence[Account]) -> str:
     """The hash of everything that the outcome depends on; ``own`` are the episodes by which the case was judged."""
     case = ready.case
     parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]

@@ -17,7 +17,7 @@ OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "fea
 
 
 @record
-class Trained:
+class FinishedRetraining:
     """A finished training that started from a case's policy.
 
     ``steps`` are the agent's steps.  ``seconds`` include the search, which took ``searched`` decisions
@@ -34,7 +34,7 @@ class Trained:
 
 
 @record
-class Best:
+class BestFailedEpisode:
     """The best failed episode: its progress, in [0, 1], and in English what remained to be done at that point."""
 
     progress: float
@@ -55,15 +55,15 @@ class Retrained:
 
     outcome: Outcome
     text: str
-    trained: Trained
+    trained: FinishedRetraining
     figures: Figures
     rate_interval: tuple[float, float]
-    best: Best | None
+    best: BestFailedEpisode | None
     policy: str
     episode: str | None
 
 
-def outcome_of(trained: Trained, low: float, thresholds: Thresholds, met: int) -> Outcome:
+def outcome_of(trained: FinishedRetraining, low: float, thresholds: Thresholds, met: int) -> Outcome:
     """The outcome of a training.
 
     ``low`` is the lower bound of the pass rate.  ``met`` counts the episodes that met the spec,
@@ -76,11 +76,11 @@ def outcome_of(trained: Trained, low: float, thresholds: Thresholds, met: int) -
 
 def sentence(
     outcome: Outcome,
-    trained: Trained,
+    trained: FinishedRetraining,
     figures: Figures,
     rate_interval: tuple[float, float],
     thresholds: Thresholds,
-    best: Best | None,
+    best: BestFailedEpisode | None,
 ) -> str:
     """Describe the outcome in a sentence."""
     took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"

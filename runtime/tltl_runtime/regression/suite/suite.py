@@ -13,7 +13,7 @@ from tltl_runtime.regression.suite.named_files import level_like, policy_faults,
 from tltl_runtime.stealth.levels.file import level_names, level_path, shared_names, variants
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.levels.place import level_place, overlays_of, with_overlays
-from tltl_runtime.stealth.levels.table import REQUIRED, Table, suggestion, wrong
+from tltl_runtime.stealth.levels.table import REQUIRED, CheckedTable, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.api import Diagnostic, Label, Span, TltlError, fileio, record
 
@@ -108,7 +108,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     """
     source = fileio.read_source(path, shown(path))
     log: list[Diagnostic] = []
-    table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
+    table = CheckedTable(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
     if "case" not in table.entries:
         help_ = "a suite lists cases that name levels, each under `[[case]]`"
         if kind := _something_else(table):
@@ -145,7 +145,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     return Suite(path, seed, error, tuple(case for case, _ in filter(None, cases)), baseline or baseline_path(path))
 
 
-def _something_else(table: Table) -> str | None:
+def _something_else(table: CheckedTable) -> str | None:
     """The kind of file that this table is instead of a suite, by its keys; None if unknown."""
     kinds = {"an asset": {"type"}, "a level": {"bounds", "start"}, "an overlay": {"change", "add"}}
     return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
@@ -157,7 +157,7 @@ def _unread(count: int, label: Label) -> Diagnostic:
 
 
 def _case(
-    table: Table, folder: Path, episodes: int, thresholds: Thresholds, known_variants: dict[str, tuple[str, ...]]
+    table: CheckedTable, folder: Path, episodes: int, thresholds: Thresholds, known_variants: dict[str, tuple[str, ...]]
 ) -> tuple[Case, Label] | None:
     """Read a case and its label; None if it has errors.  ``known_variants`` is the cache of :func:`_variants`."""
     before = len(table.log)
@@ -192,7 +192,7 @@ def _case(
     ), table.label
 
 
-def _text(table: Table, key: str, default: str = REQUIRED) -> str:
+def _text(table: CheckedTable, key: str, default: str = REQUIRED) -> str:
     """Read a string that must not be empty if it is present."""
     text, entry = table.text(key, default), table.entries.get(key)
     if entry is not None and entry.value == "":
@@ -200,7 +200,7 @@ def _text(table: Table, key: str, default: str = REQUIRED) -> str:
     return text
 
 
-def _variants(table: Table, level: str, known: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
+def _variants(table: CheckedTable, level: str, known: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
     """The variants of a level.  If the level does not load, the variants that the case names.
 
     A level that does not load is a finding of the case, not an error of the suite.  ``known`` caches
@@ -215,7 +215,7 @@ def _variants(table: Table, level: str, known: dict[str, tuple[str, ...]]) -> tu
     return known[level] or (*named, "v0")
 
 
-def _level(table: Table, folder: Path) -> tuple[str, str]:
+def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
     """Read a level and its path relative to the suite; the path is empty if the level is not a file."""
     level = _text(table, "level")
     if not level:
@@ -247,7 +247,7 @@ def _apart(level: str, variant: str) -> str:
     return f"write {', '.join(lines)}"
 
 
-def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
+def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
     """Read the overlays that are added to the variant: names, or paths relative to the working directory."""
     entry = table.entries.get("overlay")
     single = entry is not None and not isinstance(entry.value, list)
@@ -261,7 +261,7 @@ def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
     return tuple(overlays)
 
 
-def _spec(table: Table, folder: Path) -> str | None:
+def _spec(table: CheckedTable, folder: Path) -> str | None:
     text = _text(table, "spec", "")
     if not text:
         return None
@@ -274,7 +274,7 @@ def _spec(table: Table, folder: Path) -> str | None:
     return spec
 
 
-def _policy(table: Table, folder: Path, level: str) -> Path | None:
+def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
     """Read the policy: a file or the folder of a training, by default the policy that comes with the level."""
     named = _text(table, "policy", "")
     if not named or named in shipped_policies():
@@ -295,11 +295,11 @@ def _policy(table: Table, folder: Path, level: str) -> Path | None:
     return path
 
 
-def _episodes(table: Table, default: int) -> int:
+def _episodes(table: CheckedTable, default: int) -> int:
     return table.whole("episodes", default, low=LEAST_EPISODES, high=_LIMIT)
 
 
-def _thresholds(table: Table, defaults: Thresholds) -> Thresholds:
+def _thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
     subtable = table.table("thresholds", needed=False)
     if subtable is None:
         return defaults

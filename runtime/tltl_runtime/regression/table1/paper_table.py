@@ -32,7 +32,7 @@ class CellFigures:
 
 
 @record
-class Row:
+class TableRow:
     """The figures of one model on one level, by variant.
 
     ``hours`` is the duration of the training, or None without a training.  ``cloned`` is the share of
@@ -44,16 +44,18 @@ class Row:
     cloned: float | None = None
 
 
-def _row(hours: float | None, *figures: tuple[float, float, float, float, float], cloned: float | None = None) -> Row:
+def _row(
+    hours: float | None, *figures: tuple[float, float, float, float, float], cloned: float | None = None
+) -> TableRow:
     """A row of the paper.
 
     For each of v0, v1 and v2: pass rate, mean and deviation of progress, mean and deviation of reward.
     """
     cells = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
-    return Row(dict(zip(VARIANTS, cells, strict=True)), hours, cloned)
+    return TableRow(dict(zip(VARIANTS, cells, strict=True)), hours, cloned)
 
 
-PAPER: Final[Mapping[tuple[str, Model], Row]] = {
+PAPER: Final[Mapping[tuple[str, Model], TableRow]] = {
     ("navigation", "expert"): _row(
         None, (1.00, 1.00, 0.00, 0.63, 0.01), (1.00, 1.00, 0.00, 0.65, 0.02), (0.00, 0.50, 0.01, -0.50, 0.01)
     ),
@@ -97,12 +99,12 @@ PAPER: Final[Mapping[tuple[str, Model], Row]] = {
 """The rows of the paper.  Its experts are humans."""
 
 
-def markdown(rows: Mapping[tuple[str, Model], Row]) -> str:
+def markdown(rows: Mapping[tuple[str, Model], TableRow]) -> str:
     """Format the table as Markdown: each of our rows, followed by the paper's row.  Missing rows are left out."""
     return "\n".join(_lines(rows)) + "\n"
 
 
-def _lines(rows: Mapping[tuple[str, Model], Row]) -> Iterator[str]:
+def _lines(rows: Mapping[tuple[str, Model], TableRow]) -> Iterator[str]:
     yield f"| level | model | pass {' / '.join(VARIANTS)} | progress | reward | time |"
     yield "|---|---|---|---|---|---|"
     for level in LEVELS:
@@ -114,7 +116,7 @@ def _lines(rows: Mapping[tuple[str, Model], Row]) -> Iterator[str]:
                 yield _line("", f"*the paper: {name}*", paper)
 
 
-def _line(level: str, model: str, row: Row) -> str:
+def _line(level: str, model: str, row: TableRow) -> str:
     cells = [row.figures[variant] for variant in VARIANTS if variant in row.figures]
     passed = " / ".join(_rate(cell) for cell in cells)
     spreads = (
@@ -132,7 +134,7 @@ def _rate(figures: CellFigures) -> str:
     return f"{figures.pass_rate:.2f} ({low:.2f}–{high:.2f})"
 
 
-def _time(row: Row) -> str:
+def _time(row: TableRow) -> str:
     if row.hours is None:
         return "–"
     time = f"{row.hours:.1f} h" if row.hours >= 1 else f"{row.hours * 60:.0f} min"

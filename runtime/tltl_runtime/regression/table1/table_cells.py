@@ -10,7 +10,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import PlayedEpisode, Task
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
@@ -84,10 +84,10 @@ def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[W
 
 def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
     """Play the careful expert's episodes on this machine, with the same seeds as the policies."""
-    tasks = [Task(index) for index in range(EPISODES)]
+    tasks = [EpisodeRequest(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
 
-    def alone(task: Task) -> str:
+    def alone(task: EpisodeRequest) -> str:
         return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
 
     for result in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
@@ -101,7 +101,7 @@ class _ExpertPlayer:
         self._env = RecordEpisode(make_env(level, variant))
         self._expert = Expert(self._env)
 
-    def play(self, task: Task) -> PlayedEpisode:
+    def play(self, task: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
         play_episode(self._env, self._expert, episode_seed(SEED, task.index))
         return PlayedEpisode(task, summary_of(self._env.episode, task.index))

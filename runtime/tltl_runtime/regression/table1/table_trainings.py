@@ -43,7 +43,7 @@ class TableTraining:
 
 
 @record
-class Trained:
+class TrainedModel:
     """The result of a training with a ``seed``: its policy and the hours that it took.
 
     ``cloned`` is the share of its steps with behavioural cloning, or None if the model does not imitate.
@@ -115,7 +115,7 @@ def train_arguments(training: TableTraining) -> list[str]:
     return [*arguments, "--steps", str(steps), "--minutes", f"{minutes:g}"]
 
 
-def trained(training: TableTraining) -> Trained | None:
+def trained(training: TableTraining) -> TrainedModel | None:
     """Return the result of a training that reached its goal or its limits; None for any other training.
 
     Raises:
@@ -129,4 +129,4 @@ def trained(training: TableTraining) -> Trained | None:
     if ending is None:
         return None
     cloned = ending["imitated"]["cloned"] / ending["steps"] if training.imitates else None
-    return Trained(training.folder / POLICY, run.seed, ending["seconds"] / 3600, cloned)
+    return TrainedModel(training.folder / POLICY, run.seed, ending["seconds"] / 3600, cloned)

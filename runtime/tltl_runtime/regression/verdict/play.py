@@ -10,7 +10,7 @@ from shlex import join
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, results, set_up
-from tltl_runtime.evaluation.player import Setup, Task
+from tltl_runtime.evaluation.player import EpisodeRequest, Setup
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
@@ -101,7 +101,7 @@ def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
             errors from playing.
     """
-    tasks = [Task(index) for index in range(prepared.case.episodes)]
+    tasks = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
     with closing(results(prepared.setup, tasks, pool, alone=partial(_alone, prepared))) as playing:
         for count, result in enumerate(playing):
             # Before it raises an error, `results` yields all finished episodes.  Skip those after a gap:
@@ -115,7 +115,7 @@ def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
     check_unedited(prepared)
 
 
-def _alone(prepared: Ready, task: Task) -> str:
+def _alone(prepared: Ready, task: EpisodeRequest) -> str:
     """The command that plays a single episode of the case."""
     place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]

@@ -48,7 +48,7 @@ _ALIKE: Final = 0.5
 
 
 @record
-class Change:
+class FigureChange:
     """A figure whose mean has certainly changed: the baseline's mean, the mean now, and the p-value."""
 
     figure: str
@@ -68,7 +68,7 @@ class Judgement:
     verdict: Verdict
     certain: bool
     rate_interval: tuple[float, float]
-    changes: tuple[Change, ...]
+    changes: tuple[FigureChange, ...]
 
 
 def judge(
@@ -120,13 +120,13 @@ def _changes(
     before: Sequence[EpisodeSummary],
     thresholds: Thresholds,
     error: float,
-) -> Iterator[Change]:
+) -> Iterator[FigureChange]:
     """The changes of those figures that have certainly changed."""
     for figure in figures:
         values, old, most = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
         p_value = mean_p_value(values, old - most, old + most, *FIGURES[figure])
         if p_value <= error / (2 * len(FIGURES)):
-            yield Change(figure, old, fmean(values), p_value)
+            yield FigureChange(figure, old, fmean(values), p_value)
 
 
 def _values(episodes: Sequence[EpisodeSummary], figure: str) -> list[float]:

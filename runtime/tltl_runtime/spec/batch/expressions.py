@@ -18,11 +18,11 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from tltl_runtime.spec.batch.writer import Writer
+from tltl_runtime.spec.batch.writer import TensorWriter
 from tltlc.api import expressions
 
 
-class Program:
+class TensorExpressions:
     """The expressions as one function of columns: from shape [signals, N] to values [expressions, N] and failures.
 
     ``source`` is the Python text of the function.
@@ -36,7 +36,7 @@ class Program:
         device: torch.device,
         dtype: torch.dtype,
     ) -> None:
-        writer = Writer(signals, params)
+        writer = TensorWriter(signals, params)
         terms = [writer.number(expression) for expression in expressions]
         values = [term.name if term.constant is None else writer.filled(term.constant) for term in terms]
         failures = [term.fails for term in terms]

@@ -8,7 +8,7 @@ import torch
 from numpy.typing import ArrayLike
 from torch import Tensor
 
-from tltl_runtime.spec.batch.expressions import Program
+from tltl_runtime.spec.batch.expressions import TensorExpressions
 from tltl_runtime.spec.batch.formats import fits, narrowed
 from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors
 
@@ -43,7 +43,7 @@ class BatchSamples:
         values = monitors.param_values(fspa.params, params or {})
         self._given = dtype
         self._dtype = dtype = dtype if fits(_numbers(fspa, values), dtype) else torch.float64
-        self._program = Program([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
+        self._program = TensorExpressions([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
         # An open end is the greatest finite number: only infinite values are clamped to it.
         most = torch.finfo(dtype).max
         low = [0.0 if s.type == "bool" else -most if s.low is None else s.low for s in fspa.signals]

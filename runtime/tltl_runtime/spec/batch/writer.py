@@ -14,7 +14,7 @@ _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
 
 
 @record
-class Term:
+class TensorTerm:
     """The name of a tensor, or a constant (number or truth value), and the name of the mask where it fails."""
 
     name: str
@@ -22,7 +22,7 @@ class Term:
     fails: str | None = None
 
 
-class Writer:
+class TensorWriter:
     """Writes lines that assign to new names, each from ``columns``, ``constants`` and earlier names.
 
     ``columns[i]`` is the column of the i-th signal. Equal right-hand sides are written once.
@@ -40,14 +40,14 @@ class Writer:
         """Return the name of a column filled with a constant."""
         return self._line(f"columns.new_full((columns.shape[1],), {self._held(constant)}.item())")
 
-    def number(self, node: expressions.Expression) -> Term:
+    def number(self, node: expressions.Expression) -> TensorTerm:
         """Return the term of an expression."""
         if isinstance(node, expressions.Const):
             return self._constant(node.value)
-        if isinstance(node, expressions.Param):
+        if isinstance(node, expressions.ParamValue):
             return self._constant(self._params[node.name])
-        if isinstance(node, expressions.Signal):
-            return Term(self._line(f"columns[{self._columns[node.name]}]"))
+        if isinstance(node, expressions.SignalValue):
+            return TensorTerm(self._line(f"columns[{self._columns[node.name]}]"))
         if isinstance(node, expressions.When):
             return self._when(node)
         args = [self.number(argument) for argument in node.args]
@@ -56,7 +56,7 @@ class Writer:
             return self._folded(node, args, fails)
         return self._operation(node, args, fails)
 
-    def _operation(self, node: expressions.Op, args: list[Term], fails: str | None) -> Term:
+    def _operation(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
         if node.op in ("+", "*"):
             compute = add if node.op == "+" else mul
             total = args[0]
@@ -64,18 +64,18 @@ class Writer:
                 if total.constant is not None and term.constant is not None:
                     total = self._constant(compute(total.constant, term.constant))
                 else:
-                    total = Term(self._line(f"{self._operand(total)} {node.op} {self._operand(term)}"))
-            return Term(total.name, None, fails)
+                    total = TensorTerm(self._line(f"{self._operand(total)} {node.op} {self._operand(term)}"))
+            return TensorTerm(total.name, None, fails)
         if node.op in ("min", "max"):
             best = args[0]
             for term in args[1:]:
                 best = self._extreme(node.op, best, term)
-            return Term(best.name, best.constant, fails)
+            return TensorTerm(best.name, best.constant, fails)
         if node.op == "clamp":
             value, low, high = args
             if value.constant is None and low.constant is not None and high.constant is not None:
-                return Term(self._line(f"clamp({value.name}, {low.name}, {high.name})"), None, fails)
-            return Term(self._extreme("min", self._extreme("max", value, low), high).name, None, fails)
+                return TensorTerm(self._line(f"clamp({value.name}, {low.name}, {high.name})"), None, fails)
+            return TensorTerm(self._extreme("min", self._extreme("max", value, low), high).name, None, fails)
         if node.op == "^":
             return self._power(node, args, fails)
         if node.op == "/":
@@ -84,20 +84,20 @@ class Writer:
                 own_failure: str | None = self._line(f"{bottom} == 0.0")
             else:
                 own_failure = self._everywhere() if args[1].constant == 0.0 else None
-            return Term(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own_failure]))
+            return TensorTerm(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own_failure]))
         if node.op == "-":
-            return Term(self._line(f"{self._operand(args[0])} - {self._operand(args[1])}"), None, fails)
+            return TensorTerm(self._line(f"{self._operand(args[0])} - {self._operand(args[1])}"), None, fails)
         inner = args[0].name
         if node.op == "neg":
-            return Term(self._line(f"-{inner}"), None, fails)
+            return TensorTerm(self._line(f"-{inner}"), None, fails)
         result = self._line(f"{node.op}({inner})")
         if node.op == "sqrt":
             fails = self._any_of([fails, self._line(f"{inner} < 0.0")])
         elif node.op == "exp":
             fails = self._any_of([fails, self._line(f"isinf({result}) & isfinite({inner})")])
-        return Term(result, None, fails)
+        return TensorTerm(result, None, fails)
 
-    def _power(self, node: expressions.Op, args: list[Term], fails: str | None) -> Term:
+    def _power(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
         base, exponent = args
         factors = (
             expressions.MULTIPLIED_EXPONENTS.get(node.args[1].value, 0)
@@ -106,23 +106,23 @@ class Writer:
         )
         if factors:
             square = self._line(f"{base.name} * {base.name}")
-            return Term(square if factors == 2 else self._line(f"{square} * {base.name}"), None, fails)
+            return TensorTerm(square if factors == 2 else self._line(f"{square} * {base.name}"), None, fails)
         left, right = self._operand(base), self._operand(exponent)
         result = self._line(f"pow({left}, {right})")
         own_failure = self._line(f"isfinite({left}) & isfinite({right}) & ~isfinite({result})")
-        return Term(result, None, self._any_of([fails, own_failure]))
+        return TensorTerm(result, None, self._any_of([fails, own_failure]))
 
-    def _extreme(self, op: str, first: Term, second: Term) -> Term:
+    def _extreme(self, op: str, first: TensorTerm, second: TensorTerm) -> TensorTerm:
         """Return ``min`` or ``max`` as in Python: the second term only if it is strictly beyond the first."""
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
-            return Term(self._line(f"clamp({first.name}, {'max' if op == 'min' else 'min'}={second.name})"))
+            return TensorTerm(self._line(f"clamp({first.name}, {'max' if op == 'min' else 'min'}={second.name})"))
         first_name, second_name = self._operand(first), self._operand(second)
         is_beyond = self._line(f"{second_name} {'<' if op == 'min' else '>'} {first_name}")
-        return Term(self._line(f"where({is_beyond}, {second_name}, {first_name})"))
+        return TensorTerm(self._line(f"where({is_beyond}, {second_name}, {first_name})"))
 
-    def _when(self, node: expressions.When) -> Term:
+    def _when(self, node: expressions.When) -> TensorTerm:
         result = self.number(node.otherwise)
         for condition, value in reversed(node.cases):
             test = self._condition(condition)
@@ -134,25 +134,25 @@ class Writer:
             otherwise_fails = self._both(self._line(f"~{taken}"), result.fails) if result.fails else None
             fails = self._any_of([test.fails, self._both(taken, case.fails), otherwise_fails])
             values = f"{self._operand(case)}, {self._operand(result)}"
-            result = Term(self._line(f"where({taken}, {values})"), None, fails)
+            result = TensorTerm(self._line(f"where({taken}, {values})"), None, fails)
         return result
 
-    def _condition(self, node: expressions.Expression | expressions.Condition) -> Term:
+    def _condition(self, node: expressions.Expression | expressions.Condition) -> TensorTerm:
         assert isinstance(node, expressions.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
             inner = self._condition(node.args[0])
             if inner.constant is not None:
-                return Term(inner.name, float(not inner.constant), inner.fails)
-            return Term(self._line(f"~{inner.name}"), None, inner.fails)
+                return TensorTerm(inner.name, float(not inner.constant), inner.fails)
+            return TensorTerm(self._line(f"~{inner.name}"), None, inner.fails)
         if node.op in ("and", "or"):
             return self._connective(node)
         left, right = (self.number(cast("expressions.Expression", side)) for side in node.args)
         fails = self._any_of([left.fails, right.fails])
         if left.constant is not None and right.constant is not None:
-            return Term("", float(_COMPARISONS[node.op](left.constant, right.constant)), fails)
-        return Term(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
+            return TensorTerm("", float(_COMPARISONS[node.op](left.constant, right.constant)), fails)
+        return TensorTerm(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
 
-    def _connective(self, node: expressions.Condition) -> Term:
+    def _connective(self, node: expressions.Condition) -> TensorTerm:
         """Return ``and`` or ``or``, built from the last part to the first.
 
         A part after one that decides the result cannot fail: its failure counts only where the
@@ -165,10 +165,10 @@ class Writer:
             truth, rest = self._truth(first), self._truth(result)
             undecided = truth if node.op == "and" else self._line(f"~{truth}")
             fails = self._any_of([first.fails, self._both(undecided, result.fails)])
-            result = Term(self._line(f"{truth} {sign} {rest}"), None, fails)
+            result = TensorTerm(self._line(f"{truth} {sign} {rest}"), None, fails)
         return result
 
-    def _folded(self, node: expressions.Op, args: list[Term], fails: str | None) -> Term:
+    def _folded(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
         """Return the value of an operation on constants."""
         # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
         # stay a power, so it is not passed on as a literal.
@@ -179,16 +179,16 @@ class Writer:
             and parts[1].value in expressions.MULTIPLIED_EXPONENTS
         ):
             try:
-                return Term(*self._literal(math.pow(parts[0].value, parts[1].value)), fails)
+                return TensorTerm(*self._literal(math.pow(parts[0].value, parts[1].value)), fails)
             except _FAILURES:
-                return Term(*self._literal(math.nan), self._everywhere())
+                return TensorTerm(*self._literal(math.nan), self._everywhere())
         try:
-            return Term(*self._literal(expressions.evaluate(expressions.Op(node.op, parts), {}, {})), fails)
+            return TensorTerm(*self._literal(expressions.evaluate(expressions.Op(node.op, parts), {}, {})), fails)
         except _FAILURES:
-            return Term(*self._literal(math.nan), self._everywhere())
+            return TensorTerm(*self._literal(math.nan), self._everywhere())
 
-    def _constant(self, value: float) -> Term:
-        return Term(*self._literal(value))
+    def _constant(self, value: float) -> TensorTerm:
+        return TensorTerm(*self._literal(value))
 
     def _literal(self, value: float) -> tuple[str, float]:
         text = repr(float(value))
@@ -196,7 +196,7 @@ class Writer:
             return f"float('{text}')", value
         return (f"({text})" if text.startswith("-") else text), value
 
-    def _operand(self, term: Term) -> str:
+    def _operand(self, term: TensorTerm) -> str:
         """Return the term as a tensor. Torch handles tensors faster than numbers, and divides by
         numbers less exactly.
         """
@@ -210,7 +210,7 @@ class Writer:
         self.constants[name] = constant
         return name
 
-    def _truth(self, term: Term) -> str:
+    def _truth(self, term: TensorTerm) -> str:
         if term.constant is None:
             return term.name
         everywhere = self._everywhere()

@@ -7,7 +7,7 @@ from math import inf, isclose
 from typing import Final
 
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.capabilities.vocabulary import Offer, offers, params
+from tltl_runtime.stealth.capabilities.vocabulary import OfferedSignal, offers, params
 from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.made_for import comes_with_the_package
 from tltl_runtime.stealth.levels.table import suggestion
@@ -81,7 +81,7 @@ def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnosti
             yield Diagnostic("TLT0811", title, places.signal(signal.name), _hint(signal, level, offered))
 
 
-def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
+def _mismatch(signal: Signal, offer: OfferedSignal, level: Level, places: SpecPlaces) -> Iterator[Diagnostic]:
     """Report differences between a signal as the spec declares it and as the level supplies it."""
     bool_wanted = signal.type == "bool" and offer.type != "bool"
     if bool_wanted or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
@@ -103,7 +103,7 @@ def _mismatch(signal: Signal, offer: Offer, level: Level, places: SpecPlaces) ->
         yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
 
 
-def _hint(signal: Signal, level: Level, offered: dict[str, Offer]) -> str:
+def _hint(signal: Signal, level: Level, offered: dict[str, OfferedSignal]) -> str:
     if signal.arguments and signal.base in _KIND_OF:
         kind = _KIND_OF[signal.base]
         known = [entity.name for entity in (level.switches if kind == "switch" else level.barriers)]
@@ -116,7 +116,7 @@ def _ends(low: float | None, high: float | None) -> tuple[float, float]:
     return -inf if low is None else low - 1e-6, inf if high is None else high + 1e-6
 
 
-def _rounded(offer: Offer) -> tuple[float | None, float | None]:
+def _rounded(offer: OfferedSignal) -> tuple[float | None, float | None]:
     return (None if offer.low is None else round(offer.low, 3)), (None if offer.high is None else round(offer.high, 3))
 
 

@@ -78,11 +78,11 @@ def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
             low = max(low, reach.distances[signal.arguments[0]])
         # A sample outside the declared range is clamped to it.
         least, most = _ends(signal.low, signal.high)
-        box[expressions.Signal(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
+        box[expressions.SignalValue(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
     known_params = given_params(level, fspa)
     for param in fspa.params:
         value = known_params.get(param.name, param.value)
-        box[expressions.Param(param.name)] = (value, value)
+        box[expressions.ParamValue(param.name)] = (value, value)
     return frozenset(index for index, atom in enumerate(fspa.atoms) if _highest(atom.expression, box) <= 0.0)
 
 
@@ -95,7 +95,7 @@ def _highest(expression: expressions.Expression, box: Mapping[ranges.Variable, r
     highest = -inf
     try:
         for case in ranges.cases(expression):
-            region = ranges.Region(box, {}).where(case.constraints)
+            region = ranges.ConstrainedBox(box, {}).where(case.constraints)
             if region is not None:
                 highest = max(highest, ranges.bound(case.value, region)[1])
     except (ranges.TooManyCasesError, ranges.UndefinedError):

@@ -67,7 +67,7 @@ class SpecPlaces:
     def _atoms_of(self, signal: str) -> list[str]:
         """The atoms that are computed from a signal."""
         atoms = self._spec.atoms if self._spec else ()
-        return [atom.base for atom in atoms if expressions.Signal(signal) in expressions.nodes(atom.expression)]
+        return [atom.base for atom in atoms if expressions.SignalValue(signal) in expressions.nodes(atom.expression)]
 
     def _base(self, signal: str) -> str:
         """The name of a signal without its arguments."""
@@ -96,9 +96,9 @@ class SpecPlaces:
 def _use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
     """The first name or call of that name in the expressions of some declarations."""
     for part in _parts(declarations):
-        if isinstance(part, syntax.Call) and part.name == name:
+        if isinstance(part, syntax.CallExpr) and part.name == name:
             return part.name_span
-        if isinstance(part, syntax.Name) and part.name == name:
+        if isinstance(part, syntax.NameExpr) and part.name == name:
             return part.span
     return None
 

@@ -10,7 +10,7 @@ from tltlc.api import record, specs
 
 
 @record
-class Offer:
+class OfferedSignal:
     """A signal of a level: its type, and its range in SI units; None is an open end."""
 
     type: specs.ValueType
@@ -18,7 +18,7 @@ class Offer:
     high: float | None
 
 
-def offers(level: Level) -> dict[str, Offer]:
+def offers(level: Level) -> dict[str, OfferedSignal]:
     """Return the signals of a level, by name, including aliases."""
     return {name: _offer(signal.base, level) for name, signal in level_signals(level).items()}
 
@@ -28,16 +28,16 @@ def params(level: Level) -> dict[str, float]:
     return {"level_size": dist(level.bounds.low, level.bounds.high)}
 
 
-def _offer(base: str, level: Level) -> Offer:
+def _offer(base: str, level: Level) -> OfferedSignal:
     if base in ("health", "stamina"):
-        return Offer("ratio", 0.0, 1.0)
+        return OfferedSignal("ratio", 0.0, 1.0)
     if base == "time":
-        return Offer("time", 0.0, None)
+        return OfferedSignal("time", 0.0, None)
     if base == "bearing":
-        return Offer("angle", -pi, pi)
+        return OfferedSignal("angle", -pi, pi)
     if base == "distance":
-        return Offer("length", 0.0, params(level)["level_size"])
+        return OfferedSignal("length", 0.0, params(level)["level_size"])
     if base in AXES:
         axis = AXES[base]
-        return Offer("length", level.bounds.low[axis], level.bounds.high[axis])
-    return Offer("bool", 0.0, 1.0)
+        return OfferedSignal("length", level.bounds.low[axis], level.bounds.high[axis])
+    return OfferedSignal("bool", 0.0, 1.0)

@@ -13,7 +13,7 @@ from tltl_runtime.stealth.enemies.behaviour import Node, action, condition, sele
 from tltlc.api import record
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.enemies.enemy import Guard
+    from tltl_runtime.stealth.enemies.enemy import EnemyGuard
 
 _CLOSE: Final = 0.55
 """A chase stops at this fraction of the attack range.
@@ -72,10 +72,10 @@ def tree(branches: tuple[str, ...]) -> Node:
 def chase() -> Node:
     """Run to the player while its position is known, and stop within reach of it."""
 
-    def knows(guard: Guard) -> bool:
+    def knows(guard: EnemyGuard) -> bool:
         return guard.knows
 
-    def run(guard: Guard) -> bool:
+    def run(guard: EnemyGuard) -> bool:
         guard.mode = "chase"
         x, y, _ = guard.last_known
         speed = guard.kind.chase_speed
@@ -93,19 +93,19 @@ def chase() -> Node:
 def search() -> Node:
     """Go to the player's last known position, then look around there for some time."""
 
-    def lost(guard: Guard) -> bool:
+    def lost(guard: EnemyGuard) -> bool:
         return guard.search_left > 0.0
 
-    def arrived(guard: Guard) -> bool:
+    def arrived(guard: EnemyGuard) -> bool:
         return guard.searching
 
-    def go_there(guard: Guard) -> bool:
+    def go_there(guard: EnemyGuard) -> bool:
         guard.mode = "search"
         guard.go(guard.last_known[:2], guard.kind.chase_speed)
         guard.searching = guard.arrived
         return guard.searching
 
-    def look_around(guard: Guard) -> bool:
+    def look_around(guard: EnemyGuard) -> bool:
         guard.mode = "search"
         guard.search_left -= guard.dt
         if guard.arrived:
@@ -125,10 +125,10 @@ def search() -> Node:
 def return_to_route() -> Node:
     """Walk back to the nearest point of the route."""
 
-    def is_off(guard: Guard) -> bool:
+    def is_off(guard: EnemyGuard) -> bool:
         return guard.back
 
-    def walk(guard: Guard) -> bool:
+    def walk(guard: EnemyGuard) -> bool:
         if guard.mode != "return":
             guard.mode = "return"
             guard.leg = guard.nearest_leg()
@@ -147,10 +147,10 @@ def check_gaps() -> Node:
     chasing: at walking speed, the route would stay unwatched for too long.
     """
 
-    def is_due(guard: Guard) -> bool:
+    def is_due(guard: EnemyGuard) -> bool:
         return guard.gap is not None
 
-    def visit(guard: Guard) -> bool:
+    def visit(guard: EnemyGuard) -> bool:
         guard.mode = "patrol"
         assert guard.gap is not None
         guard.go(guard.gap, (guard.kind.walk_speed + guard.kind.chase_speed) / 2)
@@ -165,7 +165,7 @@ def check_gaps() -> Node:
 def patrol() -> Node:
     """Walk the route in a loop."""
 
-    def walk(guard: Guard) -> bool:
+    def walk(guard: EnemyGuard) -> bool:
         guard.mode = "patrol"
         guard.go(guard.route[guard.leg], guard.kind.walk_speed)
         if guard.arrived and len(guard.route) > 1:

@@ -52,7 +52,7 @@ class Enemies:
     def __init__(self, level: Level, grid: Grid | None = None) -> None:
         self.level = level
         self.grid = grid_of(level) if grid is None else grid
-        self.guards: tuple[Guard, ...] = ()
+        self.guards: tuple[EnemyGuard, ...] = ()
         self.damage = 0.0
         """The health that the player lost in the last step."""
         self._shut: set[int] = set()
@@ -65,7 +65,7 @@ class Enemies:
         """Put every enemy at its start and shut all barriers; ``rng`` is the random source."""
         self._shut = set(range(len(self.level.barriers)))
         floor = self._update_floor()
-        self.guards = tuple(Guard(enemy, floor, rng) for enemy in self.level.enemies)
+        self.guards = tuple(EnemyGuard(enemy, floor, rng) for enemy in self.level.enemies)
         self.damage = 0.0
 
     def set_open(self, barrier: int, opened: bool) -> None:
@@ -117,7 +117,7 @@ class Enemies:
         return self.grid.floor(self._shut)
 
 
-class Guard:
+class EnemyGuard:
     """One enemy in an episode: its pose, its perception and its memory."""
 
     def __init__(self, enemy: Enemy, floor: Floor, rng: np.random.Generator) -> None:
@@ -159,7 +159,7 @@ class Guard:
         """
         self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
 
-    def fork(self, rng: np.random.Generator) -> Guard:
+    def fork(self, rng: np.random.Generator) -> EnemyGuard:
         """Return a copy of the guard that continues on its own and draws from ``rng``."""
         other = copy(self)
         other.rng = rng

@@ -30,7 +30,7 @@ _THERE: Final = 0.1
 
 
 @record
-class Move:
+class HeldAction:
     """An action; in the air, a body keeps its direction for ``hold`` decisions in all."""
 
     action: Action
@@ -38,7 +38,7 @@ class Move:
 
 
 @record
-class Plan:
+class ActionPlan:
     """A sequence of actions, and the predicted position of the feet after each."""
 
     actions: tuple[Action, ...]
@@ -86,7 +86,7 @@ class Foresight:
         self,
         motion: Motion,
         field: Field,
-        moves: Sequence[Move],
+        moves: Sequence[HeldAction],
         movers: Sequence[Sequence[Box]],
         ahead: int,
         kept: int,
@@ -97,7 +97,7 @@ class Foresight:
         self._holds = np.array([move.hold for move in moves])
         self._ahead, self._kept = ahead, kept
 
-    def plan(self, player: PlayerState) -> Plan:
+    def plan(self, player: PlayerState) -> ActionPlan:
         """Return the best plan; it is empty if no move leads to a place with a route."""
         due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL)]
         due[0] = [_root(player)]
@@ -153,7 +153,7 @@ class Foresight:
         _, first = np.unique(cells, axis=0, return_index=True)
         return bodies.take(order[np.sort(first)[: self._kept]])
 
-    def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> Plan:
+    def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> ActionPlan:
         """Trace back the plan that led to a body."""
         actions: list[Action] = []
         places: list[Point] = []
@@ -167,7 +167,7 @@ class Foresight:
                 place = bodies.trails[row, step]
                 places.append((float(place[0]), float(place[1]), float(place[2])))
             time, row = began, int(bodies.parents[row])
-        return Plan(tuple(reversed(actions)), tuple(reversed(places)))
+        return ActionPlan(tuple(reversed(actions)), tuple(reversed(places)))
 
 
 def _root(player: PlayerState) -> _Bodies:

@@ -58,7 +58,7 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
     """The entity whose distance an atom depends on, or None."""
-    read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Signal))
+    read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue))
     return next((distances[name] for name in read if name in distances), None)
 
 

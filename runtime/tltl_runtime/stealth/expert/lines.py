@@ -21,12 +21,12 @@ _ASIDE: Final = 0.15
 
 
 @lru_cache(maxsize=64)
-def lines_of(level: Level, shut: frozenset[int]) -> Lines:
+def lines_of(level: Level, shut: frozenset[int]) -> LinesOfSight:
     """Return the lines of sight while the given barriers are shut, cached per process."""
-    return Lines(level, shut)
+    return LinesOfSight(level, shut)
 
 
-class Lines:
+class LinesOfSight:
     """Lines of sight to the places of a lattice, computed on demand; movers do not block them."""
 
     def __init__(self, level: Level, shut: frozenset[int]) -> None:

@@ -13,7 +13,7 @@ from tltl_runtime.stealth.level import Box, Level, Mover, Point
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.geometry import around
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS
-from tltl_runtime.stealth.world.way import Way
+from tltl_runtime.stealth.world.way import MoverPath
 
 _SEEN: Final = 1e-6
 """A mover farther than this from its predicted position, in metres, is somewhere else."""
@@ -24,7 +24,7 @@ class Clocks:
 
     def __init__(self, level: Level) -> None:
         self._movers = level.movers
-        self._ways = [Way(mover) for mover in level.movers]
+        self._ways = [MoverPath(mover) for mover in level.movers]
         self._clocks = [mover.offset for mover in level.movers]
         self._time = 0.0
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.expert.lattice import ACTIONS, CROUCHED, FAR, SPRINTS, WAYS, Costs, Lattice, lattice_of
-from tltl_runtime.stealth.expert.lines import Lines, lines_of
+from tltl_runtime.stealth.expert.lines import LinesOfSight, lines_of
 from tltl_runtime.stealth.expert.routes import shut_of
 from tltl_runtime.stealth.expert.watch import Outlook, Watch
 from tltl_runtime.stealth.level import Level, Point
@@ -85,7 +85,7 @@ class Sneaker:
             costs[SPRINTS] += FAR
         return ACTIONS[int(costs.argmin())]
 
-    def _make_plan(self, lattice: Lattice, lines: Lines, way: Costs) -> list[tuple[Costs, Costs]]:
+    def _make_plan(self, lattice: Lattice, lines: LinesOfSight, way: Costs) -> list[tuple[Costs, Costs]]:
         """Return the cost of ending each decision at each place, standing and crouched.
 
         The cost includes the rest of the route.
@@ -100,7 +100,7 @@ class Sneaker:
             rest = np.where(at_goal, np.float32(0), lattice.best(standing, crouched, _EXTRA))
         return plan[::-1]
 
-    def _sight_prices(self, lattice: Lattice, lines: Lines, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
+    def _sight_prices(self, lattice: Lattice, lines: LinesOfSight, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
         """The price of being at each place at the end of each decision.
 
         The result is float32 [decisions, 2, places].

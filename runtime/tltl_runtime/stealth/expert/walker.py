@@ -11,7 +11,7 @@ from itertools import product
 from math import dist, hypot
 from typing import Final
 
-from tltl_runtime.stealth.expert.foresight import LONGEST_FALL, Foresight, Move, Plan
+from tltl_runtime.stealth.expert.foresight import LONGEST_FALL, ActionPlan, Foresight, HeldAction
 from tltl_runtime.stealth.expert.motion import Motion
 from tltl_runtime.stealth.expert.movers import Clocks
 from tltl_runtime.stealth.expert.routes import Field, routes_of, shut_of
@@ -50,7 +50,7 @@ class Walker:
     def reset(self) -> None:
         """Forget the previous episode."""
         self._clocks = Clocks(self.level)
-        self._plan = Plan((), ())
+        self._plan = ActionPlan((), ())
         self._for: object = None
         self._followed = 0
 
@@ -72,7 +72,7 @@ class Walker:
     def _is_astray(self, snapshot: Snapshot) -> bool:
         return dist(self._plan.places[self._followed - 1], snapshot.player.position) > _ASTRAY
 
-    def _search(self, snapshot: Snapshot, goal: Point) -> Plan:
+    def _search(self, snapshot: Snapshot, goal: Point) -> ActionPlan:
         here = snapshot.player.position
         shut = shut_of(snapshot)
         field = routes_of(self.level, shut).field_from(here, goal)
@@ -83,20 +83,20 @@ class Walker:
         swept = [self._clocks.swept(step) for step in range(ahead + LONGEST_FALL)]
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
-    def _moves(self, field: Field, snapshot: Snapshot) -> list[Move]:
+    def _moves(self, field: Field, snapshot: Snapshot) -> list[HeldAction]:
         """The moves to choose from at this place."""
         player = snapshot.player
         way = field.way(player.position, _NEAR)
         movers = any(_away(box, player.position) <= _NEAR for box in self._clocks.swept(0, 8))
-        moves = [Move(action) for action in _WALKS]
+        moves = [HeldAction(action) for action in _WALKS]
         if movers or player.crouching or any(leg.kind == "crouch" for leg in way):
-            moves += [Move(action) for action in _CROUCHES]
+            moves += [HeldAction(action) for action in _CROUCHES]
         # Near movers, jumps are allowed everywhere on the route, else only where the route needs them.
         headings = _headings(player.position, [(movers or leg.kind in ("climb", "leap"), leg.place) for leg in way])
         for x, y in sorted(headings):
-            moves += [Move((x, y, 1, 0, sprint), hold) for sprint in (0, 1) for hold in _HOLDS]
+            moves += [HeldAction((x, y, 1, 0, sprint), hold) for sprint in (0, 1) for hold in _HOLDS]
         if any(leg.kind == "drop" for leg in way) or not player.grounded:
-            moves += [Move((x, y, 0, 0, 0), hold) for x, y in _DIRECTIONS for hold in (1, 2)]
+            moves += [HeldAction((x, y, 0, 0, 0), hold) for x, y in _DIRECTIONS for hold in (1, 2)]
         return moves
 
 

@@ -15,7 +15,7 @@ from typing import Final, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.enemies.enemy import Guard, Mode, PlayerView
+from tltl_runtime.stealth.enemies.enemy import EnemyGuard, Mode, PlayerView
 from tltl_runtime.stealth.enemies.grid import Floor, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, corners
 from tltl_runtime.stealth.level import Level
@@ -58,7 +58,9 @@ class Watch:
         self._rng = np.random.default_rng(self._seed)
         self._open: tuple[bool, ...] = (False,) * len(self.level.barriers)
         self.floor = self._update_floor()
-        self.models = [[Guard(enemy, self.floor, self._rng) for _ in range(_MODELS)] for enemy in self.level.enemies]
+        self.models = [
+            [EnemyGuard(enemy, self.floor, self._rng) for _ in range(_MODELS)] for enemy in self.level.enemies
+        ]
         self._time = 0.0
         self._player = self.level.start.position
 
@@ -94,8 +96,8 @@ class Watch:
         unseen = PlayerView((x, y, _BURIED))
         return [self._outlook(models, decisions, unseen) for models in self.models]
 
-    def _outlook(self, models: Sequence[Guard], decisions: int, unseen: PlayerView) -> Outlook:
-        distinct: dict[tuple[object, ...], tuple[Guard, int]] = {}
+    def _outlook(self, models: Sequence[EnemyGuard], decisions: int, unseen: PlayerView) -> Outlook:
+        distinct: dict[tuple[object, ...], tuple[EnemyGuard, int]] = {}
         for model in models:
             # A model that draws moves differently each time; of other models in the same state one is enough.
             draws = model.kind.branches or model.mode == "search"
@@ -111,7 +113,7 @@ class Watch:
         shares = np.array([count for _, count in distinct.values()], dtype=np.float64)
         return Outlook(poses, shares / shares.sum())
 
-    def _put(self, model: Guard, pose: tuple[float, float, float], mode: Mode) -> Guard:
+    def _put(self, model: EnemyGuard, pose: tuple[float, float, float], mode: Mode) -> EnemyGuard:
         """Move a model to its enemy's pose, with a task that fits the enemy's mode."""
         before = model.mode
         model.x, model.y, model.yaw = pose
@@ -131,7 +133,7 @@ class Watch:
             self._guess(model)
         return model
 
-    def _guess(self, model: Guard) -> None:
+    def _guess(self, model: EnemyGuard) -> None:
         """Guess the point of the route, or the narrow place beside it, that the model walks to."""
         model.leg = int(self._rng.integers(len(model.route)))
         model.gap = model.next_gap() if model.kind.branches and self._rng.random() < _GUESSED else None
@@ -145,6 +147,6 @@ class Watch:
         return grid_of(level).floor(shut)
 
 
-def _is_at(model: Guard, pose: tuple[float, float, float]) -> bool:
+def _is_at(model: EnemyGuard, pose: tuple[float, float, float]) -> bool:
     x, y, yaw = pose
     return hypot(model.x - x, model.y - y) < _SAME and abs(remainder(model.yaw - yaw, 2 * pi)) < _SAME

@@ -20,7 +20,7 @@ from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
 from tltl_runtime.stealth.levels.place import overlays_of, shown_variant
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.stealth.levels.room import check_room
-from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, Table, suggestion, wrong
+from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, CheckedTable, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.stealth.levels.ways import check_ways
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, replace
@@ -127,7 +127,7 @@ class _Loading:
         self.changes: list[str] = []
         self.places = parts.Places({}, {}, [])
         self.root = self._read(path, path.name)
-        self.table = Table(self.root, f"the level `{path.stem}`", self.log)
+        self.table = CheckedTable(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()
 
     def level(self, variant: str) -> Level:
@@ -164,7 +164,7 @@ class _Loading:
             variant=shown_variant(variant),
             doc=doc,
             bounds=bounds,
-            start=parts.start(start if start is not None else Table(self.root, "the start", [])),
+            start=parts.start(start if start is not None else CheckedTable(self.root, "the start", [])),
             solids=(*parts.enclosure(bounds), *solids),
             switches=tuple(switches),
             barriers=tuple(barriers),
@@ -242,11 +242,11 @@ class _Loading:
             self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.place("at"),), help_))
         return box
 
-    def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[Table], dict[str, Table]]:
+    def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
         """Return the level's uses of parts, and its assets by name, with all overlays applied."""
         uses = self.table.tables("use")
         references = [(use, "asset") for use in uses]
-        references += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
+        references += [(CheckedTable(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
         entries: dict[str, Entry] = {}
         for table, key in references:
             name = table.text(key)
@@ -267,7 +267,7 @@ class _Loading:
                 trees = overlay.apply(change.value, trees, self.log)
         self.check()
         assets = {
-            name: Table(Entry(tree, entries[name].label), f"the asset `{name}`", self.log)
+            name: CheckedTable(Entry(tree, entries[name].label), f"the asset `{name}`", self.log)
             for name, tree in trees.items()
         }
         for table in assets.values():
@@ -299,11 +299,11 @@ class _Loading:
         return None
 
     def _used(
-        self, uses: list[Table], assets: dict[str, Table], kinds: dict[str, EnemyKind]
+        self, uses: list[CheckedTable], assets: dict[str, CheckedTable], kinds: dict[str, EnemyKind]
     ) -> tuple[list[Solid], list[Mover], list[Region]]:
         """Return the solids, movers and regions of the parts that the level uses."""
         solids: list[Solid] = []
-        prefixes: dict[str, Table] = {}
+        prefixes: dict[str, CheckedTable] = {}
         movers: list[Mover] = []
         regions: list[Region] = []
         for use in uses:

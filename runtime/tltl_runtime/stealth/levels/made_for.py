@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
+from tltl_runtime.stealth.levels.table import CheckedTable, suggestion, wrong
 from tltlc.api import Diagnostic, fileio
 
 LEVELS: Final = Path(__file__).parents[2] / "levels"
@@ -15,7 +15,7 @@ SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
 """The folders of the levels' specs: in an installed package, and in a checkout."""
 
 
-def made_for(table: Table, level: Path) -> str:
+def made_for(table: CheckedTable, level: Path) -> str:
     """Return the spec under the key ``spec`` of a level as ``FILE:NAME``.
 
     The file is beside the level or in the package. Return an empty text if there is no spec, or if

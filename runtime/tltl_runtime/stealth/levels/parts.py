@@ -21,7 +21,7 @@ from tltl_runtime.stealth.level import (
     Switch,
     Unlock,
 )
-from tltl_runtime.stealth.levels.table import Table, suggestion
+from tltl_runtime.stealth.levels.table import CheckedTable, suggestion
 from tltlc.api import Diagnostic, Label, record
 
 _OUTER_WALL: Final = 0.2
@@ -54,7 +54,7 @@ class Places:
     references: list[tuple[str, str, Label]]
     """The kind of thing that a reference names, the name, and the label of the reference."""
 
-    def put(self, name: str, table: Table, spot: str) -> None:
+    def put(self, name: str, table: CheckedTable, spot: str) -> None:
         """Record the labels of a thing; a name that is already taken is an error (TLT0804)."""
         label = table.place("name")
         if name in self.names:
@@ -71,12 +71,12 @@ class Places:
         """Return the labels of the positions of things; the outer walls have none."""
         return tuple(self.spots[name] for name in names if name in self.spots)
 
-    def refer(self, kind: str, table: Table, key: str, names: tuple[str, ...]) -> None:
+    def refer(self, kind: str, table: CheckedTable, key: str, names: tuple[str, ...]) -> None:
         """Record that a key refers to things of a kind."""
         self.references.extend((kind, name, table.place(key)) for name in names)
 
 
-def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
+def solids(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
     """Read the walls, low obstacles, platforms and stairs of a level or a part."""
     solids = []
     for kind in _SOLIDS:
@@ -95,13 +95,13 @@ def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix:
     return solids
 
 
-def box(table: Table, shift: Point = (0.0, 0.0, 0.0)) -> Box:
+def box(table: CheckedTable, shift: Point = (0.0, 0.0, 0.0)) -> Box:
     """Read a box from ``at``, the middle of its base, and ``size``."""
     (x, y, z), (dx, dy, dz) = _moved(table.point("at"), shift), table.size()
     return Box(_rounded((x - dx / 2, y - dy / 2, z)), _rounded((x + dx / 2, y + dy / 2, z + dz)))
 
 
-def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
+def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
     """Return one box per step, each reaching down to the height at which the stairs begin."""
     foot, top = _moved(table.point("from"), shift), _moved(table.point("to"), shift)
     width = table.number("width", low=0.7, high=50.0)
@@ -130,7 +130,7 @@ def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
     return boxes
 
 
-def movers(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
+def movers(table: CheckedTable, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
     """Read the movers of a level or a part; in files, a path is that of the middle of the base."""
     movers = []
     for item in table.tables("mover"):
@@ -146,7 +146,7 @@ def movers(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix:
     return movers
 
 
-def switches(table: Table, places: Places) -> list[Switch]:
+def switches(table: CheckedTable, places: Places) -> list[Switch]:
     """Read the switches of a level."""
     switches = []
     for item in table.tables("switch"):
@@ -157,7 +157,7 @@ def switches(table: Table, places: Places) -> list[Switch]:
     return switches
 
 
-def barriers(table: Table, places: Places) -> list[Barrier]:
+def barriers(table: CheckedTable, places: Places) -> list[Barrier]:
     """Read the barriers and lasers of a level."""
     barriers = []
     for kind, key in (("solid", "barrier"), ("laser", "laser")):
@@ -171,7 +171,7 @@ def barriers(table: Table, places: Places) -> list[Barrier]:
     return barriers
 
 
-def unlocks(table: Table, places: Places) -> list[Unlock]:
+def unlocks(table: CheckedTable, places: Places) -> list[Unlock]:
     """Read the random unlocks of a level."""
     unlocks = []
     for item in table.tables("unlock"):
@@ -187,7 +187,7 @@ def unlocks(table: Table, places: Places) -> list[Unlock]:
     return unlocks
 
 
-def exits(table: Table, places: Places) -> list[Exit]:
+def exits(table: CheckedTable, places: Places) -> list[Exit]:
     """Read the exits of a level."""
     exits = []
     for item in table.tables("exit"):
@@ -198,7 +198,7 @@ def exits(table: Table, places: Places) -> list[Exit]:
     return exits
 
 
-def enemies(table: Table, kinds: dict[str, EnemyKind], places: Places) -> list[Enemy]:
+def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: Places) -> list[Enemy]:
     """Read the enemies of a level; ``kinds`` are the valid enemy kinds, by asset name."""
     enemies = []
     for item in table.tables("enemy"):
@@ -210,7 +210,7 @@ def enemies(table: Table, kinds: dict[str, EnemyKind], places: Places) -> list[E
     return enemies
 
 
-def enemy_kind(table: Table, name: str) -> EnemyKind:
+def enemy_kind(table: CheckedTable, name: str) -> EnemyKind:
     """Read an asset of type ``enemy``; angles are in degrees in files."""
     kind = EnemyKind(
         name=name,
@@ -236,7 +236,7 @@ def enemy_kind(table: Table, name: str) -> EnemyKind:
     return kind
 
 
-def start(table: Table) -> Start:
+def start(table: CheckedTable) -> Start:
     """Read the player's start."""
     start = Start(
         table.point("at"),
@@ -247,7 +247,7 @@ def start(table: Table) -> Start:
     return start
 
 
-def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> Sensors:
+def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: Places) -> Sensors:
     """Read the agent's sensors; by default every entity, `_VARIABLES` and no map."""
     if table is None:
         return Sensors(entities, _VARIABLES, None)

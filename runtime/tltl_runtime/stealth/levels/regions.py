@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from tltl_runtime.stealth.level import Box, Mover, Point, Region, Solid
 from tltl_runtime.stealth.levels.parts import box
-from tltl_runtime.stealth.levels.table import Table
+from tltl_runtime.stealth.levels.table import CheckedTable
 
 
-def named_regions(table: Table) -> tuple[Region, ...]:
+def named_regions(table: CheckedTable) -> tuple[Region, ...]:
     """Return the regions that the level itself names, under ``[[region]]``."""
     regions = []
     for item in table.tables("region"):

@@ -10,7 +10,7 @@ from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.parts import Places
 from tltl_runtime.stealth.world.geometry import around
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltl_runtime.stealth.world.way import Way
+from tltl_runtime.stealth.world.way import MoverPath
 from tltlc.api import Diagnostic, Label
 
 _PLAYER: Final = PlayerKind()
@@ -52,7 +52,7 @@ def _outside(
 
 def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
     """Report what overlaps the player's start, including movers at their initial positions."""
-    begins = [(mover.name, Box(*around(Way(mover).at(mover.offset), mover.size))) for mover in level.movers]
+    begins = [(mover.name, Box(*around(MoverPath(mover).at(mover.offset), mover.size))) for mover in level.movers]
     for name, box in (*boxes, *begins):
         if _overlap(_player(level), box):
             help_ = "move one of them, or lessen the start's `spread`: the player is 0.6 m wide and 1.8 m high"

@@ -29,7 +29,7 @@ FARTHEST: Final = 1000.0
 """The greatest absolute value of a coordinate, in metres."""
 
 
-class Table:
+class CheckedTable:
     """A table that is read key by key; errors go to ``log``, and a stand-in value is returned.
 
     ``what`` is the name of the table in messages. Call :meth:`done` at the end: it reports the keys
@@ -87,13 +87,13 @@ class Table:
         convert = lambda value: tuple(map(_point, value))  # noqa: E731
         return self._read(key, REQUIRED, f"a list of {least} or more points [x, y, z] in metres", is_valid, (), convert)
 
-    def table(self, key: str, *, needed: bool = True) -> Table | None:
+    def table(self, key: str, *, needed: bool = True) -> CheckedTable | None:
         """Read a table; return None if it is missing or is not a table."""
         entry = self.entries.get(key)
         value = self._read(key, REQUIRED if needed else {}, "a table", lambda v: isinstance(v, dict), None, lambda v: v)
-        return Table(entry, f"`[{key}]`", self.log) if entry is not None and value is not None else None
+        return CheckedTable(entry, f"`[{key}]`", self.log) if entry is not None and value is not None else None
 
-    def tables(self, key: str) -> list[Table]:
+    def tables(self, key: str) -> list[CheckedTable]:
         """Read a list of tables; empty if it is missing."""
         self._asked.append(key)
         entry = self.entries.get(key)
@@ -102,7 +102,7 @@ class Table:
         if not isinstance(entry.value, list) or not all(isinstance(item, Entry) for item in entry.value):
             self.log.append(wrong(entry, key, f"tables, each under a line `[[{key}]]`"))
             return []
-        return [Table(item, f"`[[{key}]]`", self.log) for item in entry.value]
+        return [CheckedTable(item, f"`[[{key}]]`", self.log) for item in entry.value]
 
     def place(self, key: str) -> Label:
         """Return the label of a key, or of the table's header if the key is missing."""

@@ -95,7 +95,8 @@ def _broken(episode: Episode) -> list[tuple[str, bool]]:
 
 def _reads_health(atom: Atom) -> bool:
     return any(
-        isinstance(node, expressions.Signal) and node.name == "health" for node in expressions.nodes(atom.expression)
+        isinstance(node, expressions.SignalValue) and node.name == "health"
+        for node in expressions.nodes(atom.expression)
     )
 
 

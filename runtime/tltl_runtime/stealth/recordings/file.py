@@ -39,7 +39,7 @@ _REFUSALS: Final = Refusals("an", "episode", "TLT0820", "TLT0821", "TLT0822", ag
 
 
 @record
-class Names:
+class AxisNames:
     """The names of the entries along an axis."""
 
     signals: tuple[str, ...]
@@ -65,7 +65,7 @@ class Meta:
     reward: RewardOptions
     versions: Mapping[str, str]
     modes: tuple[str, ...]
-    names: Names
+    names: AxisNames
     level: Level
 
 
@@ -182,9 +182,9 @@ def _modes(episode: Episode) -> tuple[str, ...]:
     return tuple(sorted({mode for shot in episode.snapshots for mode in shot.modes}))
 
 
-def _names(level: Level, fspa: Fspa) -> Names:
+def _names(level: Level, fspa: Fspa) -> AxisNames:
     groups = (fspa.signals, fspa.atoms, level.enemies, level.movers, level.switches, level.barriers)
-    return Names(*(tuple(item.name for item in group) for group in groups))
+    return AxisNames(*(tuple(item.name for item in group) for group in groups))
 
 
 # --- reading untrusted files ------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.capsules import Capsules
 from tltl_runtime.stealth.world.geometry import around, contact
 from tltl_runtime.stealth.world.player import DECISION
-from tltl_runtime.stealth.world.way import Way
+from tltl_runtime.stealth.world.way import MoverPath
 
 _REACH = 1.5
 """Distance within which the player can touch a mover during one decision, in metres."""
@@ -28,7 +28,7 @@ class Moving:
 
     def __init__(self, client: int, mover: Mover) -> None:
         self._client = client
-        self._way = Way(mover)
+        self._way = MoverPath(mover)
         self._size = mover.size
         self.clock = mover.offset
         self.place = self._way.at(self.clock)

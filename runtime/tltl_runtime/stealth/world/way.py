@@ -9,7 +9,7 @@ from math import sqrt
 from tltl_runtime.stealth.level import Mover, Point
 
 
-class Way:
+class MoverPath:
     """The position of a mover over its own clock.
 
     It moves there and back, or in a loop if its path is closed.

@@ -23,7 +23,7 @@ Actions = list[list[int]]
 
 
 @record
-class Start:
+class EpisodeStart:
     """The start of an episode: its seed, and ``actions`` [n, branches] to replay first.
 
     ``part`` locates the start on a way: the end of the way and the index of the part.  It is None
@@ -104,7 +104,7 @@ class Episodes:
     All methods raise WorkerError, with the seeds of the starts, if a worker is lost.
     """
 
-    def __init__(self, env: WorkerVectorEnv, draw: Callable[[], Start]) -> None:
+    def __init__(self, env: WorkerVectorEnv, draw: Callable[[], EpisodeStart]) -> None:
         self._env = env
         self._draw = draw
         self._next = [draw() for _ in range(env.num_envs)]

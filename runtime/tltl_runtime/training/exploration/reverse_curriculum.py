@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.snapshot import BRANCHES
-from tltl_runtime.training.exploration.reset_distribution import Actions, Start
-from tltl_runtime.training.exploration.search import Failure, Way
+from tltl_runtime.training.exploration.reset_distribution import Actions, EpisodeStart
+from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 
 _WAYS = 6
 """For each end, the shortest ways are kept, at most this many and one per seed."""
@@ -66,13 +66,13 @@ class Restarts:
     def __init__(self, parts: int, generator: np.random.Generator) -> None:
         self._random = generator
         self._parts = parts
-        self.ways: dict[int, list[Way]] = {}
+        self.ways: dict[int, list[SuccessfulEpisode]] = {}
         self.rates: dict[int, NDArray[np.float64]] = {}
         self.passed = 0.0
         self.lengths = np.full(2, 100.0)
-        self.failures: deque[Failure] = deque(maxlen=_FAILURES)
+        self.failures: deque[FailedEpisode] = deque(maxlen=_FAILURES)
 
-    def add(self, way: Way) -> None:
+    def add(self, way: SuccessfulEpisode) -> None:
         """Keep a way if it is among the shortest with its end."""
         if way.end not in self.ways:
             if len(self.ways) == _ENDS:
@@ -81,20 +81,20 @@ class Restarts:
             self.rates[way.end] = np.zeros(self._parts)
             # Learning begins at the last part of a way.
             self.rates[way.end][-1] = 0.5
-        shortest: dict[int, Way] = {}
+        shortest: dict[int, SuccessfulEpisode] = {}
         for candidate in sorted([*self.ways[way.end], way], key=lambda candidate: len(candidate.actions)):
             # At most one way per seed, so that the agent does not memorise what the guards do in it.
             shortest.setdefault(candidate.seed, candidate)
         self.ways[way.end] = list(shortest.values())[:_WAYS]
 
-    def draw(self) -> Start:
+    def draw(self) -> EpisodeStart:
         """Draw the start of the next episode.
 
         The better the agent is from the level's start, the more often episodes begin there.
         """
         seed = int(self._random.integers(2**31))
         if not self.ways or self._random.random() < self._fresh():
-            return Start(seed)
+            return EpisodeStart(seed)
         ends = list(self.rates)
         weights = np.concatenate([_weights(rates) for rates in self.rates.values()])
         index, part = divmod(int(self._random.choice(len(weights), p=weights / weights.sum())), self._parts)
@@ -102,9 +102,9 @@ class Restarts:
         way = ways[self._random.integers(len(ways))]
         at = int(len(way.actions) * (part + self._random.random()) / self._parts)
         times, extra = _SPARE
-        return Start(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + extra)
+        return EpisodeStart(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + extra)
 
-    def lessons(self, count: int) -> list[tuple[Way, int]]:
+    def lessons(self, count: int) -> list[tuple[SuccessfulEpisode, int]]:
         """Draw up to ``count`` decisions to imitate, each as a way and an index into its actions.
 
         Decisions are drawn like starts.  A decision is dropped with the probability that the agent
@@ -126,7 +126,7 @@ class Restarts:
             decisions.append((way, int(len(way.actions) * (part + self._random.random()) / self._parts)))
         return decisions
 
-    def ended(self, start: Start, actions: Actions, end: int | None, state: int | None = None) -> None:
+    def ended(self, start: EpisodeStart, actions: Actions, end: int | None, state: int | None = None) -> None:
         """Update the curriculum with the result of an episode that began at ``start``.
 
         ``actions`` are all of its actions, including the replayed ones.  ``end`` is the end of a
@@ -140,12 +140,12 @@ class Restarts:
         if start.part is None:
             self.passed += from_start * (success - self.passed)
             if not success and state is not None:
-                self.failures.append(Failure(start.seed, actions, state))
+                self.failures.append(FailedEpisode(start.seed, actions, state))
         else:
             way_end, part = start.part
             self.rates[way_end][part] += of_part * (success - self.rates[way_end][part])
         if end is not None:
-            self.add(Way(start.seed, actions, end))
+            self.add(SuccessfulEpisode(start.seed, actions, end))
 
     def state(self) -> dict[str, NDArray[Any]]:
         """Return everything but the generator as arrays, for :meth:`load`."""
@@ -164,14 +164,14 @@ class Restarts:
             _check_played(name, state)
         self.ways, self.rates = {}, {}
         for way in _lists("way", state):
-            self.add(Way(*way))
+            self.add(SuccessfulEpisode(*way))
         _check_array("rates", state, np.float64, (len(self.ways), self._parts) if self.ways else (0,))
         _check_array("passed", state, np.float64, (1,))
         _check_array("lengths", state, np.float64, (2,))
         _check_figures(state)
         self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
         self.failures.clear()
-        self.failures.extend(Failure(*fields) for fields in _lists("failure", state))
+        self.failures.extend(FailedEpisode(*fields) for fields in _lists("failure", state))
         self.passed = float(state["passed"][0])
         self.lengths = state["lengths"].copy()
 

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.training.exploration.reset_distribution import Actions, Episodes, Start
+from tltl_runtime.training.exploration.reset_distribution import Actions, Episodes, EpisodeStart
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import record
 
@@ -66,7 +66,7 @@ class Exploration:
 
 
 @record
-class Way:
+class SuccessfulEpisode:
     """An episode that met the spec: its seed, all actions, and its ``end`` from :func:`end_of`."""
 
     seed: int
@@ -118,7 +118,7 @@ def together(before: Searched, later: Searched) -> Searched:
 
 
 @record
-class Failure:
+class FailedEpisode:
     """A failed episode from the level's start: its seed, all actions, and the state of failure."""
 
     seed: int
@@ -126,7 +126,7 @@ class Failure:
     state: int
 
 
-class Search:
+class TrajectorySearch:
     """A search in the environments of ``env``.
 
     The environments are :class:`~tltl_runtime.training.exploration.reset_distribution.Replayed`.
@@ -141,7 +141,7 @@ class Search:
         env: WorkerVectorEnv,
         exploration: Exploration,
         seed: np.random.SeedSequence,
-        failures: Sequence[Failure] = (),
+        failures: Sequence[FailedEpisode] = (),
         player: Player | None = None,
     ) -> None:
         self._env = env
@@ -152,7 +152,7 @@ class Search:
         self._random = np.random.default_rng(seed)
         self._known = _Known(self._random)
         self._places: set[tuple[int, int]] = set()
-        self.ways: list[Way] = []
+        self.ways: list[SuccessfulEpisode] = []
 
     def run(self) -> Iterator[Searched]:
         """Search; yield the progress from time to time, and once at the end."""
@@ -180,7 +180,11 @@ class Search:
                     if self._note(episodes, row, infos):
                         left[row] = max(left[row], _BURST // 2)
                 elif infos["final_info"]["success"][row]:
-                    self._add(Way(episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)))
+                    self._add(
+                        SuccessfulEpisode(
+                            episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)
+                        )
+                    )
             spent = ~over & ~by_player & (left <= 0)
             episodes.turn(over)
             if spent.any():
@@ -199,13 +203,13 @@ class Search:
         self._places.add((state, cell))
         return self._known.note(state, cell, seed, episodes.actions[row])
 
-    def _add(self, way: Way) -> None:
+    def _add(self, way: SuccessfulEpisode) -> None:
         if all(known.seed != way.seed for known in self.ways):
             self.ways.append(way)
             self._known.forget(way.seed)
             self._failures = [failure for failure in self._failures if failure.seed != way.seed]
 
-    def _draw(self) -> Start:
+    def _draw(self) -> EpisodeStart:
         """Draw the start of an episode: mostly a known place.
 
         Otherwise a point in the second half of a failed episode, or a new seed if there are no
@@ -214,10 +218,10 @@ class Search:
         if self._known and self._random.random() >= (_FAILED if self._failures else _FRESH):
             return self._known.draw()
         if not self._failures:
-            return Start(int(self._random.integers(2**31)))
+            return EpisodeStart(int(self._random.integers(2**31)))
         failure = self._failures[self._random.integers(len(self._failures))]
         length = len(failure.actions)
-        return Start(failure.seed, failure.actions[: int(self._random.integers(length // 2, length))])
+        return EpisodeStart(failure.seed, failure.actions[: int(self._random.integers(length // 2, length))])
 
     def _searched(self, steps: int, replayed: int, seconds: float, *, complete: bool) -> Searched:
         lengths = tuple(sorted(len(way.actions) for way in self.ways))
@@ -229,7 +233,7 @@ class _Known:
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random
-        self._starts: dict[int, dict[int, Start]] = {}
+        self._starts: dict[int, dict[int, EpisodeStart]] = {}
         self._begun: dict[int, dict[int, int]] = {}
 
     def __bool__(self) -> bool:
@@ -240,11 +244,11 @@ class _Known:
         starts = self._starts.setdefault(state, {})
         known = starts.get(cell)
         if known is None or len(actions) < len(known.actions):
-            starts[cell] = Start(seed, list(actions))
+            starts[cell] = EpisodeStart(seed, list(actions))
             self._begun.setdefault(state, {}).setdefault(cell, 0)
         return known is None
 
-    def draw(self) -> Start:
+    def draw(self) -> EpisodeStart:
         """Draw a place: first a state uniformly, then a cell with weight 1 / sqrt(1 + times drawn).
 
         States are uniform so that later ones, which have few places, count as much as the first.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
-from tltl_runtime.training.exploration.search import Player, Search, Searched
+from tltl_runtime.training.exploration.search import Player, Searched, TrajectorySearch
 from tltl_runtime.training.ppo.distributed import Peers
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.ppo.streams import Purpose, stream
@@ -36,7 +36,9 @@ def searched_first(
         before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
         if before is None or before.complete or before.lengths or run.settings.stop.is_late(seconds):
             return None
-    search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration), player=player)
+    search = TrajectorySearch(
+        played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration), player=player
+    )
     return _run_search(run, search, restarts, seconds, searching)
 
 
@@ -48,13 +50,15 @@ def searched_again(run: Run, own: Peers, env: TrainingEnv, state: Checkpoint, se
     if env.restarts is None or not env.restarts.failures:
         return None
     seed = stream(run, own, Purpose.SEARCH, state.iteration)
-    search = Search(env.env, run.settings.exploration, seed, env.restarts.failures)
+    search = TrajectorySearch(env.env, run.settings.exploration, seed, env.restarts.failures)
     searched = _run_search(run, search, env.restarts, state.seconds, searching)
     env.begin_anew()
     return searched
 
 
-def _run_search(run: Run, search: Search, restarts: Restarts, before_s: float, searching: Searching) -> Searched:
+def _run_search(
+    run: Run, search: TrajectorySearch, restarts: Restarts, before_s: float, searching: Searching
+) -> Searched:
     """Run a search, at most to the training's limit of minutes; add its ways to the restarts."""
     for searched in search.run():
         searching(searched)

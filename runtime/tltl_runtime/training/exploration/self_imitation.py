@@ -20,7 +20,7 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
-from tltl_runtime.training.exploration.search import Way
+from tltl_runtime.training.exploration.search import SuccessfulEpisode
 
 BATCH: Final = 256
 """The number of decisions that are drawn for an optimiser step."""
@@ -35,7 +35,7 @@ class Lessons:
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], restarts: Restarts) -> None:
         self._make, self._restarts = make, restarts
         self._env: gymnasium.Env[Any, Any] | None = None
-        self._sensed: dict[int, tuple[Way, Mapping[str, NDArray[Any]]]] = {}
+        self._sensed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}
         """Ways and their observations, by ``id`` of the way, which is valid as the way is kept."""
 
     def draw(self) -> tuple[TensorDict, Tensor] | None:
@@ -64,7 +64,7 @@ class Lessons:
         if self._env is not None:
             self._env.close()
 
-    def _observations(self, way: Way) -> Mapping[str, NDArray[Any]]:
+    def _observations(self, way: SuccessfulEpisode) -> Mapping[str, NDArray[Any]]:
         """Return the observations before each decision of a way."""
         self._env = self._env or self._make()
         first, _ = self._env.reset(seed=way.seed)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return
-from tltl_runtime.training.run.report import Window
+from tltl_runtime.training.run.report import EpisodeWindow
 
 Score = tuple[float, float, float]
 """The score of a policy: pass rate, mean progress, mean reward.  Greater is better."""
@@ -54,7 +54,7 @@ class Windows:
         return self.unbroken == self._count
 
     @property
-    def window(self) -> Window:
+    def window(self) -> EpisodeWindow:
         """The statistics of all of the last episodes."""
         return self._window(tuple(self._last))
 
@@ -78,11 +78,11 @@ class Windows:
         self._last.extend(self._loaded(index, *fields) for index, fields in enumerate(state))
         self.unbroken = unbroken
 
-    def _window(self, episodes: tuple[EpisodeSummary, ...]) -> Window:
+    def _window(self, episodes: tuple[EpisodeSummary, ...]) -> EpisodeWindow:
         count = len(episodes)
         ends = Counter(episode.unmet for episode in episodes)
         violated = Counter(episode.unmet for episode in episodes if episode.end == "violation")
-        return Window(
+        return EpisodeWindow(
             count=count,
             successes=sum(episode.success for episode in episodes),
             progress=sum(episode.progress for episode in episodes) / max(count, 1),
@@ -118,7 +118,7 @@ class Standstill:
     def __init__(self, best: float = 0.0, since: int = 0) -> None:
         self._best, self._since = best, since
 
-    def add(self, window: Window, steps: int) -> bool:
+    def add(self, window: EpisodeWindow, steps: int) -> bool:
         """Add the window after ``steps`` of all environments; return whether this is a standstill.
 
         After a standstill, the count of steps begins again.

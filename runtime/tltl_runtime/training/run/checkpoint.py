@@ -27,7 +27,7 @@ _MOST: Final = 2**53
 
 
 @record
-class Best:
+class BestPolicy:
     """The best policy: its score, its weights by name, and the steps after which it had them."""
 
     score: Score
@@ -65,7 +65,7 @@ class Checkpoint:
     processes: tuple[Mapping[str, Tensor], ...]
     window: tuple[tuple[bool, float, int, int, bool], ...]
     unbroken: int
-    best: Best | None
+    best: BestPolicy | None
     met: bool
     standstill: tuple[float, int]
 
@@ -80,7 +80,7 @@ class Checkpoint:
         return self.best.actor if self.best else last
 
 
-_RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}
+_RECORDS: Final[Mapping[str, Any]] = {"best": BestPolicy, "searched": Searched}
 """The fields that are records.  They are saved as dicts, because torch would not load records."""
 _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
@@ -192,9 +192,9 @@ def _check_counts(counts: Mapping[str, float], most: float = _MOST) -> None:
             raise RecordJsonError(f"`{where}` is {value!r:.60}, and a number from 0 to {most:,} was expected")
 
 
-def _best(content: Mapping[str, Any]) -> Best:
+def _best(content: Mapping[str, Any]) -> BestPolicy:
     plain = {name: _lists(content[name]) for name in ("score", "steps")}
-    return from_json(Best, plain, "best", actor=_tensors(content["actor"], "best.actor"))
+    return from_json(BestPolicy, plain, "best", actor=_tensors(content["actor"], "best.actor"))
 
 
 def _object(value: object, where: str) -> Mapping[str, Any]:

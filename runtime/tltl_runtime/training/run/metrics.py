@@ -13,7 +13,7 @@ from typing import Any, Final
 from torch.utils.tensorboard import SummaryWriter
 
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.training.run.report import Report, Window
+from tltl_runtime.training.run.report import EpisodeWindow, TrainingReport
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text
 
 METRICS: Final = "metrics.jsonl"
@@ -47,7 +47,7 @@ class Metrics:
         except OSError as error:
             raise _unwritable(folder, error) from None
 
-    def add(self, report: Report) -> None:
+    def add(self, report: TrainingReport) -> None:
         """Write the metrics of an iteration."""
         measured = measurements(report, self._fspa)
         try:
@@ -63,7 +63,7 @@ class Metrics:
         self._events.close()
 
 
-def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
+def measurements(report: TrainingReport, fspa: Fspa) -> dict[str, Any]:
     """Return a line of ``metrics.jsonl``; ``docs/training.md`` describes it."""
     iteration, window = report.iteration, report.window
     return {
@@ -82,12 +82,12 @@ def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
     }
 
 
-def _ended(window: Window, fspa: Fspa, state: int) -> dict[str, Any]:
+def _ended(window: EpisodeWindow, fspa: Fspa, state: int) -> dict[str, Any]:
     shares = {"share": round(window.states[state], 6), "violated": round(window.violated.get(state, 0.0), 6)}
     return {"state": state, "label": str(fspa.states[state].label), "english": label_text(fspa, state), **shares}
 
 
-def means(window: Window) -> dict[str, float]:
+def means(window: EpisodeWindow) -> dict[str, float]:
     """Return the means over a window, by name."""
     values = (window.pass_rate, window.progress, window.reward, window.steps)
     return {name: round(value, 6) for name, value in zip(OF_THE_WINDOW, values, strict=True)}

@@ -20,7 +20,7 @@ from tltl_runtime.support.record_json import from_json, to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.curve import draw_curve
 from tltl_runtime.training.run.metrics import METRICS, OF_THE_WINDOW, means, read_metrics
-from tltl_runtime.training.run.report import Report, StopReason
+from tltl_runtime.training.run.report import StopReason, TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import fileio, record, replace
@@ -30,7 +30,7 @@ _MOST_POINTS: Final = 200
 _POINT: Final = ("iteration", "steps", "seconds", "pass_rate", "progress", "reward")
 
 
-def write_record(run: Run, last: Report) -> dict[str, Any]:
+def write_record(run: Run, last: TrainingReport) -> dict[str, Any]:
     """Write ``record.json``, ``curve.png`` and the record in the policy file; return the record.
 
     ``last`` is the last report of the training.  The metrics have no lines after it, because the
@@ -54,7 +54,9 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     return document
 
 
-def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def training_record(
+    run: Run, card: Card, last: TrainingReport, measured: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
     """Return the record of a training as JSON data; ``docs/training.md`` describes it.
 
     ``card`` is the card of its policy.  ``measured`` are the lines of ``metrics.jsonl``.

@@ -14,7 +14,7 @@ StopReason = Literal["met", "steps", "minutes"]
 
 
 @record
-class Window:
+class EpisodeWindow:
     """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
     The means are 0 if there is no episode: ``progress`` in [0, 1]; ``reward``, always with the
@@ -54,7 +54,7 @@ class Confirmation:
 
 
 @record
-class Report:
+class TrainingReport:
     """An iteration, and the state of the training after it.
 
     - ``steps`` counts all decisions so far, of all environments and processes.
@@ -76,7 +76,7 @@ class Report:
     iteration: Iteration
     steps: int
     seconds: float
-    window: Window
+    window: EpisodeWindow
     unbroken: int
     confirmation: Confirmation | None
     best_pass_rate: float | None

@@ -21,7 +21,7 @@ from tltl_runtime.stealth.recordings.file import MAX_BYTES
 from tltl_runtime.support.number_text import listed
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.training.imitation.demonstrations import recordings
-from tltl_runtime.training.run.settings import Settings, read_settings
+from tltl_runtime.training.run.settings import TrainingSettings, read_settings
 from tltlc.api import Diagnostic, Fspa, SourceFile, TltlError, compiler, fileio, record, replace
 
 RUN: Final = "run.json"
@@ -77,7 +77,7 @@ class Run:
     level: str
     variant: str
     sensors: Sensors
-    settings: Settings
+    settings: TrainingSettings
     seed: int
     demonstrations: str | None = None
     initial: Initial | None = None
@@ -88,7 +88,7 @@ _PLAIN: Final[Mapping[str, Any]] = {
     "level": str,
     "variant": str,
     "sensors": Sensors,
-    "settings": Settings,
+    "settings": TrainingSettings,
     "seed": int,
     "demonstrations": str | None,
     "initial": Initial | None,

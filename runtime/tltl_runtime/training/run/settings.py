@@ -142,7 +142,7 @@ class Classes:
 
 
 @record
-class Settings:
+class TrainingSettings:
     """All settings of a training except its seed.
 
     With the ``method`` ``imitation``, the settings ``imitation`` apply, and ``exploration`` and
@@ -180,7 +180,7 @@ class Settings:
         return self.exploration.ways > 0 and not self.imitates
 
 
-def read_settings(path: Path | None = None) -> Settings:
+def read_settings(path: Path | None = None) -> TrainingSettings:
     """Return the default settings, overridden by a TOML file.
 
     Raises:
@@ -195,7 +195,7 @@ def read_settings(path: Path | None = None) -> Settings:
     if ppo.minibatches > rollout.envs * rollout.steps:
         title = f"{ppo.minibatches} minibatches are more than there are decisions in a rollout"
         raise TltlError([Diagnostic("TLT0862", title, help=f"give {rollout.envs * rollout.steps} at the most")])
-    return Settings(
+    return TrainingSettings(
         ppo=ppo,
         rollout=rollout,
         network=Network(**values["network"]),
@@ -213,7 +213,7 @@ def default_text() -> str:
     return DEFAULTS.read_text(encoding="utf-8")
 
 
-def settings_text(settings: Settings) -> str:
+def settings_text(settings: TrainingSettings) -> str:
     """Return settings as TOML text: that of the defaults, with other values where they differ."""
     table, lines = "", []
     defaults = read_settings()
@@ -239,7 +239,7 @@ def _toml(value: object) -> str:
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
-def algorithm_name(settings: Settings) -> str:
+def algorithm_name(settings: TrainingSettings) -> str:
     """Return the name of the algorithm's class.
 
     With imitation, :class:`~tltl_runtime.training.imitation.gail.Gail` takes the place of ``PPO``.
@@ -248,7 +248,7 @@ def algorithm_name(settings: Settings) -> str:
     return _GAIL if settings.imitates and name == _PPO else name
 
 
-def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
+def rsl_config(settings: TrainingSettings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
     """Return rsl-rl's configuration for these shapes of observations and branches of actions."""
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)

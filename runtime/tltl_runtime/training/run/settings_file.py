@@ -15,7 +15,7 @@ from tltlc.api import Diagnostic, SourceFile, TltlError, monitors, record
 
 
 @record
-class Number:
+class NumberSetting:
     """A finite number in [low, high], or in (low, high] if ``open``."""
 
     low: float
@@ -79,7 +79,7 @@ class OneOf:
 
 
 @record
-class Text:
+class TextSetting:
     """A text that matches the regular expression ``pattern``; messages describe it as ``what``."""
 
     pattern: str
@@ -93,29 +93,29 @@ class Text:
         return self.what
 
 
-Kind = Number | Whole | Wholes | OneOf | Text
+Kind = NumberSetting | Whole | Wholes | OneOf | TextSetting
 
-_CLASS: Final = Text(r"[A-Za-z_][\w.]*(:[A-Za-z_][\w.]*)?", 'a class, e.g. "package.module:Class"')
+_CLASS: Final = TextSetting(r"[A-Za-z_][\w.]*(:[A-Za-z_][\w.]*)?", 'a class, e.g. "package.module:Class"')
 
 KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     "": {
         "method": OneOf(get_args(Method)),
-        "device": Text(r"cpu|cuda(:\d{1,2})?", 'a device: "cpu", "cuda" or "cuda:0"'),
+        "device": TextSetting(r"cpu|cuda(:\d{1,2})?", 'a device: "cpu", "cuda" or "cuda:0"'),
         "threads": Whole(1, 1024),
-        "checkpoint_s": Number(0.0, 86_400.0),
+        "checkpoint_s": NumberSetting(0.0, 86_400.0),
     },
     "ppo": {
-        "learning_rate": Number(0.0, 1.0, open=True),
-        "entropy": Number(0.0, 10.0),
+        "learning_rate": NumberSetting(0.0, 1.0, open=True),
+        "entropy": NumberSetting(0.0, 10.0),
         "entropy_schedule": OneOf(get_args(EntropySchedule)),
-        "sharpening": Number(1.0, 100.0),
-        "clip": Number(0.0, 10.0, open=True),
-        "lam": Number(0.0, 1.0),
-        "gamma": Number(0.0, 1.0, open=True),
+        "sharpening": NumberSetting(1.0, 100.0),
+        "clip": NumberSetting(0.0, 10.0, open=True),
+        "lam": NumberSetting(0.0, 1.0),
+        "gamma": NumberSetting(0.0, 1.0, open=True),
         "epochs": Whole(1, 1_000),
         "minibatches": Whole(1, 100_000),
-        "value_loss": Number(0.0, 1_000.0),
-        "max_gradient": Number(0.0, 1_000_000.0, open=True),
+        "value_loss": NumberSetting(0.0, 1_000.0),
+        "max_gradient": NumberSetting(0.0, 1_000_000.0, open=True),
         "warm_up": Whole(0, 100_000),
     },
     "rollout": {
@@ -139,12 +139,12 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     },
     "imitation": {
         "demonstrations": Whole(1, 10_000),
-        "cloning": Number(0.0, 1.0),
+        "cloning": NumberSetting(0.0, 1.0),
         "encoding": Whole(1, MAX_WIDTH),
-        "discriminator_rate": Number(0.0, 1.0, open=True),
-        "gradient_penalty": Number(0.0, 10_000.0),
-        "strength": Number(0.0, 1_000.0),
-        "terminal": Number(0.0, 1_000.0),
+        "discriminator_rate": NumberSetting(0.0, 1.0, open=True),
+        "gradient_penalty": NumberSetting(0.0, 10_000.0),
+        "strength": NumberSetting(0.0, 1_000.0),
+        "terminal": NumberSetting(0.0, 1_000.0),
     },
     "reward": {
         "mode": OneOf(monitors.MODES),
@@ -157,7 +157,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "episodes": Whole(1, 100_000),
         "confirmation": Whole(1, 100_000),
         "steps": Whole(1, 10**15),
-        "minutes": Number(0.0, 1_000_000.0),
+        "minutes": NumberSetting(0.0, 1_000_000.0),
     },
     "classes": {"runner": _CLASS, "algorithm": _CLASS},
 }

@@ -23,10 +23,10 @@ from tltl_runtime.training.ppo.policy import card_of, policy_of
 from tltl_runtime.training.ppo.process_exchange import gathered, own_state, set_generators
 from tltl_runtime.training.ppo.streams import Purpose, stream
 from tltl_runtime.training.ppo.windows import Standstill, Windows
-from tltl_runtime.training.run.checkpoint import Best, Checkpoint, copied, damaged
+from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, copied, damaged
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.folder import held
-from tltl_runtime.training.run.report import Confirmation, Report
+from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.requirements import class_of, device_of
 from tltl_runtime.training.run.run import CHECKPOINT, Run, identity
 from tltl_runtime.training.run.settings import algorithm_name, rsl_config
@@ -42,7 +42,7 @@ def train(
     resume: bool = False,
     searching: Searching = lambda searched: None,
     recording: Callable[[Tried], None] = lambda tried: None,
-) -> Generator[Report]:
+) -> Generator[TrainingReport]:
     """Train in ``run.folder``; yield a report after each iteration.  The last one says why it ends.
 
     The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the files of
@@ -139,7 +139,7 @@ class _Training:
         self._keeping = Keeping(run, self._card, begun) if own.rank == 0 else None
         self._tell_time()
 
-    def reports(self) -> Generator[Report]:
+    def reports(self) -> Generator[TrainingReport]:
         """Train to the end."""
         try:
             if self._keeping:
@@ -158,7 +158,7 @@ class _Training:
             if self._keeping:
                 self._keeping.close(self._state)
 
-    def _after(self, iteration: Iteration) -> Report:
+    def _after(self, iteration: Iteration) -> TrainingReport:
         """Update the state with an iteration, and write the metrics and, if due, a checkpoint."""
         exchange = gathered(self._own, iteration, self._runner)
         iteration = exchange.iteration
@@ -236,7 +236,7 @@ class _Training:
         if isinstance(self._runner.alg, Gail):
             self._runner.alg.seconds = self._state.seconds
 
-    def _best(self) -> Best | None:
+    def _best(self) -> BestPolicy | None:
         """Return the best policy so far.
 
         It is the one that played the end of the last window, unless an older one has a better
@@ -247,9 +247,9 @@ class _Training:
         if score is None or (best is not None and score < best.score and not self._windows.met):
             return best
         # The state still has the weights that played the rollout, from before the update.
-        return Best(score, self._state.algorithm["actor_state_dict"], self._state.steps)
+        return BestPolicy(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
-    def _confirmation(self, best: Best, iteration: int) -> Confirmation:
+    def _confirmation(self, best: BestPolicy, iteration: int) -> Confirmation:
         """Confirm the policy that met the spec in all windows; the first process plays."""
         confirmation = None
         if self._own.rank == 0:
@@ -261,10 +261,10 @@ class _Training:
 
     def _report(
         self, state: Checkpoint, iteration: Iteration, confirmation: Confirmation | None, *, checkpointed: bool
-    ) -> Report:
+    ) -> TrainingReport:
         """Return the report of the iteration that led to ``state``."""
         demonstrated = self._runner.env.demonstrated
-        return Report(
+        return TrainingReport(
             iteration=iteration,
             steps=state.steps,
             seconds=state.seconds,

@@ -8,9 +8,9 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.training.ppo.policy import policy_of
-from tltl_runtime.training.run.checkpoint import Best, Checkpoint, write_checkpoint
+from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import Metrics
-from tltl_runtime.training.run.report import Report
+from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run
 
 
@@ -27,7 +27,7 @@ class Keeping:
     def __init__(self, run: Run, card: Card, saved: Checkpoint | None) -> None:
         self._run, self._card = run, card
         self._saved, self._saved_at = saved, time.perf_counter()
-        self._written: Best | None = None
+        self._written: BestPolicy | None = None
         """The best policy in the policy file."""
         self._metrics: Metrics | None = None
 
@@ -44,7 +44,7 @@ class Keeping:
         self.save(state)
         self._metrics = Metrics(self._run.folder, self._run.fspa, after=state.iteration, steps=state.steps)
 
-    def measure(self, report: Report) -> None:
+    def measure(self, report: TrainingReport) -> None:
         """Write the metrics of an iteration."""
         assert self._metrics is not None
         self._metrics.add(report)

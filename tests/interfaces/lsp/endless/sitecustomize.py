@@ -18,7 +18,7 @@ if "--multiprocessing-fork" in sys.orig_argv and "BEGUN" in os.environ:
 
     _analyse = analysis.analyse
 
-    def _analyse_or_never_end(request: analysis.Request) -> analysis.Analysis:
+    def _analyse_or_never_end(request: analysis.Request) -> analysis.DocumentAnalysis:
         if NEVER_ENDS in request.source.text:
             with open(os.environ["BEGUN"], "a", encoding="utf-8") as file:  # noqa: PTH123
                 file.write(f"{request.source.name}\n")

@@ -20,7 +20,7 @@ from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
-from tltl_runtime.regression.retrain.retrained import Retrained, Trained
+from tltl_runtime.regression.retrain.retrained import FinishedRetraining, Retrained
 from tltl_runtime.stealth.level import Box
 from tltlc.automaton.fspa import Text
 from tltlc.core.record import replace
@@ -193,7 +193,7 @@ def test_names_are_escaped() -> None:
 
 
 def test_a_retraining_is_shown_with_its_curve() -> None:
-    trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
+    trained = FinishedRetraining("minutes", 4096, 60.0, 200_000, True, None)
     retrained = Retrained(
         "no_way", f"no way found: {EVIL}", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None
     )
@@ -209,7 +209,7 @@ def test_a_retraining_is_shown_with_its_curve() -> None:
 
 
 def test_the_outcome_of_a_retraining_is_in_the_table() -> None:
-    trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
+    trained = FinishedRetraining("minutes", 4096, 60.0, 200_000, True, None)
     retrained = Retrained("no_way", "no", trained, figures_of(summaries(0, 2)), (0.0, 0.5), None, "a/p", None)
     suite = samples.suite()
     case = replace(suite.cases[1], report=replace(suite.cases[1].report, retrained=retrained))

@@ -11,7 +11,7 @@ from tests.calls import calls
 from tltl_runtime.stealth.levels import parts
 from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.levels.file import load_level, read_level
-from tltl_runtime.stealth.levels.table import Table
+from tltl_runtime.stealth.levels.table import CheckedTable
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span
@@ -78,7 +78,7 @@ def test_steps_of_stairs_and_points_of_paths_count_as_things(tmp_path: Path) -> 
 
 def stairs(count: int) -> Callable[[], object]:
     source = SourceFile("room.toml", "".join(STAIRS.format(number) for number in range(count)))
-    table = Table(Entry(read_tree(source), Label(source, Span(0, 0))), "the level", [])
+    table = CheckedTable(Entry(read_tree(source), Label(source, Span(0, 0))), "the level", [])
     return lambda: parts.solids(table, parts.Places({}, {}, []))
 
 

@@ -16,7 +16,7 @@ from tests.docs.blocks import DOCS, blocks
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.arrays import ARRAYS, Array
-from tltl_runtime.stealth.recordings.file import FORMAT, VERSION, Meta, Names, to_bytes
+from tltl_runtime.stealth.recordings.file import FORMAT, VERSION, AxisNames, Meta, to_bytes
 from tltlc.monitor import RewardOptions
 
 PAGE = DOCS / "episode-log.md"
@@ -63,7 +63,7 @@ def test_the_page_lists_every_key_of_meta() -> None:
     rows = [re.findall(r"`([\w-]+)`", line.split("|")[1]) for line in table("| key of `meta` |")]
     fields: Any = Meta.__match_args__  # type: ignore[attr-defined]
     assert [name for names in rows for name in names] == list(fields)
-    for kind in (Names, RewardOptions):
+    for kind in (AxisNames, RewardOptions):
         assert all(f"`{name}`" in TEXT for name in kind.__match_args__)  # type: ignore[attr-defined]
     assert f"Format `{FORMAT}`, version {VERSION}." in TEXT
 

@@ -16,7 +16,7 @@ from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.physics import World, WorldError
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
-from tltl_runtime.stealth.world.way import Way
+from tltl_runtime.stealth.world.way import MoverPath
 from tltlc.core.record import replace
 
 EAST, WEST, NORTH, STAY, JUMP, CROUCH = (
@@ -298,13 +298,13 @@ def test_starts_are_spread_around_the_start(opened: list[World]) -> None:
 
 def test_a_mover_goes_back_and_forth_or_round() -> None:
     back_and_forth = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0)), speed=1.0, pause=0.5)
-    path = Way(back_and_forth)
+    path = MoverPath(back_and_forth)
     assert [path.at(t)[0] for t in (0.0, 0.5, 1.5, 2.5, 3.0, 4.0, 5.0)] == [0.0, 0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
     round_trip = Mover("m", (1, 1, 1), ((0.0, 0.0, 1.0), (2.0, 0.0, 1.0), (2.0, 2.0, 1.0)), speed=1.0, closed=True)
-    path = Way(round_trip)
+    path = MoverPath(round_trip)
     assert path.at(3.0) == (2.0, 1.0, 1.0)
     assert path.at(4.0 + 8**0.5 / 2) == pytest.approx((1.0, 1.0, 1.0))
-    assert Way(Mover("m", (1, 1, 1), ((1.0, 2.0, 3.0),), speed=1.0)).at(7.0) == (1.0, 2.0, 3.0)
+    assert MoverPath(Mover("m", (1, 1, 1), ((1.0, 2.0, 3.0),), speed=1.0)).at(7.0) == (1.0, 2.0, 3.0)
 
 
 def test_a_mover_keeps_its_schedule_and_pushes_the_player(opened: list[World]) -> None:

@@ -11,11 +11,11 @@ import click
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.interfaces.cli.settings import Settings, source_options, work_of
+from tltlc.interfaces.cli.settings import CompileSettings, source_options, work_of
 from tltlc.io.spec_file import STDIN, split
 
 if TYPE_CHECKING:
-    from tltlc.tools.diff.breaking import Change, Version
+    from tltlc.tools.diff.breaking import FileChange, Version
     from tltlc.tools.diff.revisions import Tree
 
 _OF_SERVICES: Final = ("github", "sarif")
@@ -38,7 +38,7 @@ Examples:
     help="A folder that holds the files as they were; or, where there is no such folder, a revision of git.",
 )
 @source_options
-def command(paths: tuple[str, ...], against: str, settings: Settings, format: str) -> int:  # noqa: A002
+def command(paths: tuple[str, ...], against: str, settings: CompileSettings, format: str) -> int:  # noqa: A002
     """Report what changed in specs, artefacts and libraries that a game or a recorded baseline notices.
 
     An error is what breaks them: specs that are gone or stricter, signals that must be supplied now, predicates that
@@ -60,7 +60,7 @@ def command(paths: tuple[str, ...], against: str, settings: Settings, format: st
             placed = old.placed(diagnostics, path, old.at(path)) if format in _OF_SERVICES else diagnostics
             return old.renamed(placed)
 
-        changes: list[Change] = []
+        changes: list[FileChange] = []
         for path in dict.fromkeys(path for argument in paths for path in _files(argument, old)):
             try:
                 changes.append(_change(path, old, settings))
@@ -104,19 +104,19 @@ def _files(argument: str, old: Tree) -> list[str]:
     return [str(Path(argument, path)) for path in spec_files]
 
 
-def _change(path: str, old: Tree, settings: Settings) -> Change:
+def _change(path: str, old: Tree, settings: CompileSettings) -> FileChange:
     """Compile the old and the new version of a file; raise the errors of either."""
-    from tltlc.tools.diff.breaking import Change, Version
+    from tltlc.tools.diff.breaking import FileChange, Version
 
     before = old.at(path)
     is_there = os.path.exists(path)  # noqa: PTH110 (pathlib raises where a name is too long)
     new = _version(path, settings) if is_there or before is None else Version()
     if before is None:
-        return Change(path, Version(), new)
-    return Change(path, _version(before, replace(settings, libraries=old.libraries(settings.libraries))), new)
+        return FileChange(path, Version(), new)
+    return FileChange(path, _version(before, replace(settings, libraries=old.libraries(settings.libraries))), new)
 
 
-def _version(path: str, settings: Settings) -> Version:
+def _version(path: str, settings: CompileSettings) -> Version:
     """Compile a file in its current state."""
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import of_artefact, of_library, of_specs

@@ -10,7 +10,7 @@ from typing import Any, Final
 import click
 
 from tltlc.interfaces.cli import plugins
-from tltlc.interfaces.cli.settings import Settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 LEVELS: Final = "tltlc.levels"
 """The key in a context for the click command that checks levels.
@@ -64,7 +64,7 @@ Examples:
 def command(
     specs: tuple[str, ...],
     levels: tuple[str, ...],
-    settings: Settings,
+    settings: CompileSettings,
     format: str,  # noqa: A002
     **options: Any,
 ) -> int:

@@ -12,7 +12,7 @@ import click
 
 from tltlc.interfaces.cli import exits
 from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
-from tltlc.interfaces.cli.settings import Settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 if TYPE_CHECKING:
     from tltlc.backends import Files
@@ -44,7 +44,7 @@ def command(
     target_lists: tuple[str, ...],
     names: tuple[str, ...],
     watch: bool,
-    settings: Settings,
+    settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
     """Compile the specs of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
@@ -98,7 +98,7 @@ def command(
     return compile_once()
 
 
-def _opened(specs: list[str], settings: Settings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
+def _opened(specs: list[str], settings: CompileSettings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
     """Yield the compiled arguments that have no errors; report the diagnostics of each."""
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.inputs import open_input

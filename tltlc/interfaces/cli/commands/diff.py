@@ -11,7 +11,7 @@ import click
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.settings import Settings, compile_options, work_of
+from tltlc.interfaces.cli.settings import CompileSettings, compile_options, work_of
 from tltlc.io.spec_file import STDIN, split
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ Examples:
 @click.option(
     "--format", type=click.Choice(("text", "json")), default="text", help="How to say what differs (default: text)."
 )
-def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> int:  # noqa: A002
+def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
     """Say how B differs from A (files, FILE:NAME, artefacts, REV:FILE of a git revision, or - for standard input).
 
     Whether it is equivalent, stricter or looser, with a shortest trace for each direction, in words and as a test
@@ -69,7 +69,7 @@ def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> i
     return report.status or (exits.CLEAN if difference and difference.is_same else exits.FINDINGS)
 
 
-def _opened(a: str, b: str, settings: Settings) -> tuple[Input, Input, bool]:
+def _opened(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
     """Open both files with the specs to compare.
 
     The flag is whether to compare one spec of each, whatever their names.
@@ -85,7 +85,7 @@ def _opened(a: str, b: str, settings: Settings) -> tuple[Input, Input, bool]:
     return ours, theirs, True
 
 
-def _open(argument: str, settings: Settings) -> Input:
+def _open(argument: str, settings: CompileSettings) -> Input:
     """Open one side; ``REV:FILE`` is the file at that revision.
 
     Other arguments are opened by :func:`~tltlc.interfaces.cli.inputs.open_input`.

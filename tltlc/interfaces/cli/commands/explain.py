@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from tltlc.interfaces.cli.settings import Settings, compile_options
+from tltlc.interfaces.cli.settings import CompileSettings, compile_options
 
 if TYPE_CHECKING:
     from tltlc.tools.explain.explanation import Explanation
@@ -37,7 +37,7 @@ Examples:
     help="How to write a spec's explanation (default: text).",
 )
 @compile_options
-def command(what: str, format: str, settings: Settings) -> int:  # noqa: A002
+def command(what: str, format: str, settings: CompileSettings) -> int:  # noqa: A002
     """Say what a spec asks for, or what an error code means and how to mend it.
 
     Of a spec: its steps, what holds throughout, what breaks it, when it ends, its states, the shortest ways to succeed
@@ -49,7 +49,7 @@ def command(what: str, format: str, settings: Settings) -> int:  # noqa: A002
     return _specs(what, format, settings)
 
 
-def _specs(argument: str, format: str, settings: Settings) -> int:  # noqa: A002
+def _specs(argument: str, format: str, settings: CompileSettings) -> int:  # noqa: A002
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.inputs import open_input

@@ -9,7 +9,7 @@ import click
 
 from tltlc.interfaces.cli.numbers import WholeRange
 from tltlc.interfaces.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
-from tltlc.interfaces.cli.settings import Settings, assignments, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, assignments, source_options
 
 if TYPE_CHECKING:
     from tltlc.resolve.spec import Judge
@@ -64,7 +64,7 @@ def command(
     judge: Judge | None,
     folder: Path,
     target_lists: tuple[str, ...],
-    settings: Settings,
+    settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
     """Make an artefact of FILE.hoa, an automaton in the Hanoi format (- is standard input).

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import click
 
 from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.settings import Settings, check_libraries, compile_settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, check_libraries, compile_settings, source_options
 
 if TYPE_CHECKING:
     from tltlc.diagnostics.diagnostic import Diagnostic
     from tltlc.interfaces.cli.report import Report
-    from tltlc.tools.lint.rule import Finding
+    from tltlc.tools.lint.rule import LintFinding
 
 
 @click.command(
@@ -32,7 +32,7 @@ the whole file. `[lint] allow = ["TLT0419"]` in tltl.toml silences it everywhere
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
 @click.option("--fix", "fixing", is_flag=True, help="Apply the fixes that change the meaning of nothing.")
 @source_options
-def command(paths: tuple[str, ...], fixing: bool, settings: Settings, format: str) -> int:  # noqa: A002
+def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
     """Report what is likely to be a mistake in specs that compile, such as goals that are met by doing nothing.
 
     Every warning of the compiler is among it, and without arguments the current folder is searched.  The exit status
@@ -64,7 +64,7 @@ def command(paths: tuple[str, ...], fixing: bool, settings: Settings, format: st
 
 
 def _lint_file(
-    path: str, elsewhere: Container[str], fixing: bool, settings: Settings, report: Report
+    path: str, elsewhere: Container[str], fixing: bool, settings: CompileSettings, report: Report
 ) -> tuple[Diagnostic, ...]:
     """Lint a file, and fix it first if ``fixing``; return the remaining diagnostics.
 
@@ -98,7 +98,7 @@ def _lint_file(
     return _diagnostics(fixes.left)
 
 
-def _diagnostics(findings: tuple[Finding, ...]) -> tuple[Diagnostic, ...]:
+def _diagnostics(findings: tuple[LintFinding, ...]) -> tuple[Diagnostic, ...]:
     return tuple(finding.diagnostic for finding in findings)
 
 

@@ -16,7 +16,7 @@ from tltlc.interfaces.cli import exits
 from tltlc.interfaces.cli.numbers import FiniteRange, WholeRange
 from tltlc.interfaces.cli.paths import OutputPath, is_stdout
 from tltlc.interfaces.cli.report import Report
-from tltlc.interfaces.cli.settings import Settings, check_libraries, compile_settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, check_libraries, compile_settings, source_options
 from tltlc.io.limits import MINED_TRACE
 from tltlc.io.spec_file import STDIN, STDIN_NAME, read_data
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from tltlc.tools.mine.confirm import Proposal
     from tltlc.tools.mine.evidence import Evidence
     from tltlc.tools.mine.reading import TraceFile
-    from tltlc.tools.mine.search import Search
-    from tltlc.tools.mine.vocabulary import Words
+    from tltlc.tools.mine.search import SpecSearch
+    from tltlc.tools.mine.vocabulary import MiningVocabulary
 
 ENDINGS: Final = (".csv", ".jsonl")
 """File name endings of traces in a folder."""
@@ -101,7 +101,7 @@ def command(
     seconds: float | None,
     output: Path | None,
     as_json: bool,
-    settings: Settings,
+    settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
     """Propose specs that recorded TRACES satisfy and counterexamples violate: what a level asks for, from play.
@@ -118,7 +118,7 @@ def command(
     from tltlc.tools.mine.evidence_reader import gathered
     from tltlc.tools.mine.proposal_text import shown
     from tltlc.tools.mine.proposals_json import document
-    from tltlc.tools.mine.search import Options, Search
+    from tltlc.tools.mine.search import MiningOptions, SpecSearch
 
     if (*traces, *counterexamples).count(STDIN) > 1:
         raise click.UsageError("standard input can be one trace", click.get_current_context())
@@ -138,7 +138,7 @@ def command(
         for line in _column_messages(words, predicates):
             report.say(line)
         report.add(diagnostics)
-        search = Search(evidence, Options(min_support, max_length))
+        search = SpecSearch(evidence, MiningOptions(min_support, max_length))
         whole, interrupted = _run_search(search, seconds, report)
         left_out = (*_unread(words), *search.left_out())
         report.add(tuple(_beyond_the_limits(title, predicates) for title in left_out))
@@ -158,7 +158,7 @@ def command(
     return exits.interrupted() if interrupted else report.status
 
 
-def _column_messages(words: Words, predicates: str | None) -> Iterator[str]:
+def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterator[str]:
     """Yield messages about columns that are left out because they are not atoms."""
     misnamed = [name for name in words.left_out if name in words.misnamed]
     not_atoms = [name for name in words.left_out if name not in words.misnamed]
@@ -219,7 +219,7 @@ def _is_name(predicates: str) -> bool:
     return re.fullmatch(r"[A-Za-z]\w*", predicates, re.ASCII) is not None
 
 
-def _compile_options(predicates: str | None, settings: Settings) -> CompileOptions:
+def _compile_options(predicates: str | None, settings: CompileSettings) -> CompileOptions:
     """Return the options to compile specs about the atoms of a library."""
     from tltlc.io.project import Project, project_for
 
@@ -230,7 +230,7 @@ def _compile_options(predicates: str | None, settings: Settings) -> CompileOptio
 # --- the search -----------------------------------------------------------------------------------
 
 
-def _run_search(search: Search, seconds: float | None, report: Report) -> tuple[bool, bool]:
+def _run_search(search: SpecSearch, seconds: float | None, report: Report) -> tuple[bool, bool]:
     """Search until the end, until time is up, or until Ctrl-C.
 
     Return whether the search completed, and whether Ctrl-C interrupted it.
@@ -263,7 +263,7 @@ def _every_second(report: Report) -> Callable[[str], None]:
     return tell
 
 
-def _unread(words: Words) -> Iterator[str]:
+def _unread(words: MiningVocabulary) -> Iterator[str]:
     """Yield a message if there are more atoms than the limit allows to read."""
     from tltlc.io.limits import WORK
 
@@ -295,8 +295,8 @@ def _write(
     path: Path,
     proposals: Sequence[Proposal],
     evidence: Evidence,
-    search: Search,
-    words: Words,
+    search: SpecSearch,
+    words: MiningVocabulary,
     imported: str | None,
     report: Report,
 ) -> None:

@@ -16,12 +16,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
 from tltlc.interfaces.cli.inputs import open_input
 from tltlc.interfaces.cli.report import Report
-from tltlc.interfaces.cli.settings import Settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, source_options
 from tltlc.io.spec_file import STDIN, STDIN_NAME, input_error, split, standard_input
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.monitor.run import Outcome, Row
+    from tltlc.monitor.run import RunStep, TraceOutcome
     from tltlc.monitor.trace_rows import Stream
 
 
@@ -37,7 +37,7 @@ Examples:
 @click.argument("trace", metavar="TRACE")
 @click.option("--json", "as_json", is_flag=True, help="One JSON document: `rows`, then `accepted` and `verdict`.")
 @source_options
-def command(spec: str, trace: str, as_json: bool, settings: Settings, format: str) -> int:  # noqa: A002
+def command(spec: str, trace: str, as_json: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
     """Run a spec over a recorded trace: CSV with a header of signal names, or JSON lines of objects.
 
     Prints a row per step (state, verdict, progress, reward, the value of each atom) and the verdict of
@@ -50,7 +50,7 @@ def command(spec: str, trace: str, as_json: bool, settings: Settings, format: st
 
     if split(spec)[0] == trace == STDIN:
         raise click.UsageError("SPEC and TRACE cannot both be standard input", click.get_current_context())
-    judged: Outcome | None = None
+    judged: TraceOutcome | None = None
     with Report(format, results=True) as report:
         opened = open_input(spec, settings)
         report.add(opened.diagnostics)
@@ -96,7 +96,7 @@ def _shown(trace: str) -> str:
     return STDIN_NAME if trace == STDIN else trace
 
 
-def _with_notices(rows: Iterator[Row], notices: list[Diagnostic], report: Report) -> Iterator[Row]:
+def _with_notices(rows: Iterator[RunStep], notices: list[Diagnostic], report: Report) -> Iterator[RunStep]:
     """Pass the rows on, and report the notices of the monitor as soon as they occur."""
     for row in rows:
         report.add(notices)
@@ -104,7 +104,7 @@ def _with_notices(rows: Iterator[Row], notices: list[Diagnostic], report: Report
         yield row
 
 
-def _show_csv(fspa: Fspa, rows: Iterator[Row]) -> Iterator[Row]:
+def _show_csv(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     from tltlc.monitor.run import cells, header
 
     write = csv.writer(sys.stdout, lineterminator="\n").writerow
@@ -115,12 +115,12 @@ def _show_csv(fspa: Fspa, rows: Iterator[Row]) -> Iterator[Row]:
         yield row
 
 
-def _end_csv(judged: Outcome) -> None:
+def _end_csv(judged: TraceOutcome) -> None:
     accepted = "accepted" if judged.accepted else "not accepted"
     print(f"{accepted}: {judged.verdict} after {judged.steps} step{'' if judged.steps == 1 else 's'}")
 
 
-def _show_json(fspa: Fspa, rows: Iterator[Row]) -> Iterator[Row]:
+def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     names = [atom.name for atom in fspa.atoms]
     print(json.dumps({"spec": fspa.name})[:-1] + ', "rows": [', flush=True)
     between = ""
@@ -148,7 +148,7 @@ def _show_json(fspa: Fspa, rows: Iterator[Row]) -> Iterator[Row]:
         raise
 
 
-def _end_json(judged: Outcome) -> None:
+def _end_json(judged: TraceOutcome) -> None:
     end = {
         "accepted": judged.accepted,
         "verdict": judged.verdict,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tltlc.interfaces.cli.paths import OutputPath, is_stdout
-from tltlc.interfaces.cli.settings import Settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Notation
@@ -59,7 +59,7 @@ def command(
     path: Path | None,
     target: str | None,
     notation: Notation | None,
-    settings: Settings,
+    settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
     """Draw the automaton of a spec: states with what remains to be done, guards, distances, goal and trap.

@@ -69,9 +69,9 @@ def _write(folder: Path, pyodide: Path) -> None:
 
 
 def _serve(port: int, opening: bool) -> None:
-    from tltlc.interfaces.playground.server import Server
+    from tltlc.interfaces.playground.server import PlaygroundServer
 
-    with Server(port) as server, ExitStack() as stack:
+    with PlaygroundServer(port) as server, ExitStack() as stack:
         print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
         _report_ignored_project()
         if opening:

@@ -9,7 +9,7 @@ import click
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar.keywords import DECLARATIONS
-from tltlc.interfaces.cli.settings import Settings, source_options
+from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 if TYPE_CHECKING:
     from tltlc.monitor.tests import TestResult
@@ -26,7 +26,7 @@ Examples:
 )
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
 @source_options
-def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # noqa: A002
+def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> int:  # noqa: A002
     """Run test blocks: a line for each on standard output, and what went wrong on standard error.
 
     Without arguments, those of the current folder.  The exit status is 1 where a test fails or a file has errors.
@@ -56,7 +56,7 @@ def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # 
     return report.status
 
 
-def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
+def _run(path: str, settings: CompileSettings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
     from tltlc.interfaces.cli.inputs import no_text, open_input
     from tltlc.monitor.tests import run_tests
 

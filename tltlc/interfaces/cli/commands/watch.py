@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import click
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.interfaces.cli.settings import Settings, check_libraries, compile_options, compile_settings
+from tltlc.interfaces.cli.settings import CompileSettings, check_libraries, compile_options, compile_settings
 
 if TYPE_CHECKING:
     from tltlc.diagnostics.diagnostic import Diagnostic
     from tltlc.monitor.tests import TestResult
-    from tltlc.tools.lint.rule import Finding
+    from tltlc.tools.lint.rule import LintFinding
 
 _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
 """Clears the screen of a terminal, and its scrollback."""
@@ -31,7 +31,7 @@ Examples:
 )
 @click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
 @compile_options
-def command(paths: tuple[str, ...], settings: Settings) -> int:
+def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
     """Check and lint source files and run their tests, again whenever one of them changes, until Ctrl-C.
 
     Changes of what they import count, and files that are new in a folder.  `tltlc compile --watch` writes files, too.
@@ -58,7 +58,7 @@ def command(paths: tuple[str, ...], settings: Settings) -> int:
     repeat(look, lambda: in_folders(arguments))
 
 
-def _look(arguments: tuple[str, ...], settings: Settings) -> None:
+def _look(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     """Check, lint and test the files; report everything, and a summary."""
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report, counted, tally
@@ -90,8 +90,8 @@ def _look(arguments: tuple[str, ...], settings: Settings) -> None:
 
 
 def _file(
-    path: str, elsewhere: Container[str], settings: Settings
-) -> tuple[tuple[Finding, ...], tuple[TestResult, ...]]:
+    path: str, elsewhere: Container[str], settings: CompileSettings
+) -> tuple[tuple[LintFinding, ...], tuple[TestResult, ...]]:
     """Compile a file once, lint it, and run its tests; return the findings and the test results."""
     from tltlc.core.record import replace
     from tltlc.interfaces.cli.inputs import check_text

@@ -9,7 +9,7 @@ import click
 
 from tltlc.interfaces.cli.paths import OutputPath
 from tltlc.interfaces.cli.report import Report
-from tltlc.interfaces.cli.settings import Settings, source_options, work_of
+from tltlc.interfaces.cli.settings import CompileSettings, source_options, work_of
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -41,7 +41,7 @@ def command(
     cover: bool,
     kind: Literal["test", "csv"],
     folder: Path | None,
-    settings: Settings,
+    settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
     """Show a spec by traces: as `test` blocks to paste into its file, or as CSV of the signals of a game.
@@ -78,7 +78,7 @@ def command(
 
 
 def _traces(
-    moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: Settings, report: Report
+    moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: CompileSettings, report: Report
 ) -> list[Witness]:
     """Find the requested traces; report those that do not exist or cannot be found."""
     from tltlc.tools.witness import captions as remarks

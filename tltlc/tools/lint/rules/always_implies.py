@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary, Group, Unary
+from tltlc.grammar.tree import BinaryExpr, GroupExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.tools.lint.file_view import Expression, View
 from tltlc.tools.lint.goals import conjuncts
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -21,15 +21,15 @@ def check(view: View) -> Iterator[Remark]:
     for spec in view.specs:
         for _, value in spec.clauses("require"):
             for part in conjuncts(value):
-                if isinstance(part.tree, Binary) and part.tree.op in ("implies", "iff"):
+                if isinstance(part.tree, BinaryExpr) and part.tree.op in ("implies", "iff"):
                     first, *rest = operands(part.tree.left, "and")
-                    if isinstance(first, Unary) and first.op == "G" and not isinstance(first.operand, Group):
+                    if isinstance(first, Unary) and first.op == "G" and not isinstance(first.operand, GroupExpr):
                         condition = (part.at(first.operand), *map(part.at, rest))
                         if all(map(Expression.is_of_one_step, condition)):
                             yield _remark(part, part.tree, first)
 
 
-def _remark(part: Expression, tree: Binary, first: Unary) -> Remark:
+def _remark(part: Expression, tree: BinaryExpr, first: Unary) -> Remark:
     def text_between(start: int, end: int) -> str:
         return " ".join(part.source.text[start:end].split())
 
@@ -44,4 +44,4 @@ def _remark(part: Expression, tree: Binary, first: Unary) -> Remark:
     return Remark(f"`{word}` speaks of the condition alone", (label,), suggestion)
 
 
-RULE = Rule("TLT0435", "warning", check)
+RULE = LintRule("TLT0435", "warning", check)

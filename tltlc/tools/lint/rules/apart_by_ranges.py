@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.text.phrases import phrase
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.relations import is_impossible, relations
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 _MOST_LABELS: Final = 4
 
@@ -38,4 +38,4 @@ def _remark(spec: SpecView) -> Remark:
     return Remark(title, labels, suggestion)
 
 
-RULE = Rule("TLT0431", "warning", check)
+RULE = LintRule("TLT0431", "warning", check)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tltlc.tools.lint.atom_signs import can_be, is_always
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -27,4 +27,4 @@ def check(view: View) -> Iterator[Remark]:
                 yield Remark(f"`{atom.name}` always holds", (label,), suggestion)
 
 
-RULE = Rule("TLT0416", "error", check)
+RULE = LintRule("TLT0416", "error", check)

@@ -7,12 +7,12 @@ from decimal import ROUND_DOWN, Context
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Expr, LetDecl, Number, Unary
+from tltlc.grammar.tree import Expr, LetDecl, NumberExpr, Unary
 from tltlc.grammar.walk import parts
 from tltlc.resolve.constants import samples
 from tltlc.resolve.values import Env
 from tltlc.tools.lint.file_view import Expression, View, inner, operand
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -73,7 +73,7 @@ def _seconds(steps: float, period: float, env: Env) -> str:
     exact = steps * period
     shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))
     texts = [f"{exact:.6g}", *shorter]
-    return next((text for text in texts if samples(Number(float(text), "s", Span(0, 0)), env) == steps), texts[-1])
+    return next((text for text in texts if samples(NumberExpr(float(text), "s", Span(0, 0)), env) == steps), texts[-1])
 
 
-RULE = Rule("TLT0418", "warning", check)
+RULE = LintRule("TLT0418", "warning", check)

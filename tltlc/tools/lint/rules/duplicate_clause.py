@@ -10,11 +10,11 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Fix
 from tltlc.grammar.tree import Clause
 from tltlc.logic.formula import Formula
-from tltlc.resolve.spec import Part
+from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import without
 from tltlc.tools.lint.removal_advice import changes_judge
-from tltlc.tools.lint.rule import Remark, Rule, removal
+from tltlc.tools.lint.rule import LintRule, Remark, removal
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -23,7 +23,7 @@ def check(view: View) -> Iterator[Remark]:
     Both must have the same form.
     """
     for spec in view.specs:
-        first: dict[Formula, Part] = {}
+        first: dict[Formula, Conjunct] = {}
         covering = _covering(spec.declaration.clauses, spec.spec.parts)
         remaining = list(spec.spec.parts)
         for part in spec.spec.parts:
@@ -48,7 +48,7 @@ def _fix(clause: Clause | None, view: View) -> Fix | None:
     return removal("Remove one of them", (without(view.source, clause.span, view.module.comments),))
 
 
-def _covering(clauses: Sequence[Clause], parts: Iterable[Part]) -> dict[Span, Clause]:
+def _covering(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -> dict[Span, Clause]:
     """Return the clauses that consist of one part, by the span of that part."""
     starts = [clause.span.start for clause in clauses]
     covered: dict[int, list[Span]] = {}
@@ -61,4 +61,4 @@ def _covering(clauses: Sequence[Clause], parts: Iterable[Part]) -> dict[Span, Cl
 
 _TITLE: Final = "this clause stands here twice"
 
-RULE = Rule("TLT0425", "warning", check)
+RULE = LintRule("TLT0425", "warning", check)

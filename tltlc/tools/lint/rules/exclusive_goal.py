@@ -9,10 +9,10 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import and_
 from tltlc.logic.text.phrases import is_state
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 from tltlc.tools.lint.file_view import Expression, SpecView, View, inner
 from tltlc.tools.lint.goals import conjuncts, goals
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -38,13 +38,13 @@ def _excluding(goal: Expression, spec: SpecView) -> list[str]:
     used = formula.atoms()
     for group in spec.spec.exclusive:
         names = [name for name in used if name in {spec.spec.atoms[index].name for index in group}]
-        part = Part(formula, goal.source, goal.tree.span)
+        part = Conjunct(formula, goal.source, goal.tree.span)
         if len(names) > 1 and _is_impossible(part, spec.spec) and not _is_impossible(part, _free(spec.spec)):
             return names
     return []
 
 
-def _is_impossible(part: Part, spec: Spec) -> bool:
+def _is_impossible(part: Conjunct, spec: Spec) -> bool:
     return unsatisfiable((part,), spec)
 
 
@@ -52,4 +52,4 @@ def _free(spec: Spec) -> Spec:
     return replace(spec, exclusive=())
 
 
-RULE = Rule("TLT0414", "warning", check, supersedes=("TLT0410",))
+RULE = LintRule("TLT0414", "warning", check, supersedes=("TLT0410",))

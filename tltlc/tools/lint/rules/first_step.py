@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from itertools import takewhile
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Group, Unary
+from tltlc.grammar.tree import GroupExpr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.tools.lint import goals
 from tltlc.tools.lint.file_view import Expression, View, operand
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -37,7 +37,7 @@ def check(view: View) -> Iterator[Remark]:
 
 def _is_bare(tree: Unary) -> bool:
     """Whether a temporal operator has no brackets that show where its operand ends."""
-    return tree.op in ("F", "G") and not isinstance(tree.operand, Group)
+    return tree.op in ("F", "G") and not isinstance(tree.operand, GroupExpr)
 
 
 def _outside(temporal: Expression, tree: Unary, following: list[Expression]) -> Remark:
@@ -49,4 +49,4 @@ def _outside(temporal: Expression, tree: Unary, following: list[Expression]) -> 
     return Remark("this speaks of the first step alone", (label,), f"both together are `{word} ({inside})`")
 
 
-RULE = Rule("TLT0429", "note", check)
+RULE = LintRule("TLT0429", "note", check)

@@ -8,7 +8,7 @@ from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.resolve.spec import Atom
 from tltlc.tools.lint.atom_signs import can_be, is_always
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -53,4 +53,4 @@ def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
     return sorted(indices)
 
 
-RULE = Rule("TLT0417", "note", check)
+RULE = LintRule("TLT0417", "note", check)

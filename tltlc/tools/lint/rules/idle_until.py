@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary
+from tltlc.grammar.tree import BinaryExpr
 from tltlc.grammar.walk import operands
 from tltlc.tools.lint.file_view import View, inner, operand
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -21,7 +21,7 @@ def check(view: View) -> Iterator[Remark]:
         for clause, value in spec.clauses("reach", "avoid"):
             *earlier, last = operands(value.tree, "then")
             part = value.at(inner(last))
-            if not isinstance(part.tree, Binary) or part.tree.op != "U":
+            if not isinstance(part.tree, BinaryExpr) or part.tree.op != "U":
                 continue
             before, goal = value.at(part.tree.left), value.at(part.tree.right)
             label = Label(value.source, part.tree.span, f"this is `{clause.kind} {goal.text}` and no more")
@@ -34,4 +34,4 @@ def check(view: View) -> Iterator[Remark]:
             yield Remark("the first half of this `until` has no say", (label,), suggestion)
 
 
-RULE = Rule("TLT0433", "warning", check)
+RULE = LintRule("TLT0433", "warning", check)

@@ -8,11 +8,11 @@ from tltlc.automaton.finite.contradiction import contradiction
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import Formula, not_
-from tltlc.resolve.spec import Part, Spec
+from tltlc.resolve.spec import Conjunct, Spec
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.relations import is_impossible, relations
 from tltlc.tools.lint.removal_advice import leave_out
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 from tltlc.tools.lint.rules import recurrence
 
 _MOST_PARTS = 24
@@ -28,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
     doubtful = [remark.labels[0] for remark in recurrence.check(view)]
     for spec in view.specs:
         # Another rule reports duplicate clauses.
-        first: dict[Formula, Part] = {}
+        first: dict[Formula, Conjunct] = {}
         for part in spec.spec.parts:
             first.setdefault(part.formula, part)
         parts = list(first.values())
@@ -36,11 +36,11 @@ def check(view: View) -> Iterator[Remark]:
             yield from _remarks(spec, parts, [part for part in parts if not _is_any_in(doubtful, part)])
 
 
-def _is_any_in(places: Sequence[Label], part: Part) -> bool:
+def _is_any_in(places: Sequence[Label], part: Conjunct) -> bool:
     return any(part.source == place.source and part.span.covers(place.span) for place in places)
 
 
-def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> Iterator[Remark]:
+def _remarks(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjunct]) -> Iterator[Remark]:
     left, remaining = list(reasons), list(spec.spec.parts)
     # Of two clauses that imply each other, the later one is reported. A reported clause is no reason for others.
     for part in reversed(parts):
@@ -57,7 +57,7 @@ def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> 
             yield Remark(title, labels, f"{leave_out(part, remaining, spec)}, or say what more it should ask for")
 
 
-def _known(part: Part, spec: SpecView) -> list[Part]:
+def _known(part: Conjunct, spec: SpecView) -> list[Conjunct]:
     """Return the proved relations between the atoms of a part and the other atoms of the spec."""
     own = set(part.formula.atoms())
     return [
@@ -67,7 +67,9 @@ def _known(part: Part, spec: SpecView) -> list[Part]:
     ]
 
 
-def _reasons(part: Part, others: Sequence[Part], known: Sequence[Part], spec: SpecView) -> tuple[Part, ...]:
+def _reasons(
+    part: Conjunct, others: Sequence[Conjunct], known: Sequence[Conjunct], spec: SpecView
+) -> tuple[Conjunct, ...]:
     """Return a minimal set of other parts that imply a part together; empty if they do not."""
     if not _share_atoms(part, others, known, spec.spec):
         return ()
@@ -79,7 +81,7 @@ def _reasons(part: Part, others: Sequence[Part], known: Sequence[Part], spec: Sp
     return tuple(other for other in needed if other in others)
 
 
-def _share_atoms(part: Part, others: Sequence[Part], known: Sequence[Part], spec: Spec) -> bool:
+def _share_atoms(part: Conjunct, others: Sequence[Conjunct], known: Sequence[Conjunct], spec: Spec) -> bool:
     """Whether other parts are about an atom of the part, or about one that excludes such an atom.
 
     If not, they cannot imply the part.
@@ -91,4 +93,4 @@ def _share_atoms(part: Part, others: Sequence[Part], known: Sequence[Part], spec
     return any(own.intersection(other.formula.atoms()) for other in others)
 
 
-RULE = Rule("TLT0413", "warning", check)
+RULE = LintRule("TLT0413", "warning", check)

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 
 from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary, Unary
+from tltlc.grammar.tree import BinaryExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic.formula import FALSE, and_, weak_next
-from tltlc.resolve.spec import Part
+from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import Expression, SpecView, View, inner, operand
 from tltlc.tools.lint.goals import conjuncts
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 _SUGGESTION = "let a signal count the time, and ask for enough of it, as in `reach time_there >= 3 s`"
 
@@ -42,7 +42,7 @@ def _goals_of(part: Expression) -> Iterator[Expression]:
     """Yield what a conjunct asks for at some step, as a goal; nothing if it is no goal."""
     if isinstance(part.tree, Unary) and part.tree.op == "F":
         yield part.at(part.tree.operand)
-    elif isinstance(part.tree, Binary) and part.tree.op == "then":
+    elif isinstance(part.tree, BinaryExpr) and part.tree.op == "then":
         yield part
 
 
@@ -69,7 +69,7 @@ def _is_met_by_one_step(final: list[Expression], spec: SpecView) -> bool:
     """
     formulas = (formula for formula in map(Expression.formula, final) if formula is not None)
     at_end = and_(weak_next(FALSE), *formulas)
-    return not unsatisfiable((Part(at_end, spec.spec.source, spec.spec.name_span),), spec.spec)
+    return not unsatisfiable((Conjunct(at_end, spec.spec.source, spec.spec.name_span),), spec.spec)
 
 
 def _remarks(goal: Expression) -> Iterator[Remark]:
@@ -79,7 +79,7 @@ def _remarks(goal: Expression) -> Iterator[Remark]:
         tree = inner(part.tree)
         if isinstance(tree, Unary) and tree.op == "not":
             waiting.append((part.at(tree.operand), not holds))
-        elif isinstance(tree, Binary) and tree.op in ("and", "or"):
+        elif isinstance(tree, BinaryExpr) and tree.op in ("and", "or"):
             waiting += (part.at(tree.right), holds), (part.at(tree.left), holds)
         elif isinstance(tree, Unary) and tree.bound is not None and tree.op == ("G" if holds else "F"):
             lasting = part.at(tree.operand)
@@ -88,4 +88,4 @@ def _remarks(goal: Expression) -> Iterator[Remark]:
             yield Remark("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
 
 
-RULE = Rule("TLT0434", "warning", check)
+RULE = LintRule("TLT0434", "warning", check)

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.walk import parts
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 _FEW: Final = 100
 _PER_PART: Final = 10
@@ -42,4 +42,4 @@ def _remark(spec: SpecView, states: int) -> Remark:
     return Remark(title, (Label(first.source, first.span, message), *rest), suggestion)
 
 
-RULE = Rule("TLT0423", "note", check)
+RULE = LintRule("TLT0423", "note", check)

@@ -7,13 +7,13 @@ from typing import Final
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary
+from tltlc.grammar.tree import BinaryExpr
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
-from tltlc.resolve.spec import Part
+from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import Expression, SpecView, View, inner, operand
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.relations import relations
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -40,7 +40,7 @@ def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
     known = relations(spec, spec.spec.formula.atoms())
 
     def can_be(state: Formula) -> bool:
-        part = Part(eventually(state), goal.source, goal.tree.span)
+        part = Conjunct(eventually(state), goal.source, goal.tree.span)
         return not spec.decision((*spec.spec.parts, *known, part), spec.spec)
 
     # If the other clauses already ensure an atom, there is nothing to do for it.
@@ -108,7 +108,7 @@ def _implications(goal: Expression) -> list[tuple[Expression, Expression]]:
     """
     by_span: dict[Span, tuple[Expression, Expression]] = {}
     for part in conjuncts(goal):
-        if isinstance(part.tree, Binary) and part.tree.op == "implies":
+        if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
             by_span[part.tree.span] = part.at(part.tree.left), part.at(part.tree.right)
     return list(by_span.values())
 
@@ -128,4 +128,4 @@ def _of_implications(implications: list[tuple[Expression, Expression]]) -> Remar
 
 _TITLE: Final = "this goal can be met without doing anything"
 
-RULE = Rule("TLT0412", "warning", check)
+RULE = LintRule("TLT0412", "warning", check)

@@ -8,11 +8,11 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import not_
-from tltlc.resolve.spec import Part
+from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.relations import relations
 from tltlc.tools.lint.removal_advice import leave_out
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -31,11 +31,11 @@ def check(view: View) -> Iterator[Remark]:
                 )
 
 
-def _is_always_met(part: Part, spec: SpecView) -> bool:
+def _is_always_met(part: Conjunct, spec: SpecView) -> bool:
     negated = replace(part, formula=not_(part.formula))
     return spec.decision((negated, *relations(spec, part.formula.atoms())), spec.spec)
 
 
 _OR: Final = ", or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
 
-RULE = Rule("TLT0430", "warning", check, supersedes=("TLT0429",))
+RULE = LintRule("TLT0430", "warning", check, supersedes=("TLT0429",))

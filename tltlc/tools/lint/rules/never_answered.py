@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary, Clause, Unary
+from tltlc.grammar.tree import BinaryExpr, Clause, Unary
 from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.text.phrases import is_state
-from tltlc.resolve.spec import Part
+from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import Expression, SpecView, View, operand
 from tltlc.tools.lint.relations import relations
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -36,10 +36,10 @@ def _implications(value: Expression) -> Iterator[Expression]:
     waiting = [value]
     while waiting:
         part = waiting.pop()
-        if isinstance(part.tree, (Unary, Binary)) and part.tree.op in ("not", "F", "then", "iff"):
+        if isinstance(part.tree, (Unary, BinaryExpr)) and part.tree.op in ("not", "F", "then", "iff"):
             continue
         operands = part.children()
-        if isinstance(part.tree, Binary) and part.tree.op == "implies":
+        if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
             yield part
             operands = operands[1:]
         waiting += reversed(operands)
@@ -52,7 +52,7 @@ def _never_together(implication: Expression, spec: SpecView) -> bool:
     known = relations(spec, formula.atoms())
 
     def can_be(state: Formula) -> bool:
-        return not unsatisfiable((Part(state, implication.source, implication.tree.span), *known), spec.spec)
+        return not unsatisfiable((Conjunct(state, implication.source, implication.tree.span), *known), spec.spec)
 
     condition, result = formula.args
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
@@ -62,16 +62,16 @@ def _can_hold(clause: Clause, value: Expression, spec: SpecView) -> bool:
     formula = value.formula()
     if formula is None:
         return False
-    whole = Part(always(formula) if clause.kind == "keep" else formula, value.source, value.tree.span)
+    whole = Conjunct(always(formula) if clause.kind == "keep" else formula, value.source, value.tree.span)
     return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
 
 
 def _remark(implication: Expression) -> Remark:
-    assert isinstance(implication.tree, Binary)
+    assert isinstance(implication.tree, BinaryExpr)
     condition, result = implication.at(implication.tree.left), implication.at(implication.tree.right)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
     suggestion = f"where it comes later, write `{operand(condition)} implies eventually {operand(result)}`"
     return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), suggestion)
 
 
-RULE = Rule("TLT0432", "warning", check)
+RULE = LintRule("TLT0432", "warning", check)

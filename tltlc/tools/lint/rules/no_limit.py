@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -27,4 +27,4 @@ def _remark(spec: SpecView) -> Remark:
     return Remark(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), f"add `{clause}`")
 
 
-RULE = Rule("TLT0419", "note", check)
+RULE = LintRule("TLT0419", "note", check)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tltlc.logic.formula import Formula
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -32,4 +32,4 @@ def _recurs(formula: Formula) -> bool:
     return any(part.op == "G" and part.args[0].op == "F" for part in formula.walk())
 
 
-RULE = Rule("TLT0420", "note", check)
+RULE = LintRule("TLT0420", "note", check)

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary, Expr, LetDecl, Unary
+from tltlc.grammar.tree import BinaryExpr, Expr, LetDecl, Unary
 from tltlc.grammar.walk import operands, parts
 from tltlc.tools.lint.file_view import Expression, View, inner, operand
 from tltlc.tools.lint.goals import is_of_implications
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
 """What the author usually means, by the inner operator."""
@@ -65,9 +65,11 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
             op = part.op if sign else _OTHER[part.op]
             if op == _OTHER[outer]:
                 yield _remark(Span(begin, part.op_span.end), op, Expression(part.operand, view.env), sign)
-        elif isinstance(part, Binary) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign):
+        elif (
+            isinstance(part, BinaryExpr) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign)
+        ):
             waiting += (part.right, sign), (part.left, sign)
-        elif isinstance(part, Binary) and part.op == "U" and sign and outer == "G":
+        elif isinstance(part, BinaryExpr) and part.op == "U" and sign and outer == "G":
             goal = Expression(part.right, view.env).text
             label = Label(
                 view.source, Span(begin, part.op_span.end), f"asked again at every step, so `{goal}` at the last"
@@ -86,4 +88,4 @@ def _remark(place: Span, op: str, awaited: Expression, sign: bool) -> Remark:
     return Remark("this speaks of the last step alone", (label,), suggestion)
 
 
-RULE = Rule("TLT0424", "warning", check)
+RULE = LintRule("TLT0424", "warning", check)

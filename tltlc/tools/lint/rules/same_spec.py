@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 _WORK: Final = 200_000
 """Steps after which two specs count as different: a note must not take longer than compiling."""
@@ -77,4 +77,4 @@ def _accept_the_same(one: Fspa, other: Fspa) -> bool:
         return False
 
 
-RULE = Rule("TLT0426", "note", check)
+RULE = LintRule("TLT0426", "note", check)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -19,4 +19,4 @@ def check(view: View) -> Iterator[Remark]:
             yield Remark(title, (label,), f"allow more, at least `limit {least} steps`")
 
 
-RULE = Rule("TLT0428", "warning", check)
+RULE = LintRule("TLT0428", "warning", check)

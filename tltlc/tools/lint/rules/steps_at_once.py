@@ -13,7 +13,7 @@ from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
 from tltlc.tools.lint.file_view import Expression, SpecView, View, inner
 from tltlc.tools.lint.goals import conjuncts, goals
-from tltlc.tools.lint.rule import Remark, Rule
+from tltlc.tools.lint.rule import LintRule, Remark
 
 _MOST_LABELS: Final = 4
 _MOST_STATES: Final = 1_000
@@ -143,4 +143,4 @@ def _length(fspa: Fspa) -> tuple[int, int]:
     return fspa.states[0].distance or 0, fspa.spec_size
 
 
-RULE = Rule("TLT0415", "note", check)
+RULE = LintRule("TLT0415", "note", check)

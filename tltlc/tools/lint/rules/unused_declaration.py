@@ -9,7 +9,7 @@ from tltlc.core.source import Span
 from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import item, without
-from tltlc.tools.lint.rule import Remark, Rule, removal
+from tltlc.tools.lint.rule import LintRule, Remark, removal
 
 _KINDS: Final = {SignalDecl: "signal", ParamDecl: "param", PredicateDecl: "predicate", LetDecl: "let"}
 Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
@@ -61,4 +61,4 @@ def _is_refined(declaration: Declared, view: View) -> bool:
     )
 
 
-RULE = Rule("TLT0421", "warning", check)
+RULE = LintRule("TLT0421", "warning", check)

@@ -10,7 +10,7 @@ from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import, ParamDecl, Sign
 from tltlc.resolve.imports import Loaded
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import item, without
-from tltlc.tools.lint.rule import Remark, Rule, removal
+from tltlc.tools.lint.rule import LintRule, Remark, removal
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -100,4 +100,4 @@ def _effective_unnamed(modules: Iterable[Loaded]) -> set[int]:
     return effective
 
 
-RULE = Rule("TLT0422", "warning", check)
+RULE = LintRule("TLT0422", "warning", check)

@@ -12,9 +12,9 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.map_names import Name, is_spoken_of, names
+from tltl_runtime.regression.report.page.map_names import MapLabel, is_spoken_of, names
 from tltl_runtime.regression.report.page.markup import element
-from tltl_runtime.regression.report.page.plan import Plan
+from tltl_runtime.regression.report.page.plan import MapScale
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Box, Level, Mover
 from tltl_runtime.stealth.rendering.plan import patrol
@@ -45,7 +45,7 @@ def level_map(level: Level, sentences: str = "") -> Markup:
 
     Things that the report's ``sentences`` mention are highlighted.
     """
-    plan = Plan(level.bounds)
+    plan = MapScale(level.bounds)
     width, height = plan.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
     below = [*_ground(level, plan, sentences), element("g", class_="heat"), *_entities(level, plan)]
@@ -86,7 +86,7 @@ def map_data(level: Level) -> dict[str, Any]:
     ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its eyes.
     Lengths are in centimetres, angles in degrees.
     """
-    plan = Plan(level.bounds)
+    plan = MapScale(level.bounds)
     return {
         "blocks": [_block(plan, solid.box) for solid in level.solids if solid.kind != "floor"],
         "barriers": [{"kind": barrier.kind, "block": _block(plan, barrier.box)} for barrier in level.barriers],
@@ -124,7 +124,7 @@ def _sign(kind: str) -> Markup:
     return element("svg", inside, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
-def _ground(level: Level, plan: Plan, sentences: str) -> Iterable[Markup]:
+def _ground(level: Level, plan: MapScale, sentences: str) -> Iterable[Markup]:
     for solid in sorted(level.solids, key=lambda item: (is_spoken_of(item.name, sentences), item.box.high[2])):
         kind = f"solid {solid.kind}{' spoken' * is_spoken_of(solid.name, sentences)}"
         yield element("rect", element("title", solid.name), class_=kind, **plan.sides(solid.box))
@@ -132,7 +132,7 @@ def _ground(level: Level, plan: Plan, sentences: str) -> Iterable[Markup]:
         yield element("rect", class_="region", **plan.sides(region.box))
 
 
-def _entities(level: Level, plan: Plan) -> Iterable[Markup]:
+def _entities(level: Level, plan: MapScale) -> Iterable[Markup]:
     for enemy in level.enemies:
         title = element("title", f"route of {enemy.name}")
         yield element("path", title, class_="route", d=_there_and_back([*map(plan.at, patrol(level, enemy))]))
@@ -154,7 +154,7 @@ def _entities(level: Level, plan: Plan) -> Iterable[Markup]:
     yield element("circle", element("title", "start"), class_="start", cx=x, cy=y, r=14)
 
 
-def _name(name: Name) -> Markup:
+def _name(name: MapLabel) -> Markup:
     lines = [element("tspan", line, x=name.x, dy="1.1em" if row else 0) for row, line in enumerate(name.lines)]
     return element("text", *lines, class_=f"{name.kind}{' spoken' * name.spoken}", x=name.x, y=name.y)
 
@@ -175,6 +175,6 @@ def _star(x: int, y: int, radius: float = 40.0) -> str:
     return " ".join(corners)
 
 
-def _block(plan: Plan, box: Box) -> list[int]:
+def _block(plan: MapScale, box: Box) -> list[int]:
     """The rectangle of a box on the map, and its lower and upper height, in centimetres."""
     return [*plan.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 from typing import Final
 
-from tltl_runtime.regression.report.page.plan import Plan, Rect
+from tltl_runtime.regression.report.page.plan import MapScale, Rect
 from tltl_runtime.stealth.level import Level, Region
 from tltlc.api import record, replace
 
@@ -32,7 +32,7 @@ _STEP: Final = 50
 
 
 @record
-class Name:
+class MapLabel:
     """A name on the map.
 
     The foot of its first line is at ``x`` and ``y``, in centimetres.  ``kind`` is a CSS class: a
@@ -47,7 +47,7 @@ class Name:
     spoken: bool = False
 
 
-def names(level: Level, plan: Plan, sentences: str) -> Iterator[Name]:
+def names(level: Level, plan: MapScale, sentences: str) -> Iterator[MapLabel]:
     """Place the names of a level.
 
     Switches, exits, barriers, enemies and regions always have names.  Solids and movers have names only
@@ -74,7 +74,7 @@ def is_spoken_of(name: str, sentences: str) -> bool:
     return re.search(rf"[`.]{re.escape(name)}[`.]", sentences) is not None
 
 
-def _things(level: Level, plan: Plan, sentences: str) -> Iterator[Name]:
+def _things(level: Level, plan: MapScale, sentences: str) -> Iterator[MapLabel]:
     """The names of things at their default positions."""
     small = [(switch.name, plan.at(switch.position)) for switch in level.switches]
     small += [(exit_.name, plan.at(exit_.position)) for exit_ in level.exits]
@@ -90,10 +90,10 @@ def _things(level: Level, plan: Plan, sentences: str) -> Iterator[Name]:
         for name, (x, y) in things:
             half = _LETTER * len(name) // 2
             middle = min(max(x, half), max(half, plan.size[0] - half))
-            yield Name((name,), kind, middle, y - above, is_spoken_of(name, sentences))
+            yield MapLabel((name,), kind, middle, y - above, is_spoken_of(name, sentences))
 
 
-def _apart(name: Name, taken: Sequence[Rect], size: tuple[int, int]) -> Name:
+def _apart(name: MapLabel, taken: Sequence[Rect], size: tuple[int, int]) -> MapLabel:
     """Move a name, within a map of that size, to where it overlaps ``taken`` least.
 
     Positions above and below come first, then positions beside them.
@@ -119,10 +119,12 @@ def _regions_spoken_of(level: Level, sentences: str) -> set[str]:
     return {called[match] for match in re.findall(rf"\bthe ({words})(?![-\w])", sentences)} if called else set()
 
 
-def _of_region(region: Region, inside: Rect, others: Sequence[Rect], taken: Sequence[Rect], *, spoken: bool) -> Name:
+def _of_region(
+    region: Region, inside: Rect, others: Sequence[Rect], taken: Sequence[Rect], *, spoken: bool
+) -> MapLabel:
     """Place the name of a region inside it, near its north-western corner, without overlaps if possible."""
     name = region.name.replace("_", " ")
-    best, least = Name((name,), "region-name", inside[0] + _MARGIN, inside[1] + _LINE, spoken), float("inf")
+    best, least = MapLabel((name,), "region-name", inside[0] + _MARGIN, inside[1] + _LINE, spoken), float("inf")
     # A name that is too long for one line gets a line for each word.
     lines = (name,) if _LETTER * len(name) <= inside[2] - inside[0] else tuple(name.split())
     width, height = _LETTER * max(map(len, lines)) + _MARGIN, _LINE * len(lines)
@@ -132,11 +134,11 @@ def _of_region(region: Region, inside: Rect, others: Sequence[Rect], taken: Sequ
             far = hypot(left - inside[0], top - inside[1])
             hidden = sum(_overlap(room, rect) for rect in taken) + 10 * sum(_overlap(room, rect) for rect in others)
             if (cost := far + hidden) < least:
-                best, least = Name(lines, "region-name", left + _MARGIN, top + _LINE, spoken), cost
+                best, least = MapLabel(lines, "region-name", left + _MARGIN, top + _LINE, spoken), cost
     return best
 
 
-def _around(name: Name) -> Rect:
+def _around(name: MapLabel) -> Rect:
     width = _LETTER * max(map(len, name.lines))
     left = name.x if name.kind == "region-name" else name.x - width // 2
     return left, name.y - _LINE, left + width, name.y + _LINE * (len(name.lines) - 1)

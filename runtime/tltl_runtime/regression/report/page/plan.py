@@ -10,7 +10,7 @@ Rect = tuple[int, int, int, int]
 """Left, top, right and bottom."""
 
 
-class Plan:
+class MapScale:
     """Converts the metres of a level to the centimetres of its map.  ``size`` is the map's width and height."""
 
     def __init__(self, bounds: Box) -> None:
