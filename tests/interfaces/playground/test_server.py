@@ -459,8 +459,8 @@ def test_an_interrupt_at_any_point_of_serving_ends_it(monkeypatch: pytest.Monkey
 
 
 def is_interrupted_at(step: int, monkeypatch: pytest.MonkeyPatch) -> bool:
-    """Run a server and interrupt it after ``step`` instructions; return False if it stops before."""
-    code = (Server.serve_forever.__code__, Server._woken_by_signals.__wrapped__.__code__)  # type: ignore[attr-defined]
+    """Whether an interrupt after so many steps ends a server, which otherwise stops once its loop runs."""
+    code = (PlaygroundServer.serve_forever.__code__, PlaygroundServer._woken_by_signals.__wrapped__.__code__)  # type: ignore[attr-defined]
     left = step
 
     def trace(frame: FrameType, event: str, _: object) -> object:
@@ -477,7 +477,7 @@ def is_interrupted_at(step: int, monkeypatch: pytest.MonkeyPatch) -> bool:
         if left >= 0:
             server._loop.stop()
 
-    with Server(0) as server:
+    with PlaygroundServer(0) as server:
         monkeypatch.setattr(server._stopped, "wait", lambda: pytest.fail("it waits for itself"))
         server._loop.call_soon(stop)
         before = sys.gettrace()

@@ -191,15 +191,13 @@ class PlaygroundServer:
 
     def serve_forever(self) -> None:
         """Serve until :meth:`shutdown` is called, or Ctrl-C raises KeyboardInterrupt."""
-        self._stopped.clear()
-        self._loop.call_soon(self._look)
-        if os.name == "nt":
-            self._loop.call_soon(self._wake)
-        with self._woken_by_signals():
-            try:
-                self._loop.run_forever()
-            finally:
-                self._loop.remove_reader(self._listener)
+        self._thread = current_thread()
+        try:
+            self._stopped.clear()
+            self._loop.call_soon(self._look)
+            if os.name == "nt":
+                self._loop.call_soon(self._wake)
+            with self._woken_by_signals():
                 try:
                     self._loop.run_forever()
                 finally:
@@ -209,8 +207,11 @@ class PlaygroundServer:
             self._stopped.set()
 
     def shutdown(self) -> None:
-        """Stop :meth:`serve_forever`, which runs in another thread, and wait until it ends."""
-        if not self._stopped.is_set():
+        """Stop :meth:`serve_forever` if it runs in another thread, and wait until it ends.
+
+        In the same thread, it has ended; an interrupt may have ended it at any point.
+        """
+        if self._thread is not current_thread() and not self._stopped.is_set():
             self._loop.call_soon_threadsafe(self._loop.stop)
             self._stopped.wait()
 
