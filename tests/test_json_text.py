@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.io.json_text import JsonLimitError, load, loads
+from tltlc.io.json_text import JsonLimitError, load, loads, non_finite
 from tltlc.io.limits import Limit
 from tltlc.pipeline import read_artefact
 
@@ -58,6 +58,22 @@ def test_a_large_file_is_rejected(tmp_path: Path) -> None:
     path.write_text(" " * 100 + "1")
     with pytest.raises(JsonLimitError, match="larger than"):
         load(path, SMALL)
+
+
+@given(VALUES)
+def test_a_value_with_a_number_that_is_not_finite_is_no_json(value: object) -> None:
+    try:
+        json.dumps(value, allow_nan=False)
+    except ValueError:
+        assert non_finite(value) in ("Infinity", "-Infinity")
+    else:
+        assert non_finite(value) is None
+
+
+def test_the_first_number_that_is_not_finite_is_named() -> None:
+    infinity, nan = float("inf"), float("nan")
+    assert non_finite([1.0, {"a": [True, -infinity], "b": nan}, infinity]) == "-Infinity"
+    assert non_finite({"a": {"b": nan}, "c": infinity}) == "NaN"
 
 
 @pytest.mark.parametrize(

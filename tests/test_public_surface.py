@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[1]
 GOLDEN = Path(__file__).with_name("public_surface.txt")
 
 FORMATS = {
-    "artefact": "tltlc/backends/json.py",
+    "artefact": "tltlc/artefact/encode.py",
     "conformance corpus": "tltlc/tools/conformance/corpus.py",
     "policy": "runtime/tltl_runtime/policies/file.py",
     "episode": "runtime/tltl_runtime/stealth/recordings/file.py",

@@ -257,9 +257,20 @@ def load(path: str | os.PathLike[str]) -> Fspa:
 @bounded()
 def read_artefact(source: SourceFile) -> Fspa:
     """Return the automaton in the text of an artefact. Errors are as for :func:`load`."""
-    from tltlc.backends.json import read
+    from tltlc.artefact.decode import read
 
     return read(source.text, source.name)
+
+
+@bounded()
+def decode_artefact(document: object, name: str) -> Fspa:
+    """Return the automaton in the parsed JSON of an artefact, which messages call ``name``.
+
+    ``document`` is what :func:`tltlc.io.json_text.loads` returns. Errors are TLT0006 and TLT0601 to TLT0604.
+    """
+    from tltlc.artefact.decode import decode
+
+    return decode(document, name)
 
 
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:

@@ -13,10 +13,10 @@ from tests.backends.strategies import automata, expressions, finite, hostile_aut
 from tests.fixtures import cover_and_hide
 from tltlc import backends
 from tltlc.artefact import size as sizes
+from tltlc.artefact.decode import read
 from tltlc.artefact.encode import encode
 from tltlc.artefact.layout import WIDTH, layout
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.json import read
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression.python import compile_expressions

@@ -2,12 +2,13 @@
 
 from tltlc.backends import Options as BackendOptions
 from tltlc.backends import emit
-from tltlc.pipeline import CompileOptions, compile_source, read_artefact, unknown_spec
+from tltlc.pipeline import CompileOptions, compile_source, decode_artefact, read_artefact, unknown_spec
 
 __all__ = [
     "BackendOptions",
     "CompileOptions",
     "compile_source",
+    "decode_artefact",
     "emit",
     "read_artefact",
     "unknown_spec",

@@ -1,20 +1,96 @@
-"""Decode the JSON document of an artefact, which must match the schema, to the automaton."""
+"""Decode artefacts to automata: from their text, or from their JSON document."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from tltlc.artefact.checks import RECOMPILE, Origin, check_arithmetic, check_consistency, check_format
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State, Text
 from tltlc.core.names import split_name
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.expression.json import from_json
+from tltlc.io.json_text import JsonLimitError, loads, non_finite
+from tltlc.io.limits import ARTEFACT
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.parser import FormulaParser
 from tltlc.resolve.spec import Atom, Param, Signal
 
 
-def decode(document: dict[str, Any]) -> Fspa:
-    """Return the automaton; whole numbers may be written as ``3.0``, and unknown fields are ignored."""
+def decode(document: object, name: str) -> Fspa:
+    """Return the automaton of an artefact whose JSON is already parsed; messages call the artefact ``name``.
+
+    Whole numbers may be written as ``3.0``, and unknown fields are ignored.  Errors point into the
+    document as :func:`json.dumps` writes it, on one line.
+
+    Raises:
+        TltlError: TLT0006 it nests too deep, or its arithmetic is too large; TLT0601 it is not an
+            artefact, or has a number that is not finite; TLT0602 it has another version; TLT0603 it
+            does not fit the schema; TLT0604 it is inconsistent.
+    """
+    constant = non_finite(document)
+    if constant is not None:
+        raise _not_finite(name, constant)
+    return _decoded(document, Origin(name, lambda: json.dumps(document, ensure_ascii=False)))
+
+
+def read(text: str, name: str) -> Fspa:
+    """Return the automaton in the text of an artefact; messages call the artefact ``name``.
+
+    Raises:
+        TltlError: as :func:`decode`; also TLT0006 the text has too many values, and TLT0601 it is
+            not JSON.
+    """
+    origin = Origin(name, lambda: text)
+    return _decoded(_parsed(origin.source), origin)
+
+
+def _parsed(source: SourceFile) -> object:
+    try:
+        return loads(source.text, ARTEFACT, _refuse)
+    except json.JSONDecodeError as error:
+        where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
+        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,), RECOMPILE)]) from None
+    except _NotFiniteError as error:
+        raise _not_finite(source.name, str(error)) from None
+    except JsonLimitError as error:
+        raise TltlError([Diagnostic("TLT0006", f"`{source.name}` cannot be read: {error}", help=RECOMPILE)]) from None
+
+
+class _NotFiniteError(Exception):
+    """``NaN`` or ``Infinity``, which Python's parser would accept."""
+
+
+def _refuse(constant: str) -> None:
+    raise _NotFiniteError(constant)
+
+
+def _not_finite(name: str, constant: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0601", f"`{name}` is not JSON: {constant} is no number", help=RECOMPILE)])
+
+
+def _remark(message: str) -> str:
+    """Return the parser's message as the text of a label."""
+    return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
+
+
+def _decoded(document: object, origin: Origin) -> Fspa:
+    try:
+        fspa = _fspa(check_format(document, origin))
+        check_arithmetic(fspa, origin)
+        check_consistency(fspa, origin)
+    except RecursionError:
+        title = f"`{origin.name}` cannot be read: it nests too deep"
+        raise TltlError([Diagnostic("TLT0006", title, help=RECOMPILE)]) from None
+    return fspa
+
+
+# --- from a document that fits the schema -------------------------------------------------------------
+
+
+def _fspa(document: dict[str, Any]) -> Fspa:
     spec = document["spec"]
     limit = spec["limit_steps"]
     label = _label_reader(document["atoms"])

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Final
 
 from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, State
 from tltlc.automaton.text import formula_text, label_text
 from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Param, Signal
+
+VERSION: Final = 1
+"""The version of the format; no other version can be read."""
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
@@ -18,7 +21,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
     """
     return {
         "format": "fspa",
-        "version": 1,
+        "version": VERSION,
         "spec": {
             "name": fspa.name,
             "doc": fspa.doc,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
@@ -50,6 +51,24 @@ def load(path: Path, limit: Limit) -> Any:
     if len(data) > limit.size:
         raise JsonLimitError(f"it is larger than {limit.size >> 20} MiB")
     return loads(data, limit)
+
+
+def non_finite(value: Any) -> str | None:
+    """Return the first number in a value that is not finite, as ``NaN`` or ``-Infinity``; None if all are finite.
+
+    Does not recurse.
+    """
+    waiting = [value]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, float):
+            if not isfinite(part):
+                return json.dumps(part)
+        elif isinstance(part, dict):
+            waiting.extend(reversed(part.values()))
+        elif isinstance(part, list):
+            waiting.extend(reversed(part))
+    return None
 
 
 def _nests_deeper(value: Any, depth: int) -> bool:

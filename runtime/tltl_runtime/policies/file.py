@@ -23,7 +23,7 @@ from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltlc.api import Diagnostic, Fspa, SourceFile, TltlError, compiler, fileio
+from tltlc.api import Diagnostic, Fspa, TltlError, compiler, fileio
 
 SUFFIX: Final = ".safetensors"
 FORMAT: Final = "tltl-policy"
@@ -147,17 +147,13 @@ def _card(header: dict[str, Any], name: str) -> Card:
         raise _REFUSALS.unreadable(name, "it holds the weights of something else")
     _REFUSALS.check_version(name, document.pop("version", None), VERSION)
     try:
-        fspa = _fspa(document.pop("artefact", None), name)
+        fspa = compiler.decode_artefact(document.pop("artefact", None), f"{name}/artefact")
         card = from_json(Card, document, "card", fspa=fspa)
     except (RecordJsonError, RecursionError) as error:
         raise _REFUSALS.broken(name, str(error)) from None
     if wrong := _fault(card):
         raise _REFUSALS.broken(name, wrong)
     return card
-
-
-def _fspa(document: object, name: str) -> Fspa:
-    return compiler.read_artefact(SourceFile(f"{name}/artefact", json.dumps(document, ensure_ascii=False)))
 
 
 def _fault(card: Card) -> str | None:

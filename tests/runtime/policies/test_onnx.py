@@ -16,8 +16,7 @@ from tltl_runtime.policies.onnx import to_onnx
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policies
 from tltlc.automaton.text import label_text
-from tltlc.core.source import SourceFile
-from tltlc.pipeline import read_artefact
+from tltlc.pipeline import decode_artefact
 
 onnxruntime = pytest.importorskip("onnxruntime")
 
@@ -84,7 +83,7 @@ def test_the_metadata_describe_inputs_and_outputs(policy: Policy, model: bytes) 
         "label": str(state.label),
         "english": label_text(policy.card.fspa, state.id),
     }
-    fspa = read_artefact(SourceFile("card", json.dumps(json.loads(texts["card"])["artefact"])))
+    fspa = decode_artefact(json.loads(texts["card"])["artefact"], "card")
     assert fspa == policy.card.fspa
     assert texts["spec_hash"] == spec_hash(fspa)
 

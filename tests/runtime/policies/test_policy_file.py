@@ -213,6 +213,10 @@ BIAS = "actor.mlp.0.bias"
         (set_card(training={"curve": [[1, float("inf")]]}), r"TLT0842.*`card.training.curve\[0\]\[1\]` is inf"),
         (set_card(artefact=None), "TLT0601"),
         (set_card(artefact={"format": "fspa", "version": 9}), "TLT0602"),
+        (
+            set_card(artefact={"format": "fspa", "version": float("nan")}),
+            "TLT0601.*`bot.safetensors/artefact` is not JSON: NaN is no number",
+        ),
         (set_card(fspa=3), "TLT0842.*`fspa`"),
         (set_card(branches=[]), "TLT0842.*`card.branches`"),
         (set_card(branches=[3, 3, 2, 2, 0]), "TLT0842.*`card.branches`"),

@@ -158,6 +158,21 @@ def test_an_invalid_description_is_rejected(copy: Run, name: str, change: Callab
 
 
 @pytest.mark.parametrize(
+    ("artefact", "reason"),
+    [
+        (None, "TLT0601: `run/run.json/artefact` is JSON, but not an artefact"),
+        ({"format": "fspa", "version": 9}, "TLT0602: this artefact has version 9"),
+        ({"format": "fspa", "version": float("inf")}, "TLT0601: .* is not JSON: Infinity is no number"),
+    ],
+)
+def test_an_invalid_automaton_in_the_description_is_rejected(copy: Run, artefact: object, reason: str) -> None:
+    path = copy.folder / RUN
+    path.write_text(json.dumps({**json.loads(path.read_text()), "artefact": artefact}))
+    with pytest.raises(TltlError, match=reason):
+        read_run(copy.folder)
+
+
+@pytest.mark.parametrize(
     ("name", "changes"),
     [
         ("TLT0862_module", {"classes__runner": "nowhere:Runner"}),

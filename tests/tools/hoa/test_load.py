@@ -113,7 +113,7 @@ def _survives_export_and_import(fspa: Fspa, example: Path) -> None:
 def _as_artefact(fspa: Fspa) -> Fspa:
     """Write the automaton as an artefact and read it back; reading checks all invariants of
     artefacts."""
-    from tltlc.backends.json import read
+    from tltlc.artefact.decode import read
 
     text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
     assert isinstance(text, str)

@@ -133,8 +133,8 @@ def read_run(folder: Path) -> Run:
     values = _values(source, document, tuple(_PLAIN))
     if "artefact" not in document:
         raise _unfit(source, "it lacks 'artefact'")
-    artefact = json.dumps(document["artefact"])
-    return Run(folder=folder, fspa=compiler.read_artefact(SourceFile(f"{source.name}/artefact", artefact)), **values)
+    fspa = compiler.decode_artefact(document["artefact"], f"{source.name}/artefact")
+    return Run(folder=folder, fspa=fspa, **values)
 
 
 def read_place(folder: Path) -> tuple[str, str]:

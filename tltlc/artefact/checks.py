@@ -1,0 +1,97 @@
+"""Check the JSON document of an artefact. Errors have codes, and point at the value in the text of the document."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from itertools import islice
+from typing import Any, Final
+
+from tltlc.artefact.consistency import problems
+from tltlc.artefact.encode import VERSION
+from tltlc.artefact.errors import JsonSchemaValueException
+from tltlc.artefact.locations import Path, path_of, span_of
+from tltlc.artefact.validator import validate
+from tltlc.automaton.fspa import Fspa
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.expression.tree import depth, most_parts
+from tltlc.io.limits import ARITHMETIC
+
+MOST_PROBLEMS: Final = 5
+"""The most inconsistencies of one artefact that are reported."""
+RECOMPILE: Final = "compile the spec again"
+
+
+class Origin:
+    """The name of a document in messages, and its text, which is made when the first error is placed in it."""
+
+    def __init__(self, name: str, text: Callable[[], str]) -> None:
+        self.name = name
+        self._text = text
+
+    @cached_property
+    def source(self) -> SourceFile:
+        """The text of the document."""
+        return SourceFile(self.name, self._text())
+
+    def error(self, code: str, title: str, path: Path, advice: str = RECOMPILE) -> Diagnostic:
+        """Return an error that points at the first line of the value at ``path``."""
+        span = span_of(self.source.text, path)
+        line_end = self.source.text.find("\n", span.start, span.end)
+        first_line = span if line_end < 0 else Span(span.start, line_end)
+        return Diagnostic(code, title, (Label(self.source, first_line),), advice)
+
+
+def check_format(document: object, origin: Origin) -> dict[str, Any]:
+    """Return the document after checking that it is an artefact of this version and fits the schema.
+
+    Raises:
+        TltlError: TLT0601 it is not an artefact, TLT0602 it has another version, TLT0603 it does
+            not fit the schema.
+    """
+    if not isinstance(document, dict) or document.get("format") != "fspa":
+        title = f"`{origin.name}` is JSON, but not an artefact"
+        raise TltlError([Diagnostic("TLT0601", title, help="`tltlc compile` writes artefacts: NAME.fspa.json")])
+    version = document.get("version")
+    if isinstance(version, bool) or version != VERSION:
+        raise TltlError([_other_version(version, origin)])
+    try:
+        validate(document)
+    except JsonSchemaValueException as error:
+        raise TltlError([_schema_error(error, origin)]) from None
+    return document
+
+
+def check_arithmetic(fspa: Fspa, origin: Origin) -> None:
+    """Raise TltlError, TLT0006, for the first atom whose expression is larger than any spec could produce."""
+    for index, atom in enumerate(fspa.atoms):
+        path = ("atoms", index, "expression")
+        if depth(atom.expression) > ARITHMETIC.compared:
+            title = f"the arithmetic of `{atom.name}` is more than {ARITHMETIC.compared} operators deep"
+            raise TltlError([origin.error("TLT0006", title, path)])
+        if most_parts(atom.expression) > ARITHMETIC.parts:
+            title = f"the arithmetic of `{atom.name}` has a part with more than {ARITHMETIC.parts} cases or arguments"
+            raise TltlError([origin.error("TLT0006", title, path)])
+
+
+def check_consistency(fspa: Fspa, origin: Origin) -> None:
+    """Raise TltlError, TLT0604, with the first inconsistencies of the automaton (:data:`MOST_PROBLEMS`)."""
+    first = islice(problems(fspa), MOST_PROBLEMS)
+    errors = [origin.error("TLT0604", problem.message, problem.path) for problem in first]
+    if errors:
+        raise TltlError(errors)
+
+
+def _other_version(version: object, origin: Origin) -> Diagnostic:
+    if not isinstance(version, int) or isinstance(version, bool):
+        return origin.error("TLT0602", "this artefact does not say its version", ("version",))
+    title = f"this artefact has version {version}, and only version {VERSION} can be read"
+    advice = "use a newer tltlc" if version > VERSION else RECOMPILE
+    return origin.error("TLT0602", title, ("version",), advice)
+
+
+def _schema_error(error: JsonSchemaValueException, origin: Origin) -> Diagnostic:
+    from tltlc.artefact.schema_messages import worded
+
+    return origin.error("TLT0603", worded(error), path_of(error.place))
