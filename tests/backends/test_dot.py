@@ -14,7 +14,7 @@ from tltlc.automaton.fspa import Fspa, Guard, Notation, Pair, Text
 from tltlc.automaton.text import label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
-from tltlc.backends.drawing.folding import marked
+from tltlc.backends.drawing.folding import whole
 from tltlc.backends.drawing.texts import GuardNotation, arrows, visible, wrapped
 from tltlc.core.record import replace
 
@@ -79,7 +79,7 @@ def test_notations(notation: Notation, label: str, guard: str) -> None:
 def test_every_state_and_guard_is_drawn_once(fspa: Fspa) -> None:
     drawn = parsed(emitted(fspa))
     assert len(drawn.nodes()) == len(fspa.states) + 1
-    expected = arrows(fspa, marked(fspa).edges, "unicode")
+    expected = arrows(fspa, whole(fspa).edges, "unicode")
     assert sum(map(len, expected.values())) == len(fspa.edges)
     shown = {tuple(map(int, edge)): words_of(edge.attr["label"]) for edge in drawn.edges() if edge[0] != "start"}
     assert len(drawn.edges()) == len(shown) + 1

@@ -12,7 +12,7 @@ from tltlc import compile_text
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends import Options
 from tltlc.backends.dot import graph
-from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, folded, marked, span, whole
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, EdgeLabel, folded, span, whole
 from tltlc.core.record import replace
 
 
@@ -68,48 +68,48 @@ def chains(draw: st.DrawFn) -> Fspa:
     return replace(cover_and_hide(), states=states, edges=rows)
 
 
-def edges_of(fspa: Fspa, state: int) -> set[tuple[Guard, int]]:
-    return {(edge.guard, edge.target) for edge in fspa.edges_from(state)}
+def edges_of(drawing: Drawing, state: int) -> set[tuple[EdgeLabel, int]]:
+    return {(edge.label, edge.target) for edge in drawing.edges if edge.source == state}
 
 
 def check(fspa: Fspa) -> Drawing:
     """Assert by definition what folding promises, and return the drawing."""
     drawing = folded(fspa)
-    fspa = marked(fspa)
+    full = whole(fspa)
     inner = [state.id for run in drawing.folded.values() for state in run]
     drawn = [state.id for state in drawing.states]
-    assert sorted([*(state for state in drawn if state not in drawing.folded), *inner]) == list(range(len(fspa.states)))
+    assert sorted([*(state for state in drawn if state not in drawing.folded), *inner]) == list(range(len(full.states)))
     assert 0 not in inner
-    kept = [edge for edge in fspa.edges if edge.source not in inner]
+    kept = [edge for edge in full.edges if edge.source not in inner]
     for first, run in drawing.folded.items():
         assert len(run) >= LEAST_FOLDED
         assert run[0].id == first
-        check_run(fspa, drawing, [state.id for state in run])
+        check_run(full, drawing, [state.id for state in run])
     assert [edge for edge in drawing.edges if edge.source not in inner] == kept, "all others are drawn as they are"
     assert {edge.source for edge in drawing.edges} | {edge.target for edge in drawing.edges} <= set(drawn)
     return drawing
 
 
-def check_run(fspa: Fspa, drawing: Drawing, run: list[int]) -> None:
+def check_run(full: Drawing, drawing: Drawing, run: list[int]) -> None:
     """Assert that the run is entered only at its start, and that its states differ only in their next state."""
-    entering = {state: [edge for edge in fspa.edges if edge.target == state] for state in run}
+    entering = {state: [edge for edge in full.edges if edge.target == state] for state in run}
     assert all(len(edges) == 1 for edges in entering.values())
     path = [entering[run[0]][0].source, *run]
-    (guard,) = {entering[state][0].guard for state in run}
+    (label,) = {entering[state][0].label for state in run}
     assert [entering[state][0].source for state in run] == path[:-1]
-    (last,) = (target for label, target in edges_of(fspa, run[-1]) - common(fspa, run) if label == guard)
+    (last,) = (target for other, target in edges_of(full, run[-1]) - common(full, run) if other == label)
     path.append(last)
-    assert len({(fspa.states[state].verdict, fspa.states[state].accepting) for state in path}) == 1
-    (beyond,) = {target for label, target in edges_of(fspa, last) - common(fspa, run) if label == guard}
+    assert len({(full.states[state].verdict, full.states[state].accepting) for state in path}) == 1
+    (beyond,) = {target for other, target in edges_of(full, last) - common(full, run) if other == label}
     assert beyond != last
     for state, following in zip(path, [*path[1:], beyond], strict=True):
-        assert edges_of(fspa, state) == common(fspa, run) | {(guard, following)}
-    shown = {(edge.guard, edge.target) for edge in drawing.edges if edge.source == run[0]}
-    assert shown == common(fspa, run) | {(guard, last)}
+        assert edges_of(full, state) == common(full, run) | {(label, following)}
+    shown = {(edge.label, edge.target) for edge in drawing.edges if edge.source == run[0]}
+    assert shown == common(full, run) | {(label, last)}
 
 
-def common(fspa: Fspa, run: list[int]) -> set[tuple[Guard, int]]:
-    return set.intersection(*(edges_of(fspa, state) for state in run))
+def common(full: Drawing, run: list[int]) -> set[tuple[EdgeLabel, int]]:
+    return set.intersection(*(edges_of(full, state) for state in run))
 
 
 @settings(max_examples=60, deadline=None)
@@ -132,26 +132,27 @@ def test_any_artefact_is_folded_by_the_same_rule(fspa: Fspa) -> None:
 def test_every_run_is_folded(fspa: Fspa) -> None:
     """Every path of five states that can be folded is folded."""
     inner = {state.id for run in folded(fspa).folded.values() for state in run}
-    for edge in fspa.edges:
+    full = whole(fspa)
+    for edge in full.edges:
         path = [edge.source]
-        shared = edges_of(fspa, edge.source) - {(edge.guard, edge.target)}
-        while len(path) < LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, shared):
-            path += [target for guard, target in edges_of(fspa, path[-1]) - shared if guard == edge.guard]
-        if len(path) == LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, shared):
+        shared = edges_of(full, edge.source) - {(edge.label, edge.target)}
+        while len(path) < LEAST_FOLDED + 2 and continues(full, path, edge.label, shared):
+            path += [target for label, target in edges_of(full, path[-1]) - shared if label == edge.label]
+        if len(path) == LEAST_FOLDED + 2 and continues(full, path, edge.label, shared):
             assert inner.issuperset(path[1:-1])
 
 
-def continues(fspa: Fspa, path: list[int], guard: Guard, shared: set[tuple[Guard, int]]) -> bool:
+def continues(full: Drawing, path: list[int], label: EdgeLabel, shared: set[tuple[EdgeLabel, int]]) -> bool:
     """Whether the last state of a path agrees with the others, so that the path may go on through it."""
-    next_edges = [way for way in edges_of(fspa, path[-1]) - shared if way[0] == guard]
-    first, last = fspa.states[path[0]], fspa.states[path[-1]]
+    next_edges = [way for way in edges_of(full, path[-1]) - shared if way[0] == label]
+    first, last = full.states[path[0]], full.states[path[-1]]
     entered = all(
-        state and [edge.source for edge in fspa.edges if edge.target == state] == [before]
+        state and [edge.source for edge in full.edges if edge.target == state] == [before]
         for before, state in pairwise(path[:-1])
     )
     return (
         len(next_edges) == 1
-        and edges_of(fspa, path[-1]) == shared | set(next_edges)
+        and edges_of(full, path[-1]) == shared | set(next_edges)
         and (first.verdict, first.accepting) == (last.verdict, last.accepting)
         and entered
         and next_edges[0][1] not in path

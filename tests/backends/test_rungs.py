@@ -11,7 +11,7 @@ from tests.backends.test_folding import automaton, chains, counting, endless
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends.drawing.counting_states import folded_in_step
-from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, marked
+from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, whole
 from tltlc.backends.drawing.picture_content import notes, shown
 from tltlc.core.record import replace
 
@@ -64,19 +64,19 @@ ANY = in_step() | ladders() | counting() | endless() | chains() | automata() | i
 @given(ANY)
 def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
     drawing = folded_in_step(fspa)
-    fspa = marked(fspa)
+    full = whole(fspa)
     first = {state.id: run for run, states in drawing.folded.items() for state in states}
     drawn = [state.id for state in drawing.states]
-    assert sorted([*(set(drawn) - set(drawing.folded)), *first]) == list(range(len(fspa.states)))
+    assert sorted([*(set(drawn) - set(drawing.folded)), *first]) == list(range(len(full.states)))
     assert 0 not in first
     assert all(len(run) >= LEAST_FOLDED and run[0].id == state for state, run in drawing.folded.items())
     targets: dict[object, set[int]] = {}
     for edge in drawing.edges:
         assert {edge.source, edge.target} <= set(drawn)
-        targets.setdefault((edge.source, edge.guard), set()).add(edge.target)
-    for edge in fspa.edges:
+        targets.setdefault((edge.source, edge.label), set()).add(edge.target)
+    for edge in full.edges:
         source, target = first.get(edge.source, edge.source), first.get(edge.target, edge.target)
-        for end in targets[source, edge.guard]:
+        for end in targets[source, edge.label]:
             if end == target:
                 break
             if source == target:  # an edge along a run, drawn as an edge to the end of the run
@@ -84,7 +84,7 @@ def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
                 break
             # An edge from the last inner rung to the rung after it.
             if end in drawing.folded and edge.target in {
-                way.target for way in fspa.edges if way.source == drawing.folded[end][-1].id
+                way.target for way in full.edges if way.source == drawing.folded[end][-1].id
             }:
                 break
         else:
@@ -94,14 +94,14 @@ def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
 @given(ANY)
 def test_folded_states_agree(fspa: Fspa) -> None:
     drawing = folded_in_step(fspa)
-    fspa = marked(fspa)
+    full = whole(fspa)
     inner = {state.id for run in drawing.folded.values() for state in run}
-    guards: dict[int, set[object]] = {state.id: set() for state in fspa.states}
-    for edge in fspa.edges:
-        guards[edge.source].add(edge.guard)
+    labels: dict[int, set[object]] = {state.id: set() for state in full.states}
+    for edge in full.edges:
+        labels[edge.source].add(edge.label)
         assert edge.target not in inner or edge.target in drawing.folded or edge.source in inner
     for run in drawing.folded.values():
-        assert len({(state.verdict, state.accepting, frozenset(guards[state.id])) for state in run}) == 1
+        assert len({(state.verdict, state.accepting, frozenset(labels[state.id])) for state in run}) == 1
 
 
 def test_some_random_ladder_is_folded() -> None:

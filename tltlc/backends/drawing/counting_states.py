@@ -8,37 +8,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from tltlc.automaton.fspa import Edge, Fspa, Guard, State
-from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, marked
+from tltlc.automaton.fspa import Fspa, State
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, DrawnEdge, EdgeLabel, whole
 from tltlc.core.record import replace
 
 Rung = tuple[int, ...]
-Steps = Mapping[int, Mapping[Guard, int]]
-"""Per state, the target of each guard."""
+Steps = Mapping[int, Mapping[EdgeLabel, int]]
+"""Per state, the target of each label of an edge."""
 
 
 def folded_in_step(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner rungs of each ladder folded into the first inner rung.
 
-    Each state of a rung agrees with the next state of its run in verdict, acceptance and guards.
-    Equal guards lead to the same target, or to one rung further. An inner rung is entered only from
-    the rung before it. The edges of the folded rung to itself along a run are drawn to the last
-    rung, as in a run that is folded alone.
+    Each state of a rung agrees with the next state of its run in verdict, acceptance and the labels
+    of its edges. Equal labels lead to the same target, or to one rung further. An inner rung is
+    entered only from the rung before it. The edges of the folded rung to itself along a run are
+    drawn to the last rung, as in a run that is folded alone.
     """
-    fspa = marked(fspa)
-    ladders = _ladders(fspa)
+    states, all_edges = fspa.states, whole(fspa).edges
+    ladders = _ladders(states, all_edges)
     runs = [run for ladder in ladders for run in zip(*ladder, strict=True)]
     first = {state: run[0] for run in runs for state in run[:-1]}
     last = {run[0]: run[-1] for run in runs}
-    edges = (_drawn(edge, first, last) for edge in fspa.edges if first.get(edge.source, edge.source) == edge.source)
+    edges = (_drawn(edge, first, last) for edge in all_edges if first.get(edge.source, edge.source) == edge.source)
     return Drawing(
-        tuple(state for state in fspa.states if first.get(state.id, state.id) == state.id),
+        tuple(state for state in states if first.get(state.id, state.id) == state.id),
         tuple(edges),
-        {run[0]: tuple(fspa.states[state] for state in run[:-1]) for run in runs},
+        {run[0]: tuple(states[state] for state in run[:-1]) for run in runs},
     )
 
 
-def _drawn(edge: Edge, first: Mapping[int, int], last: Mapping[int, int]) -> Edge:
+def _drawn(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
     """Return an edge of a drawn state: edges into an inner rung lead to the first one, edges along
     a run to the last one.
     """
@@ -46,18 +46,18 @@ def _drawn(edge: Edge, first: Mapping[int, int], last: Mapping[int, int]) -> Edg
     return replace(edge, target=last[target] if target == edge.source and target in last else target)
 
 
-def _ladders(fspa: Fspa) -> list[list[Rung]]:
+def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[Rung]]:
     """Return the inner rungs of each ladder that is long enough, and the rung after them."""
-    steps: dict[int, dict[Guard, int]] = {state.id: {} for state in fspa.states}
-    entering: list[set[int]] = [set() for _ in fspa.states]
-    for edge in fspa.edges:
-        steps[edge.source][edge.guard] = edge.target
+    steps: dict[int, dict[EdgeLabel, int]] = {state.id: {} for state in states}
+    entering: list[set[int]] = [set() for _ in states]
+    for edge in edges:
+        steps[edge.source][edge.label] = edge.target
         entering[edge.target].add(edge.source)
     ladders: list[list[Rung]] = []
     used_states: set[int] = set()
-    for edge in fspa.edges:
+    for edge in edges:
         if not used_states & {edge.source, edge.target}:
-            for ladder in _from((edge.source,), (edge.target,), fspa.states, steps, entering):
+            for ladder in _from((edge.source,), (edge.target,), states, steps, entering):
                 if used_states.isdisjoint(state for rung in ladder for state in rung):
                     ladders.append(ladder)
                     used_states.update(state for rung in ladder[:-1] for state in rung)
@@ -93,8 +93,8 @@ def _onward(rung: Rung, following: Rung, states: Sequence[State], steps: Steps) 
         agree = (current.verdict, current.accepting) == (next_.verdict, next_.accepting)
         if not agree or steps[state].keys() != steps[after].keys() or after not in steps[state].values():
             return None
-        for guard, target in steps[state].items():
-            target_after = steps[after][guard]
+        for label, target in steps[state].items():
+            target_after = steps[after][label]
             if target != target_after and successors.setdefault(target, target_after) != target_after:
                 return None
     return successors if successors.keys() >= set(following) else None

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
-from tltlc.automaton.fspa import Edge, Fspa, Guard, State
+from tltlc.automaton.fspa import Fspa, Guard, Mark, State
 from tltlc.core.record import EMPTY, record, replace
 
 LEAST_FOLDED = 3
@@ -15,56 +16,76 @@ _number = re.compile(r"(\d+)")
 _one_step = re.compile(r"\b1 step\b")
 
 
+class EdgeLabel(NamedTuple):
+    """The guard of an edge, and the sets of pairs that contain the edge: none over finite traces."""
+
+    guard: Guard
+    marks: tuple[Mark, ...]
+
+
+@record
+class DrawnEdge:
+    """An edge of a drawing. Edges that differ only in their pairs have different labels."""
+
+    source: int
+    target: int
+    label: EdgeLabel
+
+
 @record
 class Drawing:
-    """The states and edges that are drawn, in the automaton's order; edges have their marks (:func:`marked`).
+    """The states and edges that are drawn, in the automaton's order.
 
     ``folded`` maps the first inner state of each run, which is drawn for all of them, to the run's
     inner states. Its edge along the run leads to the last state of the run.
     """
 
     states: tuple[State, ...]
-    edges: tuple[Edge, ...]
+    edges: tuple[DrawnEdge, ...]
     folded: Mapping[int, tuple[State, ...]] = EMPTY
 
 
 def whole(fspa: Fspa) -> Drawing:
     """Return a drawing of every state and edge."""
-    return Drawing(fspa.states, marked(fspa).edges)
+    edges = (
+        DrawnEdge(edge.source, edge.target, EdgeLabel(edge.guard, marks))
+        for edge, marks in zip(fspa.edges, fspa.marks(), strict=True)
+    )
+    return Drawing(fspa.states, tuple(edges))
 
 
 def folded(fspa: Fspa) -> Drawing:
     """Return the drawing with the inner states of each run folded into one.
 
-    A run is a path on which each state has an edge with the same guard to the next state (the last
-    one: to another state), and all agree in verdict, acceptance and the guards and targets of their
+    A run is a path on which each state has an edge with the same label to the next state (the last
+    one: to another state), and all agree in verdict, acceptance and the labels and targets of their
     other edges. An inner state is entered only from the state before it, so distances stay equal or
     fall by one.
     """
-    fspa = marked(fspa)
-    runs = _inner_states(fspa)
+    states, edges = fspa.states, whole(fspa).edges
+    runs = _inner_states(states, edges)
     hidden = {state for run in runs for state, _ in run[1:]}
     shortened = {run[0][1]: run[-1][1].target for run in runs}
-    edges = (replace(edge, target=shortened.get(edge, edge.target)) for edge in fspa.edges if edge.source not in hidden)
+    kept = (replace(edge, target=shortened.get(edge, edge.target)) for edge in edges if edge.source not in hidden)
     return Drawing(
-        tuple(state for state in fspa.states if state.id not in hidden),
-        tuple(edges),
-        {run[0][0]: tuple(fspa.states[state] for state, _ in run) for run in runs},
+        tuple(state for state in states if state.id not in hidden),
+        tuple(kept),
+        {run[0][0]: tuple(states[state] for state, _ in run) for run in runs},
     )
 
 
-def _inner_states(fspa: Fspa) -> list[list[tuple[int, Edge]]]:
+def _inner_states(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[tuple[int, DrawnEdge]]]:
     """Return the inner states of each run that is long enough, each with its edge along the run."""
-    outgoing: list[list[Edge]] = [[] for _ in fspa.states]
-    entering: list[list[Edge]] = [[] for _ in fspa.states]
-    for edge in fspa.edges:
+    outgoing: list[list[DrawnEdge]] = [[] for _ in states]
+    entering: list[list[DrawnEdge]] = [[] for _ in states]
+    for edge in edges:
         outgoing[edge.source].append(edge)
         entering[edge.target].append(edge)
-    along: dict[int, Edge] = {}
-    for state in range(1, len(fspa.states)):  # not state 0, which the start of the trace also enters
+    along: dict[int, DrawnEdge] = {}
+    for state in range(1, len(states)):  # not state 0, which the start of the trace also enters
         if len(entering[state]) == 1:
-            onward = _onward(entering[state][0], fspa, outgoing)
-            if onward is not None and _onward(onward, fspa, outgoing) is not None:
+            onward = _onward(entering[state][0], states, outgoing)
+            if onward is not None and _onward(onward, states, outgoing) is not None:
                 along[state] = onward
     runs = []
     for state, edge in along.items():
@@ -77,15 +98,15 @@ def _inner_states(fspa: Fspa) -> list[list[tuple[int, Edge]]]:
     return runs
 
 
-def _onward(edge: Edge, fspa: Fspa, outgoing: list[list[Edge]]) -> Edge | None:
+def _onward(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
     """Return the edge that continues a run after this edge; None if its two states do not belong to one run."""
-    source, target = fspa.states[edge.source], fspa.states[edge.target]
+    source, target = states[edge.source], states[edge.target]
     if (source.verdict, source.accepting) != (target.verdict, target.accepting):
         return None
     other_edges = _without(edge, outgoing[source.id])
     for onward in outgoing[target.id]:
         if (
-            onward.guard == edge.guard
+            onward.label == edge.label
             and onward.target != target.id
             and _without(onward, outgoing[target.id]) == other_edges
         ):
@@ -93,23 +114,8 @@ def _onward(edge: Edge, fspa: Fspa, outgoing: list[list[Edge]]) -> Edge | None:
     return None
 
 
-def _without(left_out: Edge, edges: list[Edge]) -> list[tuple[Guard, int]]:
-    return [(edge.guard, edge.target) for edge in edges if edge is not left_out]
-
-
-def marked(fspa: Fspa) -> Fspa:
-    """Return the automaton with the pairs that name an edge after the text of its guard: ``a & b [fin 0] [inf 1]``.
-
-    Edges that differ only in their pairs then have different guards. Over finite traces the
-    automaton is unchanged.
-    """
-    if not fspa.acceptance:
-        return fspa
-    edges = []
-    for edge, marks in zip(fspa.edges, fspa.marks(), strict=True):
-        text = " ".join([edge.guard.text, *(f"[{kind} {pair}]" for pair, kind in marks)])
-        edges.append(replace(edge, guard=Guard(text, edge.guard.primes)))
-    return replace(fspa, edges=tuple(edges))
+def _without(left_out: DrawnEdge, edges: list[DrawnEdge]) -> list[tuple[EdgeLabel, int]]:
+    return [(edge.label, edge.target) for edge in edges if edge is not left_out]
 
 
 def span(first: str, last: str) -> str:

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
-from tltlc.automaton.fspa import Edge, Fspa, Notation
+from tltlc.automaton.fspa import Fspa, Notation
+from tltlc.backends.drawing.folding import DrawnEdge
 
 _OPERATORS: dict[Notation, dict[str, str]] = {
     "unicode": {"!": "¬", "&": "∧", "|": "∨", "->": "⇒", "<->": "⇔", "true": "⊤", "false": "⊥"},
@@ -48,15 +49,18 @@ class GuardNotation:
         return token if token in self._names else self._operators.get(token, token)
 
 
-def arrows(fspa: Fspa, edges: Iterable[Edge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
+def arrows(fspa: Fspa, edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
     """Return the guards of the edges between each source and target.
 
-    Over infinite traces, several edges that differ in their pairs share one arrow.
+    Over infinite traces, the pairs that name an edge follow its guard: ``a & b [fin 0] [inf 1]``.
+    Several edges that differ in their pairs share one arrow.
     """
     guards = GuardNotation(fspa, notation)
     guards_of_arrow: dict[tuple[int, int], list[str]] = {}
     for edge in edges:
-        guards_of_arrow.setdefault((edge.source, edge.target), []).append(guards.text(edge.guard.text))
+        marks = (f"[{kind} {pair}]" for pair, kind in edge.label.marks)
+        text = " ".join([guards.text(edge.label.guard.text), *marks])
+        guards_of_arrow.setdefault((edge.source, edge.target), []).append(text)
     return guards_of_arrow
 
 
