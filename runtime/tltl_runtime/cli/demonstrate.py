@@ -11,7 +11,7 @@ from tltl_runtime.cli.support.film import FILMS, Film, write_film
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
-from tltl_runtime.stealth.levels.place import level_place
+from tltl_runtime.game.place import level_place
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -57,8 +57,8 @@ def command(
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.stealth.capabilities.feasible import reach_warnings
     from tltl_runtime.stealth.env import make_env
+    from tltl_runtime.stealth.expert.expert import expert_episodes
     from tltl_runtime.stealth.recording import RecordEpisode
-    from tltl_runtime.training.imitation.demonstrations import expert_episodes
 
     with cli.Report() as report:
         file, variant = level_place(level)
@@ -83,7 +83,8 @@ def command(
 
 def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
     """Write the recording and the pictures of an episode; return the path of the recording."""
-    from tltl_runtime.stealth.recordings.file import SUFFIX, file_stem, new_path, to_bytes
+    from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
+    from tltl_runtime.stealth.recordings.file import to_bytes
     from tltl_runtime.stealth.rendering.plan import draw_episode
     from tltlc.api import fileio
 

@@ -13,7 +13,7 @@ from tltl_runtime.cli.support.closed_output import on_without_readers
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.printable import plain
-from tltl_runtime.stealth.levels.place import level_place
+from tltl_runtime.game.place import level_place
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ class _Kept:
     def _elsewhere(self, episode: Episode, refused: TltlError) -> str:
         from tltl_runtime.cli.support.episode_text import episode_line
         from tltl_runtime.cli.support.recording_files import write_elsewhere
-        from tltl_runtime.stealth.recordings.file import file_stem
+        from tltl_runtime.game.recording_path import file_stem
 
         path = write_elsewhere(episode, file_stem(episode), refused)
         count = f"{self._made.count} of {self._wanted}"
@@ -196,7 +196,9 @@ class _Kept:
 
 def _line(attempt: Tried, wanted: int) -> str:
     from tltl_runtime.cli.support.episode_text import episode_line
+    from tltl_runtime.stealth.recordings.episode import Episode
 
+    assert isinstance(attempt.episode, Episode)
     count = f"{attempt.kept} of {wanted}"
     return episode_line(attempt.episode, f"{attempt.path} ({count})" if attempt.path else f"not kept ({count})")
 

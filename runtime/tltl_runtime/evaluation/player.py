@@ -8,13 +8,14 @@ from typing import Any, Final, Literal, Protocol
 import gymnasium
 
 from tltl_runtime.evaluation.play import play
+from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import to_bytes
-from tltl_runtime.stealth.recordings.trajectory import Trajectory, trajectory
+from tltl_runtime.stealth.recordings.trajectory import trajectory
 from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
 
 Recorded = Literal["none", "failures", "all"]

@@ -1,12 +1,8 @@
-"""Hashes that identify specs and levels by their content."""
+"""The hash that identifies a spec by its content."""
 
 from __future__ import annotations
 
-import hashlib
-import json
-
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.support.record_json import to_json
+from tltl_runtime.support.json_hash import json_hash
 from tltlc.api import Fspa, expressions
 
 
@@ -15,7 +11,7 @@ def spec_hash(fspa: Fspa) -> str:
 
     The names of the spec and its atoms, labels and documentation do not count.
     """
-    return _hash(
+    return json_hash(
         {
             "semantics": fspa.semantics,
             "judge": fspa.judge,
@@ -28,17 +24,3 @@ def spec_hash(fspa: Fspa) -> str:
             "edges": [(edge.source, edge.target, edge.guard.primes) for edge in fspa.edges],
         }
     )
-
-
-def level_hash(level: Level) -> str:
-    """Return the SHA-256, in hexadecimal, of the content of a level.
-
-    Its name, variant, documentation, spec, files and regions do not count.
-    """
-    left_out = ("name", "variant", "doc", "spec", "files", "regions")
-    return _hash({name: value for name, value in to_json(level).items() if name not in left_out})
-
-
-def _hash(document: object) -> str:
-    text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()

@@ -14,6 +14,8 @@ from gymnasium import spaces
 from gymnasium.error import ClosedEnvironmentError
 from numpy.typing import NDArray
 
+from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.capabilities.capabilities import check_supply
@@ -23,7 +25,6 @@ from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.observation.observation import Senses
-from tltl_runtime.stealth.observation.sensors import SensorChoice
 from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.signals import Signals
 from tltl_runtime.stealth.snapshot import ACTIONS, BRANCHES
@@ -189,14 +190,6 @@ def make_env(
     except BaseException:
         game.close()
         raise
-
-
-def spec_of(level: Level) -> str:
-    """Return the path of a level's default spec; raises TltlError, TLT0721, if it has none."""
-    if not level.spec:
-        title, help_ = f"the level `{level.name}` is made for no spec", "say which one: `FILE.tltl:NAME`"
-        raise TltlError([Diagnostic("TLT0721", title, help=help_)])
-    return level.spec
 
 
 def check_fit(level: Level, fspa: Fspa, spec: str | Path | Fspa) -> None:

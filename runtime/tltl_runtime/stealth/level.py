@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from tltl_runtime.game.sensors import MapSensor as MapSensor
+from tltl_runtime.game.sensors import Sensors as Sensors
 from tltlc.api import record
 
 Point = tuple[float, float, float]
@@ -150,27 +152,6 @@ class Start:
     position: Point
     yaw: float = 0.0
     spread: float = 0.0
-
-
-@record
-class MapSensor:
-    """The semantic map around the agent: ``extent`` by ``extent`` cells of ``cell`` metres.
-
-    ``extent`` is odd.
-    """
-
-    types: tuple[str, ...]
-    cell: float
-    extent: int
-
-
-@record
-class Sensors:
-    """The observations: vectors to ``entities``, values of ``variables`` (signals), the map."""
-
-    entities: tuple[str, ...]
-    variables: tuple[str, ...]
-    map: MapSensor | None
 
 
 @record

@@ -10,6 +10,7 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
+from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.spec.episode_summary import End, settled_end
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import GameEnv
@@ -20,7 +21,7 @@ from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltlc.api import Diagnostic, Step, TltlError, fileio
 
 
-class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
+class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
     """Record the current episode; observations, rewards and infos pass through unchanged.
 
     ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one. ``player`` is the
@@ -162,7 +163,8 @@ def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
 
 
 def _write(folder: Path, episode: Episode) -> None:
-    from tltl_runtime.stealth.recordings.file import file_stem, new_path, write_episode
+    from tltl_runtime.game.recording_path import file_stem, new_path
+    from tltl_runtime.stealth.recordings.file import write_episode
 
     write_episode(new_path(folder, file_stem(episode)), episode)
 

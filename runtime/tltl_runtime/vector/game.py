@@ -9,11 +9,12 @@ from typing import Any, Literal
 
 import gymnasium
 
+from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.env import check_fit, make_env, spec_of
+from tltl_runtime.stealth.env import check_fit, make_env
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.observation.sensors import SensorChoice
 from tltl_runtime.vector.env import WorkerVectorEnv
 from tltlc.api import Fspa, RewardOptions
 

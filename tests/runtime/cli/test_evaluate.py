@@ -24,10 +24,10 @@ from tests.waiting import HANG_S
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import Player
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import read_episode, write_episode
 from tltl_runtime.training.run.run import Run as Training
 from tltl_runtime.training.run.run import write_run

@@ -8,12 +8,12 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.policies.card import Card
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, new_actor
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.observation.sensors import SensorChoice
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.monitor import RewardOptions
 
 SMALL = Network(hidden=(32, 32), channels=(4, 4))

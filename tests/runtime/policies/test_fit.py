@@ -12,9 +12,10 @@ import pytest
 from tests.runtime.policies.examples import card_of
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.fit import check_policy
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from tltl_runtime.game.level import spec_of
 from tltl_runtime.policies.file import read_policy, to_bytes
 from tltl_runtime.policies.fit import check_policy
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.levels.identity import level_hash
 
 RECORD = Path(__file__).parents[3] / "docs" / "training.md"
 

@@ -10,11 +10,11 @@ import pytest
 from tests.runtime.regression.game import edit
 from tests.runtime.regression.made import PLAYED, several
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.regression.suite.level_texts import designed, level_texts
 from tltl_runtime.regression.suite.suite import SHIPPED, read_suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of, read_baseline, text_sha256, write_baseline
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 

@@ -21,7 +21,7 @@ from tests.runtime.regression.made import ROOM, changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.suite.dependencies import dependencies
@@ -30,6 +30,7 @@ from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import Ready, episodes, ready
 from tltl_runtime.regression.verdict.run import CASES, Done, _inputs, case_folder, check, owned, regress
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.stealth.recordings.versions import versions

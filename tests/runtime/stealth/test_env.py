@@ -19,7 +19,8 @@ from gymnasium.utils.env_checker import check_env
 
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tltl_runtime import load_task
-from tltl_runtime.stealth.env import GameEnv, make_env, spec_of
+from tltl_runtime.game.level import spec_of
+from tltl_runtime.stealth.env import GameEnv, make_env
 from tltl_runtime.stealth.level import MapSensor, Sensors
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc.core.record import replace

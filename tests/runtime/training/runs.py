@@ -13,9 +13,9 @@ from typing import Any
 
 import torch
 
+from tltl_runtime.game.level import spec_of
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.run.checkpoint import Checkpoint, read_checkpoint

@@ -12,6 +12,7 @@ from tests import pipes
 from tests.runtime.training.imitating import SOON, kept, played
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.expert.expert import expert_episodes
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.imitation.demonstrations import (
@@ -19,7 +20,6 @@ from tltl_runtime.training.imitation.demonstrations import (
     Demonstrations,
     Tried,
     by_expert,
-    expert_episodes,
     recordings,
 )
 from tltlc.diagnostics.diagnostic import TltlError

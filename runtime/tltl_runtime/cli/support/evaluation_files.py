@@ -11,13 +11,14 @@ from typing import Any, Final
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
 from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup
 from tltl_runtime.evaluation.text import report_text
-from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.recording import writable_folder
-from tltl_runtime.stealth.recordings.file import SUFFIX, from_bytes, new_path, read_episode
-from tltl_runtime.stealth.recordings.trajectory import Trajectory
+from tltl_runtime.stealth.recordings.file import from_bytes, read_episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.stealth.levels.file import level_names, level_path, load_level, variants
 from tltl_runtime.stealth.levels.made_for import LEVELS
-from tltl_runtime.stealth.levels.table import suggestion
+from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError, fileio
 
 _STARTER: Final = Path(__file__).parents[2] / "starter" / "vault.toml"

@@ -10,6 +10,7 @@ import click
 from gymnasium import spaces
 
 from tltl_runtime.cli.support.sensor_options import senses_options
+from tltl_runtime.game.place import level_place
 from tltl_runtime.stealth.capabilities.capabilities import check_supply, given_params, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import Reach, reachable
@@ -17,7 +18,6 @@ from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.levels.made_for import shown
-from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.stealth.observation.observation import Senses
 from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 

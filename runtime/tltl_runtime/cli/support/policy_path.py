@@ -6,9 +6,9 @@ from pathlib import Path
 from shlex import quote
 
 from tltl_runtime.cli.support.level_argument import check_spelling, check_there, names_level
+from tltl_runtime.game.place import level_place
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.run import POLICY, RUN, named_trainings, read_place, resume_command
 from tltlc.api import Diagnostic, TltlError, fileio

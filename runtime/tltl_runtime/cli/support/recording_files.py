@@ -9,9 +9,10 @@ from tempfile import gettempdir
 
 import click
 
+from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import SUFFIX, new_path, write_episode
+from tltl_runtime.stealth.recordings.file import write_episode
 from tltl_runtime.support.number_text import share
 from tltlc.api import Diagnostic, TltlError, fileio
 

@@ -22,13 +22,15 @@ from tltl_runtime.cli.support.level_argument import check_spelling, check_there,
 from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
+from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.place import absolute_variant, level_place
 from tltl_runtime.policies.fit import differences
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task, read_spec
 from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.env import check_fit, spec_of
+from tltl_runtime.stealth.env import check_fit
 from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.stealth.levels.place import absolute_variant, level_place
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.support.number_text import duration
 from tltl_runtime.support.record_json import to_json

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
+from tltl_runtime.game.place import shown_variant
 from tltl_runtime.regression.explain.account import Account, summaries_of
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
@@ -15,7 +16,6 @@ from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.play import JudgedCase
 from tltl_runtime.regression.verdict.verdict import FigureChange, Judgement, Verdict
-from tltl_runtime.stealth.levels.place import shown_variant
 from tltlc.api import Diagnostic, TltlError, record
 
 

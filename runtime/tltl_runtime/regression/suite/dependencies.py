@@ -14,11 +14,11 @@ from os.path import normpath
 from pathlib import Path
 from typing import Any, Final
 
+from tltl_runtime.game.place import overlays_of
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
-from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.api import SourceFile, TltlError, fileio, record, specs, syntax
 
 _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")

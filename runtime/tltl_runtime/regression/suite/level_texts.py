@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.place import overlays_of
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
-from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from tltl_runtime.game.place import shown_variant
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.level_texts import text_now
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltl_runtime.stealth.levels.file import level_path
-from tltl_runtime.stealth.levels.place import shown_variant
 
 
 def unnamed(suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]) -> dict[str, tuple[str, ...]]:

@@ -12,14 +12,16 @@ from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
 from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import spread_of
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.game.level import spec_of
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.env import make_env, spec_of
+from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.training.run.versions import versions

@@ -7,13 +7,14 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.level import spec_of
 from tltl_runtime.policies.card import OBSERVATION, Card
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.table1.paper_table import Model
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.record import ended_as

@@ -13,7 +13,7 @@ from tltl_runtime.evaluation.evaluate import Pool, results, set_up
 from tltl_runtime.evaluation.player import EpisodeRequest, Setup
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.explain.account import Account, account, summaries_of
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Case
@@ -22,6 +22,7 @@ from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_and_changes, load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record

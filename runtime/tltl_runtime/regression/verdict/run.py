@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.regression.explain.reasons import is_infeasible
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
@@ -15,7 +16,6 @@ from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
 from tltl_runtime.regression.verdict.play import JudgedCase, Ready, Told, judged, ready
-from tltl_runtime.stealth.recordings.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltl_runtime.support.folder_lock import held
 from tltl_runtime.support.record_json import to_json

@@ -10,9 +10,9 @@ from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import OfferedSignal, offers, params
 from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.made_for import comes_with_the_package
-from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described
 from tltl_runtime.stealth.world.player import DECISION
+from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Signal, TltlError, monitors, specs
 
 _KIND_OF: Final = {"active": "switch", "open": "barrier"}

@@ -5,11 +5,13 @@ It knows the level and the spec, and sees what a player sees.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from math import dist
 from typing import Any, Final
 
 import gymnasium
 
+from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.stealth.expert.goals import next_goals
 from tltl_runtime.stealth.expert.movers import reach_of
 from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_of
@@ -94,6 +96,16 @@ class Expert:
 
     def _meets_mover(self, leg: Leg) -> bool:
         return any(_is_within(leg.place, box, _ROOM) for box in self._movers)
+
+
+def expert_episodes(
+    env: EpisodeRecorder[EpisodeT], seeds: Iterable[int], *, careful: bool = True
+) -> Iterator[EpisodeT]:
+    """Yield an episode of the expert for each seed; ``careful`` is passed to :class:`Expert`."""
+    expert = Expert(env, careful)
+    for seed in seeds:
+        play_episode(env, expert, seed)
+        yield env.episode
 
 
 def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dict[str, Any]:

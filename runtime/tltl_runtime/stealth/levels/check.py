@@ -8,8 +8,8 @@ from collections.abc import Iterable
 
 from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
-from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.stealth.signals import readers
+from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltlc.api import Diagnostic, SourceFile, replace
 
 

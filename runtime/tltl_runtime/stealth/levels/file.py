@@ -13,16 +13,17 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.place import overlays_of, shown_variant
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
-from tltl_runtime.stealth.levels.place import overlays_of, shown_variant
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.stealth.levels.room import check_room
-from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, CheckedTable, suggestion, wrong
-from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
+from tltl_runtime.stealth.levels.table import CheckedTable, wrong
 from tltl_runtime.stealth.levels.ways import check_ways
+from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
+from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, replace
 
 _MOST_FAULTS: Final = 1_000
@@ -64,7 +65,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
 
     ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on. The overlay is one that
     variants name, or the path of a ``.toml`` file
-    (:func:`~tltl_runtime.stealth.levels.place.overlays_of`).
+    (:func:`~tltl_runtime.game.place.overlays_of`).
 
     :func:`read_level` also returns warnings.
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.stealth.levels.table import CheckedTable, suggestion, wrong
+from tltl_runtime.stealth.levels.table import CheckedTable, wrong
+from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, fileio
 
 LEVELS: Final = Path(__file__).parents[2] / "levels"

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tltl_runtime.stealth.levels.table import suggestion
-from tltl_runtime.stealth.levels.toml_tree import Entry, Tree
+from tltl_runtime.support.suggestion import suggestion
+from tltl_runtime.support.toml_tree import Entry, Tree
 from tltlc.api import Diagnostic, Label
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final, Literal, cast
 
+from tltl_runtime.game.sensors import MapSensor, Sensors
 from tltl_runtime.stealth.enemies.branches import added_branches
 from tltl_runtime.stealth.level import (
     Barrier,
@@ -12,16 +13,15 @@ from tltl_runtime.stealth.level import (
     Enemy,
     EnemyKind,
     Exit,
-    MapSensor,
     Mover,
     Point,
-    Sensors,
     Solid,
     Start,
     Switch,
     Unlock,
 )
-from tltl_runtime.stealth.levels.table import CheckedTable, suggestion
+from tltl_runtime.stealth.levels.table import CheckedTable
+from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Label, record
 
 _OUTER_WALL: Final = 0.2

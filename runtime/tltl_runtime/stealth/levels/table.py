@@ -3,27 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from difflib import get_close_matches
+from collections.abc import Callable, Mapping
 from typing import Any, Final, TypeVar
 
 from tltl_runtime.stealth.level import Point
-from tltl_runtime.stealth.levels.toml_tree import Entry, Tree
+from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
+from tltl_runtime.support.toml_tree import Entry, Tree
 from tltlc.api import EMPTY, Diagnostic, Label
 
 T = TypeVar("T")
 
 REQUIRED: Final[Any] = object()
 """Sentinel in place of a default: the key is required."""
-
-MOST_SUGGESTIONS: Final = 100
-"""The most diagnostics per file that suggest similar names.
-
-Searching similar names for thousands of diagnostics would take long.
-"""
-
-_LONGEST: Final = 100
-"""No similar names are searched for names longer than this, in characters."""
 
 FARTHEST: Final = 1000.0
 """The greatest absolute value of a coordinate, in metres."""
@@ -149,21 +140,6 @@ def wrong(entry: Entry, key: str, expected: str) -> Diagnostic:
     if "[x, y, z]" in expected and _has_decimal_commas(entry.value):
         help_ += "; these are six numbers: decimals have a point, as in 6.5"
     return Diagnostic("TLT0803", f"wrong value for `{key}`: {_shown(entry.value)}", (entry.label,), help_)
-
-
-def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
-    """Return a hint for an unknown name: a similar name, or else all names.
-
-    ``listed`` replaces the list of all names if that is long.
-    """
-    names = list(known)
-    close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []
-    close = close or [known for known in names if known.lower() == name.lower()]
-    if close:
-        return f"did you mean `{close[0]}`?"
-    if listed is not None:
-        return f"there are: {listed}"
-    return "there are: " + ", ".join(f"`{known}`" for known in names) if names else "there are none"
 
 
 def _is_number(value: object) -> bool:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from gymnasium import spaces
 
+from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.observation.semantic_map import SemanticMap
-from tltl_runtime.stealth.observation.sensors import SensorChoice, chosen
+from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.stealth.signals import AXES, LevelSignal, Reader, entities, level_signals
 
 if TYPE_CHECKING:

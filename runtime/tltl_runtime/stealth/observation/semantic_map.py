@@ -14,7 +14,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Level, MapSensor, Point
+from tltl_runtime.game.sensors import MapSensor
+from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.observation.voxels import BELOW, CROUCHED, LAYER, STANDING, Voxels
 from tltl_runtime.stealth.world.geometry import Bounds
 

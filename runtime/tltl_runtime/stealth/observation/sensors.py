@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from math import isfinite
 from typing import Any, Final
 
-from tltl_runtime.stealth.level import Level, MapSensor, Sensors, entity_names
+from tltl_runtime.game.sensors import MapSensor, SensorChoice, Sensors
+from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, CELL_WIDTH, MAP_EXTENT
-from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described, readers
+from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError
-
-SensorChoice = Sensors | Mapping[str, Any]
-"""A record, or a mapping with some of its fields; ``map`` may be a mapping, too."""
 
 DEFAULT_MAP: Final = MapSensor(CELL_TYPES, 0.5, 15)
 """Defaults for the keys that a mapping leaves out, if the level has no map of its own."""
@@ -42,6 +40,13 @@ def chosen(level: Level, choice: SensorChoice | None = None) -> Sensors:
     if log:
         raise TltlError(log)
     return sensors
+
+
+def missing_sensors(level: Level, sensors: Sensors) -> Iterator[str]:
+    """Yield the entities and signals that the sensors refer to and a level does not have, in words."""
+    entities, signals = entity_names(level), readers(level)
+    yield from (f"the entity `{name}`" for name in sensors.entities if name not in entities)
+    yield from (f"the signal `{name}`" for name in sensors.variables if name not in signals)
 
 
 def _read(level: Level, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:

@@ -16,7 +16,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Box, Level, MapSensor, Point
+from tltl_runtime.game.sensors import MapSensor
+from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.parts import CELL_TYPES
 from tltlc.api import record
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -23,7 +23,6 @@ from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Fspa, RewardOptions, SourceFile, compiler, fileio, record, replace
 
-SUFFIX: Final = ".episode.npz"
 FORMAT: Final = "tltl-episode"
 VERSION: Final = 1
 MAX_BYTES: Final = fileio.limits.RECORDING.size
@@ -67,32 +66,6 @@ class Meta:
     modes: tuple[str, ...]
     names: AxisNames
     level: Level
-
-
-def file_stem(episode: Episode) -> str:
-    """Return the name of an episode's files without their endings: ``LEVEL-VARIANT-SEED``."""
-    return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
-
-
-def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Collection[str] = ()) -> Path:
-    """Return a path for an episode that overwrites nothing.
-
-    It is ``STEM.episode.npz``, else ``STEM-2.episode.npz``, and so on. ``pictures`` are the endings
-    of files that are written beside the episode, such as ``.png``. A file with exactly this
-    ``content`` may be overwritten, and so may its pictures.
-    """
-    name, number = stem, 1
-    while not _is_free(folder, name, content, pictures):
-        number += 1
-        name = f"{stem}-{number}"
-    return folder / f"{name}{SUFFIX}"
-
-
-def _is_free(folder: Path, name: str, content: bytes | None, pictures: Collection[str]) -> bool:
-    path = folder / f"{name}{SUFFIX}"
-    if os.path.lexists(path):
-        return path.is_file() and path.read_bytes() == content
-    return not any(os.path.lexists(folder / f"{name}{ending}") for ending in pictures)
 
 
 def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:

@@ -1,25 +1,11 @@
-"""The trajectory of an episode, small enough to keep hundreds of them in memory."""
+"""The trajectory of a recorded episode."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tltl_runtime.spec.episode_summary import End
+from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltlc.api import record
-
-
-@record
-class Trajectory:
-    """The player's path, the automaton's states, and the end.
-
-    ``points`` is (n + 1, 2), in metres; ``states`` is (n + 1,).
-    """
-
-    points: NDArray[np.float32]
-    states: NDArray[np.int32]
-    end: End
 
 
 def trajectory(episode: Episode) -> Trajectory:

@@ -10,8 +10,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.recordings.trajectory import Trajectory
 from tltl_runtime.stealth.rendering.plan import (
     DPI,
     ENDS,

@@ -10,13 +10,15 @@ from itertools import count
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import Task
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import SUFFIX, file_stem, new_path, read_episode, to_bytes
+from tltl_runtime.stealth.recordings.file import read_episode, to_bytes
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 PLAYER: Final = "expert"

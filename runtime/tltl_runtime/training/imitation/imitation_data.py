@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from tensordict import TensorDict
 from torch import Tensor
 
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode

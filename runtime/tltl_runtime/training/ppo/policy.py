@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from torch import Tensor
 
 from tltl_runtime.policies.card import Card
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.run import Run
 from tltl_runtime.training.run.versions import versions

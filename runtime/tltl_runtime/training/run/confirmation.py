@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from tltl_runtime.evaluation.evaluate import evaluate
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.training.run.checkpoint import level_changed
 from tltl_runtime.training.run.report import Confirmation
 from tltl_runtime.training.run.run import Run

@@ -12,11 +12,12 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
+from tltl_runtime.game.place import absolute_variant
 from tltl_runtime.policies.card import OBSERVATION
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.stealth.levels.place import absolute_variant
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import MAX_BYTES
 from tltl_runtime.support.number_text import listed
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json

@@ -12,7 +12,7 @@ from tltl_runtime.stealth.levels import parts
 from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.levels.file import load_level, read_level
 from tltl_runtime.stealth.levels.table import CheckedTable
-from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
+from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
@@ -118,7 +118,7 @@ def test_only_the_first_errors_search_for_similar_names(
 ) -> None:
     searches = []
     monkeypatch.setattr(
-        "tltl_runtime.stealth.levels.table.get_close_matches",
+        "tltl_runtime.support.suggestion.get_close_matches",
         lambda *arguments, **options: searches.append(arguments) or [],
     )
     diagnostics = diagnostics_of(level(tmp_path, text, head))

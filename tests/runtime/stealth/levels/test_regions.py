@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.stealth.level import Box, Region
 from tltl_runtime.stealth.levels.file import level_names, load_level
+from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.diagnostics.diagnostic import TltlError
 
 ROOM = """doc = "A room."

@@ -18,6 +18,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
@@ -25,7 +26,7 @@ from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.recordings.arrays import ARRAYS
 from tltl_runtime.stealth.recordings.check import check, check_replay, resimulate
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import SUFFIX, from_bytes, read_episode, to_bytes, write_episode
+from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes, write_episode
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

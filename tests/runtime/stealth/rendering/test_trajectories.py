@@ -7,9 +7,9 @@ from io import BytesIO
 import numpy as np
 from PIL import Image
 
+from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.recordings.trajectory import Trajectory
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 
 RED, GREEN = (220, 38, 38), (22, 163, 74)

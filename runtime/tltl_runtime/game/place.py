@@ -15,8 +15,8 @@ _OVERLAY: Final = re.compile(r"\+([^+/\\]*(?=\+|\Z)|.+?\.toml(?=\+|\Z)|[^+]*)", 
 def level_place(argument: str) -> tuple[str, str | None]:
     """Split an argument into level and variant.
 
-    The result is for :func:`~tltl_runtime.stealth.levels.file.load_level`. The variant is None if
-    the argument has none. A path that exists is never split, nor is a drive letter.
+    The result is for :meth:`~tltl_runtime.game.game.Game.load_level`. The variant is None if the
+    argument has none. A path that exists is never split, nor is a drive letter.
     """
     match = _PLACE.match(argument)
     if not match or os.path.exists(argument):  # noqa: PTH110

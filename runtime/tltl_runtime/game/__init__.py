@@ -1,0 +1,1 @@
+"""A game as training, evaluation and regression see it: levels, environments, recordings and an expert."""

@@ -1,0 +1,115 @@
+"""A game: everything that training, evaluation and policies need of one."""
+
+from __future__ import annotations
+
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import gymnasium
+
+from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
+from tltl_runtime.game.sensors import SensorChoice, Sensors
+from tltl_runtime.spec.wrapper import TltlEnv
+from tltlc.api import Fspa, RewardOptions
+
+LevelT = TypeVar("LevelT", bound=Level)
+
+
+class Game(ABC, Generic[LevelT, EpisodeT]):
+    """A game with levels of type ``LevelT`` and recorded episodes of type ``EpisodeT``.
+
+    An instance has no state, so that its methods can be sent to other processes.
+    """
+
+    choices: Mapping[str, tuple[str, ...]]
+    """The branches of an action and the names of their choices."""
+
+    modules: tuple[str, ...]
+    """The modules that a process needs to play.  A server of worker processes imports them once."""
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        """The number of choices of each branch of an action."""
+        return tuple(map(len, self.choices.values()))
+
+    # --- levels ------------------------------------------------------------------------------------
+
+    @abstractmethod
+    def load_level(self, name: str, variant: str = "v0") -> LevelT:
+        """Load a level in one of its variants; ``name`` may be the path of a file.
+
+        Raises:
+            TltlError: there is no such level or variant, or its file is invalid.
+        """
+
+    @abstractmethod
+    def level_hash(self, level: LevelT) -> str:
+        """Return the SHA-256, in hexadecimal, of everything in a level that changes episodes."""
+
+    @abstractmethod
+    def params(self, level: LevelT) -> dict[str, float]:
+        """Return the params of specs that a level defines, in SI units."""
+
+    @abstractmethod
+    def check_fit(self, level: LevelT, fspa: Fspa, spec: str | Path | Fspa) -> None:
+        """Raise one TltlError for everything that a spec needs and a level lacks.
+
+        ``fspa`` is the automaton of ``spec``.  The labels of the error point into the spec's source.
+        """
+
+    @abstractmethod
+    def missing_sensors(self, level: LevelT, sensors: Sensors) -> Iterator[str]:
+        """Yield what the sensors refer to and a level does not have, such as "the entity `exit`"."""
+
+    # --- episodes ----------------------------------------------------------------------------------
+
+    @abstractmethod
+    def make_env(
+        self,
+        level: str | os.PathLike[str],
+        variant: str = "v0",
+        spec: str | Path | Fspa | None = None,
+        *,
+        sensors: SensorChoice | None = None,
+        reward: RewardOptions | None = None,
+        params: Mapping[str, float] | None = None,
+        render_mode: str | None = None,
+    ) -> TltlEnv:
+        """Make a level with a spec, by default the one that the level was made for.
+
+        Equal seeds of its reset and equal actions give equal episodes.
+
+        Raises:
+            TltlError: the errors of :meth:`load_level`, :meth:`check_fit` and ``TltlEnv``; the level
+                does not have the ``sensors``; TLT0721, there is no spec.
+        """
+
+    @abstractmethod
+    def recorder(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> EpisodeRecorder[EpisodeT]:
+        """Return an environment of :meth:`make_env` that records its episodes, as those of ``player``."""
+
+    @abstractmethod
+    def expert_episodes(
+        self, env: EpisodeRecorder[EpisodeT], seeds: Iterable[int], *, careful: bool = True
+    ) -> Iterator[EpisodeT]:
+        """Yield an episode of the scripted expert for each seed.
+
+        An expert that is not ``careful`` plays as if nobody could see.
+        """
+
+    @abstractmethod
+    def read_episode(self, path: Path) -> EpisodeT:
+        """Read a recorded episode; raises TltlError if it cannot be read."""
+
+    @abstractmethod
+    def episode_bytes(self, episode: EpisodeT) -> bytes:
+        """Return the bytes of the file of an episode; equal episodes give equal bytes."""
+
+    @abstractmethod
+    def trajectory(self, episode: EpisodeT) -> Trajectory:
+        """Return the trajectory of an episode."""

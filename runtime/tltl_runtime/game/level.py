@@ -1,0 +1,31 @@
+"""What every game says about a level."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from tltlc.api import Diagnostic, TltlError
+
+
+class Level(Protocol):
+    """One variant of a level."""
+
+    @property
+    def name(self) -> str:
+        """The name of the level."""
+
+    @property
+    def variant(self) -> str:
+        """The name of the variant, with those of its added overlays."""
+
+    @property
+    def spec(self) -> str:
+        """The spec that the level is made for, as ``FILE.tltl:NAME``; empty if there is none."""
+
+
+def spec_of(level: Level) -> str:
+    """Return the path of a level's default spec; raises TltlError, TLT0721, if it has none."""
+    if not level.spec:
+        title, help_ = f"the level `{level.name}` is made for no spec", "say which one: `FILE.tltl:NAME`"
+        raise TltlError([Diagnostic("TLT0721", title, help=help_)])
+    return level.spec

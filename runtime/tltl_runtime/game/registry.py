@@ -1,0 +1,20 @@
+"""The game that the runtime plays."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, Final
+
+from tltl_runtime.game.game import Game
+
+_MODULE: Final = "tltl_runtime.stealth.registration"
+"""The module whose ``GAME`` is the game.
+
+It is imported by its name, so that no package that plays games depends on one of them.
+"""
+
+
+def registered_game() -> Game[Any, Any]:
+    """Return the game.  Its levels and recordings can be read without its physics."""
+    game: Game[Any, Any] = import_module(_MODULE).GAME
+    return game

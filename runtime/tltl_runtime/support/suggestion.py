@@ -1,0 +1,31 @@
+"""Suggestions for names that do not exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Final
+
+MOST_SUGGESTIONS: Final = 100
+"""The most diagnostics per file that suggest similar names.
+
+Searching similar names for thousands of diagnostics would take long.
+"""
+
+_LONGEST: Final = 100
+"""No similar names are searched for names longer than this, in characters."""
+
+
+def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
+    """Return a hint for an unknown name: a similar name, or else all names.
+
+    ``listed`` replaces the list of all names if that is long.
+    """
+    names = list(known)
+    close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []
+    close = close or [known for known in names if known.lower() == name.lower()]
+    if close:
+        return f"did you mean `{close[0]}`?"
+    if listed is not None:
+        return f"there are: {listed}"
+    return "there are: " + ", ".join(f"`{known}`" for known in names) if names else "there are none"
