@@ -1,4 +1,4 @@
-"""The game's levels as vector environments."""
+"""The levels of the game as vector environments."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from typing import Any, Literal
 import gymnasium
 
 from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.env import check_fit, make_env
-from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.vector.env import WorkerVectorEnv
 from tltlc.api import Fspa, RewardOptions
 
@@ -33,7 +32,7 @@ def make_vec(
     wrapper: Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]] | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
-    """Return ``num_envs`` environments of :func:`~tltl_runtime.stealth.env.make_env`, stepped by ``workers``.
+    """Return ``num_envs`` environments of :meth:`~tltl_runtime.game.game.Game.make_env`, stepped by ``workers``.
 
     ``wrapper`` receives the function that makes an environment, and returns the environment to use;
     it must be importable. ``options`` and errors are those of
@@ -42,13 +41,14 @@ def make_vec(
     """
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
-    loaded_level = load_level(level, variant)
+    game = registered_game()
+    loaded_level = game.load_level(level, variant)
     chosen_spec = spec_of(loaded_level) if spec is None else spec
     # Compile once here, not in each worker for each of its environments.
     fspa, _ = read_spec(chosen_spec)
-    check_fit(loaded_level, fspa, chosen_spec)
+    game.check_fit(loaded_level, fspa, chosen_spec)
     make = partial(
-        make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
+        game.make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
     )
     function = make if wrapper is None else partial(wrapper, make)
     return WorkerVectorEnv([function] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
