@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
+from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.network import Network
-from tltl_runtime.stealth.level import Sensors
 from tltlc.api import Fspa, RewardOptions, record
 
 OBSERVATION: Final = 1
@@ -18,7 +18,7 @@ class Card:
     """What a policy was trained for, and how.
 
     ``level`` and ``variant`` name the level of the training; ``level_hash`` is its
-    :func:`~tltl_runtime.policies.identity.level_hash`.  ``fspa`` is the automaton of the spec, with
+    :meth:`~tltl_runtime.game.game.Game.level_hash`.  ``fspa`` is the automaton of the spec, with
     ``params`` in SI units.  ``sensors`` are all sensors of the policy.  ``shapes`` maps the keys of
     the observation to shapes, in the order of the network's inputs.  ``branches`` are the numbers
     of choices of an action.  ``training`` is the record of the training as JSON data.

@@ -16,11 +16,11 @@ from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor
 
+from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, blank_actor, weight_count
-from tltl_runtime.stealth.level import Sensors
-from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, fileio
@@ -85,7 +85,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
     (artefact,) = compiler.emit("json", fspa).values()
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
-    weights = 2 * weight_count(network, _observed(fspa, sensors), BRANCHES)
+    weights = 2 * weight_count(network, _observed(fspa, sensors), registered_game().branches)
     size = weights + len(text.encode()) + _RECORD_BYTES
     if size > MAX_BYTES:
         raise _too_large(size)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.stealth.level import Level, entity_names
-from tltl_runtime.stealth.signals import readers
-from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.number_text import listed
 from tltlc.api import Diagnostic, Fspa, TltlError, label_text
 
@@ -30,9 +29,11 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         age = "a newer" if card.observation > OBSERVATION else "an older"
         suggestion = "use that one, or train a policy with this one"
         raise _unfit(f"the policy was trained with {age} tltlc, which shows agents other things", suggestion)
-    if card.branches != BRANCHES:
-        raise _unfit(f"the policy chooses among {_sizes(card.branches)} actions, and the game has {_sizes(BRANCHES)}")
-    missing = [*_missing(card, level)]
+    game = registered_game()
+    if card.branches != game.branches:
+        own, sizes = _sizes(card.branches), _sizes(game.branches)
+        raise _unfit(f"the policy chooses among {own} actions, and the game has {sizes}")
+    missing = [*game.missing_sensors(level, card.sensors)]
     if missing:
         title = f"the policy senses {listed(missing, _MOST)}, which the level `{level.name}` does not have"
         suggestion = f"let it play `{card.level}`, where it was trained"
@@ -50,12 +51,6 @@ def differences(own: Fspa, fspa: Fspa) -> str:
     Differences in what the designer wrote come before differences in the automaton.
     """
     return listed([*_differences(own, fspa)], _MOST)
-
-
-def _missing(card: Card, level: Level) -> Iterator[str]:
-    entities, signals = entity_names(level), readers(level)
-    yield from (f"the entity `{name}`" for name in card.sensors.entities if name not in entities)
-    yield from (f"the signal `{name}`" for name in card.sensors.variables if name not in signals)
 
 
 def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:

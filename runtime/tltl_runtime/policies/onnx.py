@@ -14,11 +14,11 @@ from onnx import ModelProto
 from onnx.helper import set_model_props
 from torch import Tensor, nn
 
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.stealth.snapshot import BRANCHES, CHOICES
 from tltlc.api import label_text, replace
 
 SUFFIX: Final = ".onnx"
@@ -68,7 +68,8 @@ class _Player(nn.Module):
 
 def _texts(card: Card) -> dict[str, str]:
     """Return the metadata of the model.  All values but ``spec_hash`` are JSON."""
-    names = list(CHOICES.items()) if card.branches == BRANCHES else []
+    game = registered_game()
+    names = list(game.choices.items()) if card.branches == game.branches else []
     texts = {
         "inputs": _inputs(card),
         "actions": [{"name": name, "choices": choices} for name, choices in names],
