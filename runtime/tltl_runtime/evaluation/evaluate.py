@@ -11,14 +11,12 @@ from typing import Literal
 from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Plays, Recorded, Setup
 from tltl_runtime.evaluation.spread import Alone, spread
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
-from tltl_runtime.stealth.env import check_fit
-from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.vector.cores import cores
 from tltlc.api import Diagnostic, Fspa, TltlError
 
@@ -68,15 +66,15 @@ def set_up(
             spec needs; the errors of :func:`~tltl_runtime.policies.fit.check_policy`; TLT0851, the
             spec has no limit.
     """
-    card = policy.card
+    game, card = registered_game(), policy.card
     name = level or card.level
     variant_name = variant or (card.variant if level is None else "v0")
-    loaded_level = load_level(name, variant_name)
-    offered = level_params(loaded_level)
+    loaded_level = game.load_level(name, variant_name)
+    offered = game.params(loaded_level)
     own = {key: value for key, value in card.params.items() if key not in offered} if spec is None else {}
     task = load_task(card.fspa if spec is None else spec, own, offered=offered)
     check_policy(card, loaded_level, task.fspa)
-    check_fit(loaded_level, task.fspa, card.fspa if spec is None else spec)
+    game.check_fit(loaded_level, task.fspa, card.fspa if spec is None else spec)
     check_limit(task.fspa)
     return Setup(policy, name, variant_name, task.fspa, seed, task.params, recorded)
 

@@ -15,6 +15,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Plays
 from tltl_runtime.evaluation.spread import LostError
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.support.child_processes import interrupts_withheld
 
 
@@ -51,14 +52,15 @@ class WorkerProcess:
 def _context() -> BaseContext:
     """Return the context that starts workers.
 
-    On Linux it is a fork server that loads torch once for all of them.  A forked process inherits
-    the locks of all threads, but not the threads.  This is safe here: the fork server computes
-    nothing, so torch starts no threads in it, and OpenBLAS ends its threads before a fork.
+    On Linux it is a fork server that loads torch and the game once for all of them.  A forked
+    process inherits the locks of all threads, but not the threads.  This is safe here: the fork
+    server computes nothing, so torch starts no threads in it, and OpenBLAS ends its threads before
+    a fork.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["tltl_runtime.evaluation.player"])
+    context.set_forkserver_preload(["tltl_runtime.evaluation.player", *registered_game().modules])
     return context
 
 

@@ -9,13 +9,11 @@ import gymnasium
 
 from tltl_runtime.evaluation.play import play
 from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.recorder import EpisodeRecorder
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.recordings.file import to_bytes
-from tltl_runtime.stealth.recordings.trajectory import trajectory
 from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
 
 Recorded = Literal["none", "failures", "all"]
@@ -28,8 +26,8 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 class Setup:
     """What an evaluation plays: ``policy`` on a level with a spec, with the default reward options.
 
-    ``level`` is an argument of :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``params``
-    are in SI units.  ``recorded`` says which episodes to record; unless it is None, the
+    ``level`` is an argument of :meth:`~tltl_runtime.game.game.Game.load_level`.  ``params`` are in
+    SI units.  ``recorded`` says which episodes to record; unless it is None, the
     trajectories of all episodes are kept.  ``player`` is the name of the policy in recordings.
     """
 
@@ -77,7 +75,8 @@ class Player:
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
         card = setup.policy.card
-        self._env: gymnasium.Env[Any, Any] = make_env(
+        self._game = registered_game()
+        self._env: gymnasium.Env[Any, Any] = self._game.make_env(
             setup.level,
             setup.variant,
             setup.fspa,
@@ -85,9 +84,9 @@ class Player:
             reward=RewardOptions(),
             params=setup.params,
         )
-        self._recorder: RecordEpisode | None = None
+        self._recorder: EpisodeRecorder[Any] | None = None
         if setup.recorded is not None:
-            self._env = self._recorder = RecordEpisode(self._env)
+            self._env = self._recorder = self._game.recorder(self._env)
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
@@ -100,7 +99,8 @@ class Player:
         player = f"{setup.player}, {CHOICES[task.sampled]}, episode {task.index}"
         episode = replace(self._recorder.episode, player=player)
         kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
-        return PlayedEpisode(task, played, trajectory(episode), to_bytes(episode) if kept else b"")
+        recording = self._game.episode_bytes(episode) if kept else b""
+        return PlayedEpisode(task, played, self._game.trajectory(episode), recording)
 
     def close(self) -> None:
         """Free the game."""
