@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.snapshot import BRANCHES
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.training.exploration.reset_distribution import Actions, EpisodeStart
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 
@@ -218,12 +218,12 @@ def _check_played(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
     for field in ("seeds", "ends", "lengths"):
         _check_array(f"{name}_{field}", arrays, np.int64, (count,))
     lengths = arrays[f"{name}_lengths"]
-    actions = sum(lengths.tolist())
-    _check_array(f"{name}_actions", arrays, np.int8, (actions, len(BRANCHES)) if actions else (0,))
+    actions, branches = sum(lengths.tolist()), registered_game().branches
+    _check_array(f"{name}_actions", arrays, np.int8, (actions, len(branches)) if actions else (0,))
     if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any():
         raise ValueError(f"`{name}_lengths` or `{name}_seeds` holds a number that is too small")
-    chosen = arrays[f"{name}_actions"].reshape(-1, len(BRANCHES))
-    if (chosen < 0).any() or (chosen >= np.array(BRANCHES)).any():
+    chosen = arrays[f"{name}_actions"].reshape(-1, len(branches))
+    if (chosen < 0).any() or (chosen >= np.array(branches)).any():
         raise ValueError(f"`{name}_actions` holds what is no action")
 
 

@@ -5,20 +5,18 @@ This module needs none of the packages for training, so ``tltlc record`` works w
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import Task
-from tltl_runtime.stealth.expert.expert import Expert, play_episode
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import read_episode, to_bytes
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 PLAYER: Final = "expert"
@@ -35,7 +33,7 @@ class Tried:
     demonstrations after it.
     """
 
-    episode: Episode
+    episode: RecordedEpisode
     path: Path | None
     kept: int
 
@@ -57,7 +55,9 @@ class Demonstrations:
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
         self.folder = folder
-        self._level, self._spec, self._params = level_hash(level), spec_hash(task.fspa), dict(task.params)
+        self._game = registered_game()
+        self._level, self._spec = self._game.level_hash(level), spec_hash(task.fspa)
+        self._params = dict(task.params)
         self._played: list[tuple[str, int]] = []
         self.others: list[Other] = []
         for path in recordings(folder):
@@ -72,11 +72,11 @@ class Demonstrations:
         """Return the seeds of the demonstrations of a player."""
         return [seed for name, seed in self._played if name == player]
 
-    def add(self, episode: Episode) -> Tried:
+    def add(self, episode: RecordedEpisode) -> Tried:
         """Write an episode to the folder if it is a demonstration.  Raises TltlError, TLT0005."""
         path = None
         if not self._why_none(episode):
-            recording = to_bytes(episode)
+            recording = self._game.episode_bytes(episode)
             path = new_path(self.folder, file_stem(episode), recording)
             fileio.write_files(self.folder, {path.name: recording})
             self._played.append((episode.player, episode.seed))
@@ -84,7 +84,7 @@ class Demonstrations:
 
     def _note(self, path: Path) -> None:
         try:
-            episode = read_episode(path)
+            episode = self._game.read_episode(path)
         except TltlError as error:
             self.others.append(Other(path, unreadable(error)))
             return
@@ -93,9 +93,9 @@ class Demonstrations:
         else:
             self._played.append((episode.player, episode.seed))
 
-    def _why_none(self, episode: Episode) -> str:
+    def _why_none(self, episode: RecordedEpisode) -> str:
         """Return why an episode is not a demonstration; empty if it is one."""
-        if level_hash(episode.level) != self._level:
+        if self._game.level_hash(episode.level) != self._level:
             return "it is of another level"
         if (spec_hash(episode.fspa), dict(episode.params)) != (self._spec, self._params):
             return "it is of another spec"
@@ -116,7 +116,7 @@ def unreadable(error: TltlError) -> str:
     return f"{first.code}, {first.title}"
 
 
-def by_expert(env: RecordEpisode, store: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
+def by_expert(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
     """Let the scripted expert play until there are ``number`` demonstrations; yield each episode.
 
     Seeds count up from ``seed``, after those of the expert's existing demonstrations, so that an
@@ -127,24 +127,18 @@ def by_expert(env: RecordEpisode, store: Demonstrations, number: int, seed: int 
     """
     played = [played_seed for played_seed in store.seeds(PLAYER) if played_seed >= seed]
     failures = 0
-    for episode in expert_episodes(env, count(max(played, default=seed - 1) + 1)) if store.count < number else ():
+    if store.count >= number:
+        return
+    for episode in registered_game().expert_episodes(env, count(max(played, default=seed - 1) + 1)):
         yield (tried := store.add(episode))
         failures = 0 if tried.path else failures + 1
         if store.count >= number:
             return
         if failures == MOST_FAILURES:
-            raise _given_up(env, episode)
+            raise _given_up(episode)
 
 
-def expert_episodes(env: RecordEpisode, seeds: Iterable[int], *, careful: bool = True) -> Iterator[Episode]:
-    """Yield an episode of the expert for each seed; ``careful`` is passed to :class:`Expert`."""
-    expert = Expert(env, careful)
-    for seed in seeds:
-        play_episode(env, expert, seed)
-        yield env.episode
-
-
-def _given_up(env: RecordEpisode, last: Episode) -> TltlError:
+def _given_up(last: RecordedEpisode) -> TltlError:
     level, spec = last.level, last.fspa.name
     title = f"the expert met `{spec}` in none of {MOST_FAILURES} episodes in a row on `{level.name}:{level.variant}`"
     help_ = (

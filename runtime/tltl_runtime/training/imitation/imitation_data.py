@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.imitation.demonstrations import (
     PLAYER,
     Demonstrations,
@@ -80,7 +78,7 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
 
     ``report`` is called with each attempt.  Raises the errors of :func:`by_expert`.
     """
-    env = RecordEpisode(make(), PLAYER)
+    env = registered_game().recorder(make(), PLAYER)
     try:
         demonstrations = Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
         for tried in by_expert(env, demonstrations, number):
@@ -98,7 +96,7 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrat
     Raises:
         TltlError: TLT0921, no demonstration remains.
     """
-    env = make()
+    game, env = registered_game(), make()
     sensed: list[_Sensed] = []
     actions: list[NDArray[np.uint8]] = []
     players: set[str] = set()
@@ -106,7 +104,7 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrat
     try:
         for path in recordings(folder):
             try:
-                episode = read_episode(path)
+                episode = game.read_episode(path)
             except TltlError as error:
                 left_out.append(f"{path.name}: {unreadable(error)}")
                 continue
@@ -143,9 +141,10 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
     return TltlError([Diagnostic("TLT0921", title, help=help_)])
 
 
-def _sensed(env: TltlEnv, episode: Episode) -> list[_Sensed] | str:
+def _sensed(env: TltlEnv, episode: RecordedEpisode) -> list[_Sensed] | str:
     """Replay an episode; return the observation before each decision, or why it does not count."""
-    if level_hash(episode.level) != level_hash(env.get_wrapper_attr("level")):
+    hash_of = registered_game().level_hash
+    if hash_of(episode.level) != hash_of(env.get_wrapper_attr("level")):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"
     observation, info = env.reset(seed=episode.seed)
     sensed: list[_Sensed] = []

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 
 from torch import Tensor
 
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import NoNumbersError, Policy
-from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.run import Run
 from tltl_runtime.training.run.versions import versions
@@ -21,11 +20,12 @@ def card_of(run: Run, env: TrainingEnv) -> Card:
 
     The level is read from its file as it is now.
     """
-    level = load_level(run.level, run.variant)
+    game = registered_game()
+    level = game.load_level(run.level, run.variant)
     return Card(
         level=level.name,
         variant=level.variant,
-        level_hash=level_hash(level),
+        level_hash=game.level_hash(level),
         fspa=run.fspa,
         params=run.params,
         reward=run.settings.rewards,

@@ -11,11 +11,9 @@ import numpy as np
 
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.training.run.checkpoint import level_changed
 from tltl_runtime.training.run.report import Confirmation
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run import Run, current_level_hash
 
 
 def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
@@ -34,5 +32,5 @@ def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirm
 
 
 def _check_level(run: Run, policy: Policy) -> None:
-    if level_hash(load_level(run.level, run.variant)) != policy.card.level_hash:
+    if current_level_hash(run) != policy.card.level_hash:
         raise level_changed(run.folder)

@@ -13,12 +13,10 @@ from shlex import quote
 from typing import Any, Final
 
 from tltl_runtime.game.place import absolute_variant
+from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION
 from tltl_runtime.policies.identity import spec_hash
-from tltl_runtime.stealth.level import Sensors
-from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recordings.file import MAX_BYTES
 from tltl_runtime.support.number_text import listed
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.training.imitation.demonstrations import recordings
@@ -66,7 +64,7 @@ class Run:
     """What to train, and the folder that stores it.
 
     ``params`` are the values of the params of ``fspa`` in SI units.  ``level`` is an argument of
-    :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``demonstrations`` is the folder of the
+    :meth:`~tltl_runtime.game.game.Game.load_level`.  ``demonstrations`` is the folder of the
     demonstrations to imitate; None is a folder of the training itself, into which the expert's are
     recorded.  ``initial`` is the policy whose weights the actor begins with, None for random
     weights.
@@ -104,7 +102,7 @@ def write_run(run: Run) -> None:
     """
     (artefact,) = compiler.emit("json", run.fspa).values()
     # Paths are absolute, because the training may be resumed from another folder.
-    level = str(level_path(run.level).absolute()) if run.level.endswith(".toml") else run.level
+    level = str(Path(run.level).absolute()) if run.level.endswith(".toml") else run.level
     document = {
         "format": _FORMAT,
         "version": _VERSION,
@@ -113,7 +111,7 @@ def write_run(run: Run) -> None:
         "variant": absolute_variant(run.variant),
         "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
         "initial": run.initial and to_json(replace(run.initial, path=str(Path(run.initial.path).absolute()))),
-        "level_hash": level_hash(load_level(run.level, run.variant)),
+        "level_hash": current_level_hash(run),
         "artefact": json.loads(artefact),
     }
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
@@ -203,7 +201,7 @@ def identity(run: Run) -> dict[str, str]:
         "settings": {path: value for path, value in leaves(to_json(run.settings)) if path not in MAY_CHANGE},
     }
     return {
-        "level": level_hash(load_level(run.level, run.variant)),
+        "level": current_level_hash(run),
         "spec": spec_hash(run.fspa),
         "seed": str(run.seed),
         "settings": hashlib.sha256(json.dumps(relevant, sort_keys=True).encode()).hexdigest(),
@@ -211,6 +209,12 @@ def identity(run: Run) -> dict[str, str]:
         # The recorded hash: once there is a checkpoint, the policy's file is no longer needed.
         **({"policy": run.initial.weights} if run.initial else {}),
     }
+
+
+def current_level_hash(run: Run) -> str:
+    """Return the hash of the level of a training; the level is read from its file as it is now."""
+    game = registered_game()
+    return game.level_hash(game.load_level(run.level, run.variant))
 
 
 def demonstrations_of(run: Run) -> Path:
@@ -240,7 +244,8 @@ def named_trainings(folder: Path) -> str:
 
 def _content_hash(folder: Path) -> str:
     """Return the SHA-256, in hexadecimal, of the recordings in a folder and of their names."""
-    contents = {path.name: fileio.read_bytes(path, str(path), MAX_BYTES) for path in recordings(folder)}
+    most = fileio.limits.RECORDING.size
+    contents = {path.name: fileio.read_bytes(path, str(path), most) for path in recordings(folder)}
     hashes = {name: hashlib.sha256(data).hexdigest() for name, data in contents.items()}
     return hashlib.sha256(json.dumps(hashes, sort_keys=True).encode()).hexdigest()
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.reset_distribution import Replayed
 from tltl_runtime.training.exploration.reverse_curriculum import Restarts
 from tltl_runtime.training.exploration.search import Player, Searched
@@ -183,7 +183,7 @@ def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
 def _env_of(run: Run) -> Callable[[], TltlEnv]:
     """Return a function that makes an environment of the training."""
     return partial(
-        make_env,
+        registered_game().make_env,
         run.level,
         run.variant,
         run.fspa,
