@@ -88,7 +88,7 @@ def _left(path: Path, partial: Path | None, *, existed: bool) -> str:
 
     ``existed`` says whether the output file existed before.
     """
-    from tltl_runtime.stealth.levels.made_for import shown
+    from tltl_runtime.support.shown_path import shown
 
     if partial and not existed:
         return f"no `{path}` was written; what is over is kept in `{shown(partial)}`: the same command goes on with it"

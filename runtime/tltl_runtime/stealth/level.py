@@ -9,19 +9,12 @@ from __future__ import annotations
 
 from typing import Literal
 
+from tltl_runtime.game.geometry import Box as Box
+from tltl_runtime.game.geometry import Point as Point
+from tltl_runtime.game.geometry import Region as Region
 from tltl_runtime.game.sensors import MapSensor as MapSensor
 from tltl_runtime.game.sensors import Sensors as Sensors
 from tltlc.api import record
-
-Point = tuple[float, float, float]
-
-
-@record
-class Box:
-    """A box from corner ``low`` to corner ``high``; each side is at least a centimetre long."""
-
-    low: Point
-    high: Point
 
 
 @record
@@ -132,14 +125,6 @@ class Exit:
 
     name: str
     position: Point
-
-
-@record
-class Region:
-    """A named part of a level, for reports."""
-
-    name: str
-    box: Box
 
 
 @record

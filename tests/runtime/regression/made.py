@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from tltl_runtime.game.episode import Kind
 from tltl_runtime.regression.explain.account import Account, Arrival, NearestMiss, summaries_of
 from tltl_runtime.regression.explain.path_points import Way
 from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.level import Point
-from tltl_runtime.stealth.recordings.cause import Kind
 from tltlc.core.record import replace
 
 ROOM = """doc = "A room."

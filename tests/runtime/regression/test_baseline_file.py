@@ -20,7 +20,7 @@ from tltl_runtime.regression.verdict.baseline import (
     write_baseline,
     written_to,
 )
-from tltl_runtime.stealth.levels.made_for import shown
+from tltl_runtime.support.shown_path import shown
 from tltlc import compile_text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

@@ -16,13 +16,13 @@ from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.recording import writable_folder
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 from tltl_runtime.support.record_json import to_json
+from tltl_runtime.support.shown_path import shown
 from tltlc.api import Diagnostic, TltlError, cli, fileio
 
 _REPORT: Final = "evaluation.json"

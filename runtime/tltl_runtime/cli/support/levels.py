@@ -17,8 +17,8 @@ from tltl_runtime.stealth.capabilities.reach import Reach, reachable
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
-from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.observation.observation import Senses
+from tltl_runtime.support.shown_path import shown
 from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 
 

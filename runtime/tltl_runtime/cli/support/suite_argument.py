@@ -14,6 +14,6 @@ def check_there(suite: Path | None) -> None:
         TltlError: TLT0001, the same error as reading the suite would raise.
     """
     if suite is not None and not fileio.exists(suite):
-        from tltl_runtime.stealth.levels.made_for import shown
+        from tltl_runtime.support.shown_path import shown
 
         fileio.read_source(suite, shown(suite))

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
+from tltl_runtime.game.episode import Kind
 from tltl_runtime.regression.explain.path_points import Way, way_of
 from tltl_runtime.regression.explain.stages import target_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.level import Point
-from tltl_runtime.stealth.recordings.cause import Kind, cause
+from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import monitors, record, replace
 

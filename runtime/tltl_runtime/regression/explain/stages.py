@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
-from tltl_runtime.stealth.expert.goals import distance_signals
+from tltl_runtime.spec.goals import distance_signals
 from tltlc.api import EMPTY, Fspa, Implicant, expressions, monitors, record
 
 _REACHES: Final = "reaches "

@@ -12,8 +12,8 @@ from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.named_files import level_like, policy_faults, policy_for_its_spec, spec_faults
 from tltl_runtime.stealth.levels.file import level_names, level_path, shared_names, variants
-from tltl_runtime.stealth.levels.made_for import shown
-from tltl_runtime.stealth.levels.table import REQUIRED, CheckedTable, wrong
+from tltl_runtime.support.checked_table import REQUIRED, CheckedTable, wrong
+from tltl_runtime.support.shown_path import shown
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.api import Diagnostic, Label, Span, TltlError, fileio, record

@@ -12,9 +12,9 @@ from typing import Final
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, baseline_path
 from tltl_runtime.regression.verdict.verdict import FIGURES
-from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.support.load_errors import Refusals
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.support.shown_path import shown
 from tltlc.api import EMPTY, Diagnostic, Fspa, TltlError, fileio, record
 
 FORMAT: Final = "tltl-baseline"

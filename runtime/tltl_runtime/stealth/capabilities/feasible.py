@@ -67,6 +67,18 @@ def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
     return [replace(diagnostic, severity="warning") for diagnostic in diagnostics]
 
 
+def is_infeasible(level: Level, fspa: Fspa) -> bool:
+    """Return whether no player can meet the spec; :func:`reach_warnings` say why.
+
+    False if the level is too large to be searched.
+    """
+    try:
+        diagnostics = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+    except TltlError:
+        return False
+    return any(diagnostic.severity == "error" for diagnostic in diagnostics)
+
+
 def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
     """The indices of the atoms that cannot hold at any reachable place."""
     offered = offers(level)

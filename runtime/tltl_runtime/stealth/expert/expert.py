@@ -12,7 +12,7 @@ from typing import Any, Final
 import gymnasium
 
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
-from tltl_runtime.stealth.expert.goals import next_goals
+from tltl_runtime.spec.goals import next_goals
 from tltl_runtime.stealth.expert.movers import reach_of
 from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_of
 from tltl_runtime.stealth.expert.sneaker import Sneaker

@@ -8,8 +8,8 @@ from typing import Final
 from tltl_runtime.stealth.enemies.branches import added_branches
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.levels.table import FARTHEST
 from tltl_runtime.stealth.signals import readers
+from tltl_runtime.support.checked_table import FARTHEST
 from tltlc.api import replace
 
 _THINNEST: Final = 1e-3

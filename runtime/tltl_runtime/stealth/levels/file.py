@@ -17,11 +17,12 @@ from tltl_runtime.game.place import overlays_of, shown_variant
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
-from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
+from tltl_runtime.stealth.levels.made_for import LEVELS, made_for
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.stealth.levels.room import check_room
-from tltl_runtime.stealth.levels.table import CheckedTable, wrong
 from tltl_runtime.stealth.levels.ways import check_ways
+from tltl_runtime.support.checked_table import CheckedTable, wrong
+from tltl_runtime.support.shown_path import shown
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, replace

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.stealth.levels.table import CheckedTable, wrong
+from tltl_runtime.support.checked_table import CheckedTable, wrong
+from tltl_runtime.support.shown_path import shown
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, fileio
 
@@ -45,14 +46,6 @@ def made_for(table: CheckedTable, level: Path) -> str:
 def comes_with_the_package(spec: str) -> bool:
     """Whether a spec file is one that shipped levels are made for."""
     return Path(spec).resolve().parent in [folder.resolve() for folder in SPECS]
-
-
-def shown(path: Path) -> str:
-    """Return the path, relative to the current folder if it is inside."""
-    try:
-        return str(path.absolute().relative_to(Path.cwd()))
-    except ValueError:
-        return str(path)
 
 
 def _specs(path: Path) -> list[str]:

@@ -20,7 +20,7 @@ from tltl_runtime.stealth.level import (
     Switch,
     Unlock,
 )
-from tltl_runtime.stealth.levels.table import CheckedTable
+from tltl_runtime.support.checked_table import CheckedTable
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Label, record
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from tltl_runtime.stealth.level import Box, Mover, Point, Region, Solid
 from tltl_runtime.stealth.levels.parts import box
-from tltl_runtime.stealth.levels.table import CheckedTable
+from tltl_runtime.support.checked_table import CheckedTable
 
 
 def named_regions(table: CheckedTable) -> tuple[Region, ...]:

@@ -5,39 +5,19 @@ from __future__ import annotations
 from collections import Counter
 from itertools import pairwise
 from math import hypot, isfinite
-from typing import Final, Literal
+from typing import Final
 
-from tltl_runtime.stealth.expert.goals import next_goals
+from tltl_runtime.game.episode import Cause, Kind
+from tltl_runtime.spec.goals import next_goals
 from tltl_runtime.stealth.expert.routes import routes_of, shut_of
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import Snapshot, places, touches
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltlc.api import Atom, expressions, label_text, record
-
-Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
+from tltlc.api import Atom, expressions, label_text
 
 _RECENT: Final = 3.0
 """Damage counts for a death if it was dealt at most this many seconds before."""
-
-
-@record
-class Cause:
-    """Why an episode ended: the ``kind`` of end, its cause, time and place, and a ``text``.
-
-    ``by`` names the enemies and lasers that killed the player, those with the most damage first; or
-    the atoms that violated the spec; or the entities that cannot be reached. ``time`` is in seconds
-    since the reset; ``place`` is the position of the player's feet at that time. ``broke`` names
-    the atoms that violated the spec, whatever the ``kind``; it is empty if the spec was not
-    violated.
-    """
-
-    kind: Kind
-    by: tuple[str, ...]
-    time: float
-    place: Point
-    text: str
-    broke: tuple[str, ...] = ()
 
 
 def cause(episode: Episode) -> Cause:

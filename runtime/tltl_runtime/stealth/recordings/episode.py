@@ -55,3 +55,13 @@ class Episode:
 
     The same versions reproduce the episode.
     """
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(n + 1,), seconds since the reset."""
+        return np.array([shot.time for shot in self.snapshots], dtype=np.float64)
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """(n + 1, 3), the positions of the player's feet, in metres."""
+        return np.array([shot.player.position for shot in self.snapshots], dtype=np.float64)

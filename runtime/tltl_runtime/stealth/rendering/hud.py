@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any, Final, Literal
 
+from tltl_runtime.game.episode import Cause, Kind
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.recordings.cause import Cause, Kind
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Fspa, formula_text, label_text, record, replace

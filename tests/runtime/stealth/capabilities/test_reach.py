@@ -11,9 +11,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tltl_runtime.regression.explain.reasons import is_infeasible
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings
 from tltl_runtime.stealth.capabilities.reach import Reach, highest_lift, reachable
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceGrid, distances, flood
 from tltl_runtime.stealth.level import Barrier, Box, Exit, Level, Mover, Point, Sensors, Solid, Start, Switch, Unlock

@@ -11,7 +11,7 @@ from tests.calls import calls
 from tltl_runtime.stealth.levels import parts
 from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.levels.file import load_level, read_level
-from tltl_runtime.stealth.levels.table import CheckedTable
+from tltl_runtime.support.checked_table import CheckedTable
 from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span

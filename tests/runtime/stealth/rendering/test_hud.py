@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
+from tltl_runtime.game.episode import Cause
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.recordings.cause import Cause
 from tltl_runtime.stealth.rendering.hud import beginning, ending, hud
 from tltl_runtime.stealth.rendering.interpolation import between
 from tltlc import compile_text

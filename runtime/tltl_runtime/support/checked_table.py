@@ -1,4 +1,4 @@
-"""Typed reading of the tables of level files; invalid values become diagnostics."""
+"""Typed reading of the tables of TOML files; invalid values become diagnostics."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final, TypeVar
 
-from tltl_runtime.stealth.level import Point
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree
 from tltlc.api import EMPTY, Diagnostic, Label
 
 T = TypeVar("T")
+
+Point = tuple[float, float, float]
 
 REQUIRED: Final[Any] = object()
 """Sentinel in place of a default: the key is required."""

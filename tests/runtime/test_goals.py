@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tltl_runtime.spec.goals import next_goals
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.stealth.expert.goals import next_goals
 
 BRANCHING = "examples/branching.tltl:branching"
 SAMPLE = {"health": 1.0, "open_left": 0.0, "open_right": 0.0} | {
