@@ -1,4 +1,4 @@
-"""A game: everything that training, evaluation and policies need of one."""
+"""A game: everything that training, evaluation and regression tests need of one."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
 import gymnasium
 
-from tltl_runtime.game.episode import Trajectory
-from tltl_runtime.game.level import Level
+from tltl_runtime.game.episode import Cause, Trajectory
+from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.level_files import LevelFiles, LevelT
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.game.sensors import SensorChoice, Sensors
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltlc.api import Fspa, RewardOptions
-
-LevelT = TypeVar("LevelT", bound=Level)
+from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 
 class Game(ABC, Generic[LevelT, EpisodeT]):
@@ -28,6 +28,12 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     choices: Mapping[str, tuple[str, ...]]
     """The branches of an action and the names of their choices."""
+
+    clock_s: float
+    """The seconds of game time that a decision takes."""
+
+    level_files: LevelFiles[LevelT]
+    """Finds and reads the files of levels."""
 
     modules: tuple[str, ...]
     """The modules that a process needs to play.  A server of worker processes imports them once."""
@@ -65,6 +71,32 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     @abstractmethod
     def missing_sensors(self, level: LevelT, sensors: Sensors) -> Iterator[str]:
         """Yield what the sensors refer to and a level does not have, such as "the entity `exit`"."""
+
+    @abstractmethod
+    def landmarks(self, level: LevelT) -> dict[str, Point]:
+        """Return the positions of the entities that do not move, by name."""
+
+    @abstractmethod
+    def solids(self, level: LevelT) -> dict[str, Box]:
+        """Return the boxes that a player may run against, by name, without those that can open."""
+
+    @abstractmethod
+    def barriers(self, level: LevelT) -> dict[str, Box]:
+        """Return the boxes that can open, by name."""
+
+    @abstractmethod
+    def reach_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
+        """Return a warning for each entity of a spec that no player can reach, and TLT0006 for a
+        level that is too large to search.
+        """
+
+    @abstractmethod
+    def is_infeasible(self, level: LevelT, fspa: Fspa) -> bool:
+        """Return whether no player can meet the spec; False if that is unknown."""
+
+    @abstractmethod
+    def level_fault(self, error: RuntimeError) -> TltlError | None:
+        """Return the fault of the level that caused an error while it was played; None for another error."""
 
     # --- episodes ----------------------------------------------------------------------------------
 
@@ -107,9 +139,29 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         """Read a recorded episode; raises TltlError if it cannot be read."""
 
     @abstractmethod
+    def episode_from_bytes(self, data: bytes, name: str) -> EpisodeT:
+        """Return the episode in the bytes of a file; messages call the file ``name``."""
+
+    @abstractmethod
     def episode_bytes(self, episode: EpisodeT) -> bytes:
         """Return the bytes of the file of an episode; equal episodes give equal bytes."""
 
     @abstractmethod
     def trajectory(self, episode: EpisodeT) -> Trajectory:
         """Return the trajectory of an episode."""
+
+    @abstractmethod
+    def summary(self, episode: EpisodeT, index: int = 0) -> EpisodeSummary:
+        """Return the summary of an episode; ``index`` is its number in an evaluation."""
+
+    @abstractmethod
+    def cause(self, episode: EpisodeT) -> Cause:
+        """Find the cause of the end of an episode."""
+
+    @abstractmethod
+    def seen_by(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
+        """Return the enemies that saw the player in this interval of time, in the order of the level."""
+
+    @abstractmethod
+    def shut(self, episode: EpisodeT) -> tuple[str, ...]:
+        """Return the barriers that were shut at the end and stop players, in the order of the level."""

@@ -12,35 +12,78 @@ from typing import TYPE_CHECKING, Any, Final
 
 import gymnasium
 
-from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.episode import Cause, Trajectory
 from tltl_runtime.game.game import Game
+from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice, Sensors
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings
 from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.level import Level, fixed_places
+from tltl_runtime.stealth.levels import file
+from tltl_runtime.stealth.levels.dependencies import file_candidates, level_dependencies
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.observation.sensors import missing_sensors
+from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import read_episode, to_bytes
+from tltl_runtime.stealth.recordings.episode_summary import summary_of
+from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes
 from tltl_runtime.stealth.recordings.trajectory import trajectory
 from tltl_runtime.stealth.snapshot import CHOICES
-from tltlc.api import Fspa, RewardOptions
+from tltl_runtime.stealth.world.faults import player_fault
+from tltl_runtime.stealth.world.player import DECISION
+from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recording import RecordEpisode
+
+
+class StealthLevelFiles(LevelFiles[Level]):
+    """The ``.toml`` files of the levels."""
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the levels that come with the package."""
+        return file.level_names()
+
+    def path(self, name: str) -> Path:
+        """Return the path of a level's file."""
+        return file.level_path(name)
+
+    def variants(self, name: str) -> tuple[str, ...]:
+        """Return the variants of a level."""
+        return file.variants(name)
+
+    def overlays(self, name: str) -> tuple[str, ...]:
+        """Return the names of the overlays beside a level's file and in the package."""
+        return file.shared_names(file.level_path(name), "overlays")
+
+    def load_with_changes(self, name: str, variant: str) -> tuple[Level, tuple[str, ...]]:
+        """Load a level; return it with the descriptions of the variant's overlays."""
+        return file.level_and_changes(name, variant)
+
+    def dependencies(self, name: str, variant: str) -> Iterator[Path]:
+        """Yield the files of a level, its assets and overlays, and its spec."""
+        return level_dependencies(file.level_path(name), variant)
+
+    def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
+        """Yield the possible paths of a level's file."""
+        return file_candidates(file.level_path(name), variant, file_name)
 
 
 class StealthGame(Game[Level, Episode]):
     """The stealth game."""
 
     choices = CHOICES
+    clock_s = DECISION
+    level_files = StealthLevelFiles()
     modules = (__name__, "tltl_runtime.stealth.recording")
 
     def load_level(self, name: str, variant: str = "v0") -> Level:
         """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants."""
-        return load_level(name, variant)
+        return file.load_level(name, variant)
 
     def level_hash(self, level: Level) -> str:
         """Return the hash of the content of a level."""
@@ -59,6 +102,30 @@ class StealthGame(Game[Level, Episode]):
     def missing_sensors(self, level: Level, sensors: Sensors) -> Iterator[str]:
         """Yield the entities and signals that the sensors refer to and a level does not have."""
         return missing_sensors(level, sensors)
+
+    def landmarks(self, level: Level) -> dict[str, Point]:
+        """Return the positions of switches, exits and barriers, by name."""
+        return fixed_places(level)
+
+    def solids(self, level: Level) -> dict[str, Box]:
+        """Return the boxes of the solids but the floor, by name."""
+        return {solid.name: solid.box for solid in level.solids if solid.kind != "floor"}
+
+    def barriers(self, level: Level) -> dict[str, Box]:
+        """Return the boxes of the barriers, by name."""
+        return {barrier.name: barrier.box for barrier in level.barriers}
+
+    def reach_warnings(self, level: Level, fspa: Fspa) -> list[Diagnostic]:
+        """Return warnings for the entities of a spec that no player can reach."""
+        return reach_warnings(level, fspa)
+
+    def is_infeasible(self, level: Level, fspa: Fspa) -> bool:
+        """Return whether no player can meet the spec."""
+        return is_infeasible(level, fspa)
+
+    def level_fault(self, error: RuntimeError) -> TltlError | None:
+        """Return TLT0806 if the player has left the level, else None."""
+        return player_fault(error)
 
     def make_env(
         self,
@@ -94,6 +161,10 @@ class StealthGame(Game[Level, Episode]):
         """Read a recorded episode."""
         return read_episode(path)
 
+    def episode_from_bytes(self, data: bytes, name: str) -> Episode:
+        """Return the episode in the bytes of a file."""
+        return from_bytes(data, name)
+
     def episode_bytes(self, episode: Episode) -> bytes:
         """Return the bytes of the file of an episode."""
         return to_bytes(episode)
@@ -101,6 +172,25 @@ class StealthGame(Game[Level, Episode]):
     def trajectory(self, episode: Episode) -> Trajectory:
         """Return the trajectory of an episode."""
         return trajectory(episode)
+
+    def summary(self, episode: Episode, index: int = 0) -> EpisodeSummary:
+        """Return the summary of an episode."""
+        return summary_of(episode, index)
+
+    def cause(self, episode: Episode) -> Cause:
+        """Find the cause of the end of an episode."""
+        return cause(episode)
+
+    def seen_by(self, episode: Episode, begin_s: float, end_s: float) -> tuple[str, ...]:
+        """Return the enemies that saw the player in this interval of time."""
+        shots = [shot for shot in episode.snapshots if begin_s <= shot.time <= end_s]
+        enemies = enumerate(episode.level.enemies)
+        return tuple(enemy.name for row, enemy in enemies if any(shot.sees[row] for shot in shots))
+
+    def shut(self, episode: Episode) -> tuple[str, ...]:
+        """Return the solid barriers that were shut at the end."""
+        barriers = zip(episode.level.barriers, episode.snapshots[-1].open, strict=True)
+        return tuple(barrier.name for barrier, is_open in barriers if barrier.kind == "solid" and not is_open)
 
 
 GAME: Final = StealthGame()

@@ -23,6 +23,7 @@ from tltl_runtime.regression.table1.table_trainings import (
     trained,
 )
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.registration import StealthGame
 from tltl_runtime.training.run.run import POLICY, RECORD, write_run
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
@@ -68,7 +69,7 @@ def test_each_level_and_model_has_its_own_folder(tmp_path: Path) -> None:
 def test_another_level_spec_or_setting_is_another_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folders = {training(tmp_path).folder}
     with monkeypatch.context() as patched:
-        patched.setattr(table_trainings, "load_level", lambda level, variant: load_level(level, "v1"))
+        patched.setattr(StealthGame, "load_level", lambda game, level, variant: load_level(level, "v1"))
         folders.add(training(tmp_path).folder)
     with monkeypatch.context() as patched:
         spec = tmp_path / "bold.tltl"

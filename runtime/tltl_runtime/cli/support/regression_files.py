@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final, cast, get_args
 
+from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
@@ -19,7 +20,6 @@ from tltl_runtime.regression.verdict.baseline import Reference
 from tltl_runtime.regression.verdict.play import Ready
 from tltl_runtime.regression.verdict.run import CASES, Done, case_folder
 from tltl_runtime.regression.verdict.verdict import Verdict
-from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.support.number_text import listed

@@ -6,13 +6,12 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from tltl_runtime.game.episode import Kind
+from tltl_runtime.game.episode import Kind, RecordedEpisode
+from tltl_runtime.game.geometry import Point
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.path_points import Way, way_of
 from tltl_runtime.regression.explain.stages import target_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.stealth.level import Point
-from tltl_runtime.stealth.recordings.cause import cause
-from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import monitors, record, replace
 
 _SEEN_S: Final = 3.0
@@ -80,40 +79,33 @@ def summaries_of(accounts: Iterable[Account]) -> list[EpisodeSummary]:
     return [account.summary for account in accounts]
 
 
-def account(summary: EpisodeSummary, episode: Episode) -> Account:
+def account(summary: EpisodeSummary, episode: RecordedEpisode) -> Account:
     """Return the account of an episode that was played and recorded."""
-    ending = cause(episode)
+    game, places = registered_game(), _places(episode)
+    ending = game.cause(episode)
     return Account(
         # Verdicts and reports need no more, and files hold no more.
         summary=replace(summary, verdict=None, seconds=None, state=None, label=None),
         cause=ending.kind,
         by=ending.by,
         place=_rounded(ending.place),
-        seen_by=() if summary.success else _seen_by(episode, ending.time),
-        arrivals=_arrivals(episode),
-        nearest=None if summary.success else _nearest(episode, summary.unmet),
+        seen_by=() if summary.success else game.seen_by(episode, ending.time - _SEEN_S, ending.time),
+        arrivals=_arrivals(episode, places),
+        nearest=None if summary.success else _nearest(episode, summary.unmet, places),
         way=way_of(episode),
         broke=ending.broke,
         arrived=_has_arrived(episode, summary.unmet, ending.broke),
-        shut=_shut(episode),
+        shut=game.shut(episode),
     )
 
 
-def _arrivals(episode: Episode) -> tuple[Arrival, ...]:
+def _arrivals(episode: RecordedEpisode, places: Sequence[Point]) -> tuple[Arrival, ...]:
     states = episode.states.tolist()
     entered = [step for step in range(len(states)) if step == 0 or states[step] != states[step - 1]]
-    return tuple(Arrival(states[step], step, _place(episode, step)) for step in entered)
+    return tuple(Arrival(states[step], step, places[step]) for step in entered)
 
 
-def _seen_by(episode: Episode, time: float) -> tuple[str, ...]:
-    """The enemies that saw the player shortly before ``time``, in the level's order."""
-    recent = [shot for shot in episode.snapshots if time - _SEEN_S <= shot.time <= time]
-    return tuple(
-        enemy.name for row, enemy in enumerate(episode.level.enemies) if any(shot.sees[row] for shot in recent)
-    )
-
-
-def _has_arrived(episode: Episode, state: int, broke: Sequence[str]) -> bool:
+def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> bool:
     """Whether only the atoms in ``broke`` prevented, at the last sample, a transition towards acceptance."""
     fspa, values = episode.fspa, episode.atoms[-1].tolist()
     primes = [prime for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
@@ -121,12 +113,7 @@ def _has_arrived(episode: Episode, state: int, broke: Sequence[str]) -> bool:
     return any(names and names <= {*broke} for names in missing)
 
 
-def _shut(episode: Episode) -> tuple[str, ...]:
-    barriers = zip(episode.level.barriers, episode.snapshots[-1].open, strict=True)
-    return tuple(barrier.name for barrier, is_open in barriers if barrier.kind == "solid" and not is_open)
-
-
-def _nearest(episode: Episode, state: int) -> NearestMiss | None:
+def _nearest(episode: RecordedEpisode, state: int, places: Sequence[Point]) -> NearestMiss | None:
     """The nearest miss in a state; None if no edge leads from it towards acceptance, or the state was not visited."""
     fspa = episode.fspa
     guards = [edge.guard for edge in monitors.tables(fspa).improving[state]]
@@ -138,10 +125,10 @@ def _nearest(episode: Episode, state: int) -> NearestMiss | None:
     row = -step
     atom, wanted = monitors.bounding_literal(guards, atoms[row])
     target, distance = _distance(episode, atom, steps) if wanted else (None, None)
-    return NearestMiss(fspa.atoms[atom].name, round(best, 4), _place(episode, row + 1), target, distance, wanted)
+    return NearestMiss(fspa.atoms[atom].name, round(best, 4), places[row + 1], target, distance, wanted)
 
 
-def _last_stay(episode: Episode, state: int) -> list[int]:
+def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:
     """The steps of the last stay of an episode in a state."""
     in_state = (episode.states[:-1] == state).tolist()
     end = max((step + 1 for step, is_in_state in enumerate(in_state) if is_in_state), default=0)
@@ -149,7 +136,7 @@ def _last_stay(episode: Episode, state: int) -> list[int]:
     return list(range(began, end))
 
 
-def _distance(episode: Episode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
+def _distance(episode: RecordedEpisode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
     """The target of an atom's distance, and the least distance after the given steps at which the atom did not hold.
 
     Both are None if the atom does not depend on a single distance.
@@ -162,8 +149,9 @@ def _distance(episode: Episode, atom: int, rows: Sequence[int]) -> tuple[str | N
     return target, round(min(distances), 2)
 
 
-def _place(episode: Episode, step: int) -> Point:
-    return _rounded(episode.snapshots[step].player.position)
+def _places(episode: RecordedEpisode) -> list[Point]:
+    """The positions of the player's feet, rounded to centimetres."""
+    return [_rounded((x, y, z)) for x, y, z in episode.positions.tolist()]
 
 
 def _rounded(point: Point) -> Point:

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from statistics import fmean
 from typing import Final
 
+from tltl_runtime.game.geometry import Region
+from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.path_points import places_along
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, together
-from tltl_runtime.stealth.level import Level, Region
 from tltl_runtime.support.number_text import counted, percent
 from tltlc.api import Fspa, record
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Final, TypeVar
 
 from tltl_runtime.game.episode import Kind
+from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.nearest_miss import approach, remained
 from tltl_runtime.regression.explain.places import in_the_way, place_name
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
-from tltl_runtime.stealth.level import Level
 from tltlc.api import Fspa, record, replace
 
 _T = TypeVar("_T")

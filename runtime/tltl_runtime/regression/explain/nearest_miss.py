@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.account import Account, NearestMiss
 from tltl_runtime.regression.explain.stages import Subgoal, near_enough
-from tltl_runtime.stealth.capabilities.capabilities import given_params
-from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.number_text import number
 from tltlc.api import Fspa, label_text
 
@@ -53,7 +53,7 @@ def _limit(level: Level, fspa: Fspa, near: Sequence[NearestMiss], of: str) -> st
 
 def _near_enough(level: Level, fspa: Fspa, name: str) -> float | None:
     atoms = {atom.name: row for row, atom in enumerate(fspa.atoms)}
-    return near_enough(fspa, atoms[name], given_params(level, fspa)) if name in atoms else None
+    return near_enough(fspa, atoms[name], registered_game().params(level)) if name in atoms else None
 
 
 def _metres(came: float, enough: float | None) -> tuple[str, str]:

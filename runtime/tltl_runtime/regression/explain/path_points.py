@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.game.episode import RecordedEpisode
 
 Way = tuple[tuple[float, float, int, float], ...]
 """Points (x, y, state, time): metres, the automaton's state from there on, and seconds since the start."""
@@ -24,10 +24,9 @@ It is less than the distance that a player keeps from a wall.
 """
 
 
-def way_of(episode: Episode) -> Way:
+def way_of(episode: RecordedEpisode) -> Way:
     """Simplify the trajectory of an episode.  Each change of the state gets a point."""
-    times = np.array([shot.time for shot in episode.snapshots])
-    places = np.array([shot.player.position[:2] for shot in episode.snapshots])
+    times, places = episode.times, episode.positions[:, :2]
     changes = (np.flatnonzero(np.diff(episode.states)) + 1).tolist()
     rows = {0, *changes, len(times) - 1}
     for first, last in pairwise(sorted(rows)):

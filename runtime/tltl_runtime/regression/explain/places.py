@@ -7,7 +7,9 @@ from math import hypot
 from statistics import fmean
 from typing import Final
 
-from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
+from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 
 _NEAR: Final = 2.5
 """A place within this many metres of an entity is near it."""
@@ -30,7 +32,7 @@ def place_name(level: Level, point: Point) -> str:
 
 def nearest_entity(level: Level, point: Point) -> str | None:
     """The nearest switch, exit or barrier; None if none is within 2.5 m."""
-    positions = fixed_places(level)
+    positions = registered_game().landmarks(level)
     near = [(hypot(x - point[0], y - point[1]), name) for name, (x, y, _) in positions.items()]
     distance, name = min(near, default=(2 * _NEAR, ""))
     return name if distance <= _NEAR else None
@@ -42,8 +44,8 @@ def in_the_way(level: Level, ends: Sequence[tuple[Point, Sequence[str]]]) -> lis
     The floor does not count.  ``ends`` are the positions of the players' feet, each with the names of
     the barriers that were closed then.
     """
-    solids = {solid.name: solid.box for solid in level.solids if solid.kind != "floor"}
-    barriers = {barrier.name: barrier.box for barrier in level.barriers}
+    game = registered_game()
+    solids, barriers = game.solids(level), game.barriers(level)
     touched: dict[str, list[float]] = {}
     for feet, shut in ends:
         boxes = solids | {name: barriers[name] for name in shut if name in barriers}

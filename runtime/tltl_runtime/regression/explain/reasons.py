@@ -6,18 +6,16 @@ from collections.abc import Iterator, Sequence
 from statistics import fmean
 from typing import Final
 
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.changed_keys import changed_keys
 from tltl_runtime.regression.suite.level_texts import Texts
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.verdict import Judgement, beyond
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.stealth.capabilities.feasible import check_reach, reach_warnings
-from tltl_runtime.stealth.capabilities.reach import reachable
-from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.level import Level
 from tltl_runtime.support.number_text import between, counted, percent_exactly
-from tltlc.api import Fspa, TltlError
+from tltlc.api import Fspa
 
 _OVERLAYS: Final = "overlays/"
 """The prefix of the names of overlays among the files of a level."""
@@ -74,20 +72,8 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
 
     If several things have the same cause, only the first one is described.
     """
-    warnings = [warning for warning in reach_warnings(level, fspa) if warning.code == "TLT0814"]
+    warnings = [warning for warning in registered_game().reach_warnings(level, fspa) if warning.code == "TLT0814"]
     yield from {warning.help: f"{warning.title}: {warning.help}" for warning in reversed(warnings)}.values()
-
-
-def is_infeasible(level: Level, fspa: Fspa) -> bool:
-    """Whether no player can meet the spec; :func:`obstacles` says why.
-
-    False if the level is too large to be searched.
-    """
-    try:
-        diagnostics = check_reach(level, reachable(level), fspa, SpecPlaces(None))
-    except TltlError:
-        return False
-    return any(diagnostic.severity == "error" for diagnostic in diagnostics)
 
 
 def edits(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Generator, Iterator, Sequence
 from functools import partial
 from hashlib import sha256
@@ -13,17 +14,11 @@ from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.expert.expert import Expert, play_episode
-from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import fileio, record
 
@@ -72,14 +67,15 @@ def measured(folder: Path, model: Model, level: str, variant: str, policy: Path 
 
 def _inputs(level: str, variant: str, policy: Path | None) -> str:
     """The hash of everything that a cell depends on."""
-    place = load_level(level, variant)
-    spec = load_task(spec_of(place), offered=params(place)).fspa
+    game = registered_game()
+    place = game.load_level(level, variant)
+    spec = load_task(spec_of(place), offered=game.params(place)).fspa
     played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
-    return inputs_hash([level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
+    return inputs_hash([game.level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
 
 
 def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:
-    spec = spec_of(load_level(level, variant))
+    spec = spec_of(registered_game().load_level(level, variant))
     for episode in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
         yield Went(episode.success, episode.progress, episode.reward)
 
@@ -100,13 +96,16 @@ class _ExpertPlayer:
     """Plays episodes with the careful expert, as :class:`~tltl_runtime.evaluation.player.Player` does with a policy."""
 
     def __init__(self, level: str, variant: str) -> None:
-        self._env = RecordEpisode(make_env(level, variant))
-        self._expert = Expert(self._env)
+        self._game = registered_game()
+        self._env = self._game.recorder(self._game.make_env(level, variant))
+        self._seeds: deque[int] = deque()
+        """The seeds of the next episodes.  The expert, which keeps what it knows of the level, takes them from here."""
+        self._episodes = self._game.expert_episodes(self._env, iter(self._seeds.popleft, None))
 
     def play(self, task: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
-        play_episode(self._env, self._expert, episode_seed(SEED, task.index))
-        return PlayedEpisode(task, summary_of(self._env.episode, task.index))
+        self._seeds.append(episode_seed(SEED, task.index))
+        return PlayedEpisode(task, self._game.summary(next(self._episodes), task.index))
 
     def close(self) -> None:
         """Close the environment."""

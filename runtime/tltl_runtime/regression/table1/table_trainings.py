@@ -8,14 +8,11 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.level import spec_of
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.table1.paper_table import Model
 from tltl_runtime.spec.task import load_task
-from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.record import ended_as
 from tltl_runtime.training.run.run import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
@@ -82,13 +79,14 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
         TltlError: the level or its spec cannot be read.
     """
     settings = replace(read_settings(), method="imitation" if model == "imitation" else "automaton")
-    level_now = load_level(level, "v0")
-    task = load_task(spec_of(level_now), offered=params(level_now))
+    game = registered_game()
+    level_now = game.load_level(level, "v0")
+    task = load_task(spec_of(level_now), offered=game.params(level_now))
     parts = [
-        level_hash(level_now),
+        game.level_hash(level_now),
         spec_hash(task.fspa),
         OBSERVATION,
-        to_json(chosen(level_now, None)),
+        to_json(level_now.sensors),
         {path: value for path, value in leaves(to_json(settings)) if path not in MAY_CHANGE},
         to_json(limits) if settings.imitates else None,
     ]

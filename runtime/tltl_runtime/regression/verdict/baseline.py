@@ -33,9 +33,11 @@ _REFUSALS: Final = Refusals(
 class Identity:
     """Identifies what was played: policy, level, variant, spec and seed of the episodes.
 
-    ``level`` and ``spec`` are names.  :mod:`tltl_runtime.policies.identity` computes ``level_hash``
-    and ``spec_hash``.  ``policy`` is the SHA-256 of the policy's file.  ``files`` are the files that
-    the level was loaded from, each with its SHA-256.  ``place`` is the ``place`` of the case.
+    ``level`` and ``spec`` are names.  ``level_hash`` is from
+    :meth:`~tltl_runtime.game.game.Game.level_hash`, ``spec_hash`` from
+    :func:`~tltl_runtime.policies.identity.spec_hash`.  ``policy`` is the SHA-256 of the policy's
+    file.  ``files`` are the files that the level was loaded from, each with its SHA-256.  ``place``
+    is the ``place`` of the case.
     """
 
     level: str

@@ -11,6 +11,8 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, results, set_up
 from tltl_runtime.evaluation.player import EpisodeRequest, Setup
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
@@ -20,10 +22,6 @@ from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.file import level_and_changes, load_level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
@@ -78,7 +76,8 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
     data = fileio.read_bytes(path, str(path), MAX_BYTES)
     policy = from_bytes(data, str(path))
     setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
-    level, changes = level_and_changes(setup.level, setup.variant)
+    game = registered_game()
+    level, changes = game.level_files.load_with_changes(setup.level, setup.variant)
     sha256 = hashlib.sha256(data).hexdigest()
     played = Identity(
         level=level.name,
@@ -86,7 +85,7 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
         spec=setup.fspa.name,
         policy=sha256,
         seed=seed,
-        level_hash=level_hash(level),
+        level_hash=game.level_hash(level),
         spec_hash=spec_hash(setup.fspa),
         files=level.files,
         versions=versions(),
@@ -109,7 +108,7 @@ def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
             # counting them would favour fast episodes.
             if result.played.index != count:
                 continue
-            episode = episode_from_bytes(result.recording, _PLAYER)
+            episode = registered_game().episode_from_bytes(result.recording, _PLAYER)
             # Each worker loads the level itself, so check the level of the recording.
             _check_unedited(prepared, episode.level)
             yield Recorded(account(result.played, episode), result.recording)
@@ -130,7 +129,7 @@ def check_unedited(prepared: Ready) -> None:
     Raises:
         TltlError: TLT0905, the level was edited; or the errors of the edited level.
     """
-    _check_unedited(prepared, load_level(prepared.setup.level, prepared.setup.variant))
+    _check_unedited(prepared, registered_game().load_level(prepared.setup.level, prepared.setup.variant))
 
 
 def judged(

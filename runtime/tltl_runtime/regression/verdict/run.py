@@ -9,14 +9,13 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.game.recording_path import SUFFIX
-from tltl_runtime.regression.explain.reasons import is_infeasible
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
 from tltl_runtime.regression.verdict.play import JudgedCase, Ready, Told, judged, ready
-from tltl_runtime.stealth.world.faults import player_fault
 from tltl_runtime.support.folder_lock import held
 from tltl_runtime.support.record_json import to_json
 from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
@@ -64,7 +63,7 @@ class Done:
             return None
         if prepared.outdated:
             return "it was trained for another spec"
-        if is_infeasible(prepared.level, prepared.setup.fspa):
+        if registered_game().is_infeasible(prepared.level, prepared.setup.fspa):
             return f"nobody can do what `{prepared.setup.fspa.name}` asks, as was said above"
         return None
 
@@ -175,10 +174,10 @@ def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, poo
         report = report_on_edited if _EDITED in codes else report_on_broken
         return Done(report(case, fault), kept=False)
     except RuntimeError as problem:
-        player_error = player_fault(problem)
-        if player_error is None:
+        level_fault = registered_game().level_fault(problem)
+        if level_fault is None:
             raise
-        return Done(report_on_broken(case, player_error), kept=False)
+        return Done(report_on_broken(case, level_fault), kept=False)
     return Done(_write(own_folder, inputs, result), kept=False, ready=prepared, reference=reference)
 
 

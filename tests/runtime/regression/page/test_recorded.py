@@ -11,7 +11,7 @@ import pytest
 
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
-from tltl_runtime.regression.report.page.recorded import recorded
+from tltl_runtime.regression.report.page.stealth.recorded import recorded
 from tltl_runtime.stealth.recordings.episode import Episode
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from tltl_runtime.game.geometry import Box
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.page.contents import ReportedCase
 from tltl_runtime.regression.report.page.heat import Heat, failed_ends, time_spent
-from tltl_runtime.regression.report.page.level_map import map_data
 from tltl_runtime.regression.report.page.packing import across, down, runs
-from tltl_runtime.regression.report.page.recorded import recorded
-from tltl_runtime.stealth.level import Box
+from tltl_runtime.regression.report.page.stealth.level_map import map_data
+from tltl_runtime.regression.report.page.stealth.recorded import recorded
 from tltlc.api import label_text
 
 _FINE_CM: Final = 5

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from markupsafe import Markup
 
+from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.page.contents import ReportedCase
-from tltl_runtime.regression.report.page.level_map import level_map, map_key
 from tltl_runtime.regression.report.page.markup import element
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
 from tltlc.api import replace
 
 

@@ -8,6 +8,7 @@ from typing import Final
 
 from markupsafe import Markup
 
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.automaton import Drawn, counts_table, picture
@@ -19,7 +20,6 @@ from tltl_runtime.regression.report.page.markup import element, joined, prose
 from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.summary import NOT_RUN, badge
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic
-from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import Fspa, formula_text
 
 _KEY: Final = (
@@ -94,7 +94,7 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
     return joined((element("p", " · ".join(facts), class_="facts"), goal))
 
 
-def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iterator[Markup]:
+def _why(report: CaseReport, episodes: Mapping[int, RecordedEpisode], slug: str) -> Iterator[Markup]:
     """The list of reasons.  Findings have links to their recorded episodes."""
     lines = [element("li", prose(cause)) for cause in report.causes]
     lines += [

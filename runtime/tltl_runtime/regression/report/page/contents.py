@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.verdict.verdict import Verdict
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import EMPTY, Fspa, record
 
 
@@ -25,7 +25,7 @@ class ReportedCase:
     report: CaseReport
     level: Level | None = None
     fspa: Fspa | None = None
-    episodes: Mapping[int, Episode] = EMPTY
+    episodes: Mapping[int, RecordedEpisode] = EMPTY
     before: tuple[Account, ...] = ()
     designed: Level | None = None
     curve: bytes = b""

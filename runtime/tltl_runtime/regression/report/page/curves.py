@@ -9,9 +9,9 @@ from typing import Final
 
 from markupsafe import Markup
 
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.page.markup import element, short
-from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.support.number_text import percent
 
 _WIDTH, _HEIGHT = 420, 190
@@ -23,9 +23,9 @@ _GAP: Final = 0.5
 """The gap between these bins and the bar of the successful episodes, in widths of a bin."""
 
 
-def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
+def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
     """Plot progress, in [0, 1], over time, in seconds, of each recorded episode."""
-    longest = max((recording.snapshots[-1].time for recording in episodes.values()), default=0.0)
+    longest = max((float(recording.times[-1]) for recording in episodes.values()), default=0.0)
     frame = _Frame(max(1.0, longest))
     lines = [
         element(
@@ -89,10 +89,9 @@ def _shares(accounts: Sequence[Account]) -> list[float]:
     return [count / max(1, len(accounts)) for count in counts]
 
 
-def _corners(frame: _Frame, episode: Episode) -> list[tuple[float, float]]:
+def _corners(frame: _Frame, episode: RecordedEpisode) -> list[tuple[float, float]]:
     """The points at which a curve starts, ends or changes its value; it is straight in between."""
-    values = episode.progress.tolist()
-    times = [shot.time for shot in episode.snapshots]
+    values, times = episode.progress.tolist(), episode.times.tolist()
     rows = {0, len(values) - 1}
     for row, (one, other) in enumerate(pairwise(values)):
         if one != other:

@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from tltl_runtime.game.geometry import Box
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.path_points import EVERY, places_along
-from tltl_runtime.stealth.level import Box
 from tltlc.api import record
 
 TIME_CELL: Final = 0.5

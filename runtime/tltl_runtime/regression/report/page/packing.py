@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import Final, TypeVar
 
-from tltl_runtime.stealth.level import Box
+from tltl_runtime.game.geometry import Box
 
 T = TypeVar("T")
 

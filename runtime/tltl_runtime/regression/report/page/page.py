@@ -15,10 +15,9 @@ from tltl_runtime.regression.report.page.case_data import case_data
 from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
 from tltl_runtime.regression.report.page.contents import SuiteReport
 from tltl_runtime.regression.report.page.markup import as_script, joined
-from tltl_runtime.regression.report.page.style import colours
+from tltl_runtime.regression.report.page.stealth.colours import colours, state_colours
 from tltl_runtime.regression.report.page.summary import summary
 from tltl_runtime.regression.suite.slugs import slugs
-from tltl_runtime.stealth.rendering.plan import state_colour
 from tltlc.api import Fspa
 
 _FOLDER: Final = Path(__file__).parent
@@ -65,7 +64,7 @@ def _templates() -> Environment:
 def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:
     drawn_cases = [case for case in cases if case is not None]
     states = max((len(case["states"]) for case in drawn_cases), default=0)
-    return {"colours": [state_colour(state) for state in range(states)], "cases": drawn_cases}
+    return {"colours": state_colours(states), "cases": drawn_cases}
 
 
 def _asset(name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from tltl_runtime.stealth.level import Box
+from tltl_runtime.game.geometry import Box
 
 Rect = tuple[int, int, int, int]
 """Left, top, right and bottom."""

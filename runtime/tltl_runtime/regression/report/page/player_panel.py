@@ -7,8 +7,8 @@ from typing import Final
 
 from markupsafe import Markup
 
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.regression.report.page.markup import element, joined
-from tltl_runtime.stealth.recordings.episode import Episode
 from tltlc.api import Fspa
 
 _SPEEDS: Final = (1, 2, 4)
@@ -30,7 +30,7 @@ _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
 """How episodes fail, in the words of the map's legend."""
 
 
-def player_panel(fspa: Fspa, episodes: Mapping[int, Episode]) -> Markup:
+def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode]) -> Markup:
     """The player of a case.  The page's script loads the episodes into it.  Without episodes, it says so."""
     if not episodes:
         return element("div", element("p", "No episode of this case was recorded."), class_="player")
@@ -106,5 +106,5 @@ def _atoms(fspa: Fspa) -> Markup:
     return element("table", element("caption", caption), element("tbody", *rows), class_="atoms")
 
 
-def _outcome(episode: Episode) -> str:
+def _outcome(episode: RecordedEpisode) -> str:
     return "succeeded" if episode.success else _FAILED.get(episode.end, "failed")

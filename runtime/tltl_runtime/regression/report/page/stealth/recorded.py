@@ -8,19 +8,21 @@ from typing import Any
 
 import numpy as np
 
+from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.regression.report.page.packing import across, down, runs, steps
-from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 
 
-def recorded(index: int, episode: Episode) -> dict[str, Any]:
+def recorded(index: int, episode: RecordedEpisode) -> dict[str, Any]:
     """Return episode ``index`` of a case as JSON data.
 
     An episode of n steps has n + 1 rows of each value, but n rows of atoms.  Lengths are in centimetres
     on the map, angles in degrees, times in milliseconds, shares and robustness in hundredths, progress
     in thousandths.  Values are encoded by :mod:`~tltl_runtime.regression.report.page.packing`.
     """
+    assert isinstance(episode, Episode)
     shots, bounds = episode.snapshots, episode.level.bounds
     return {
         "index": index,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltl_runtime.stealth.rendering.film import MODES
-from tltl_runtime.stealth.rendering.plan import BARRIERS, ENDS, EXIT, INK, MOVER, ROUTE, SOLIDS, SWITCH
+from tltl_runtime.stealth.rendering.plan import BARRIERS, ENDS, EXIT, INK, MOVER, ROUTE, SOLIDS, SWITCH, state_colour
 
 
 def colours() -> str:
@@ -20,3 +20,8 @@ def colours() -> str:
         "ink": INK,
     }
     return f":root {{ {' '.join(f'--map-{name}: {colour};' for name, colour in named.items())} }}"
+
+
+def state_colours(count: int) -> list[str]:
+    """The colours of the first ``count`` states of an automaton, as ``#rrggbb``."""
+    return [state_colour(state) for state in range(count)]

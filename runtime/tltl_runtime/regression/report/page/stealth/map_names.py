@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 from typing import Final
 
+from tltl_runtime.game.geometry import Region
 from tltl_runtime.regression.report.page.plan import MapScale, Rect
-from tltl_runtime.stealth.level import Level, Region
+from tltl_runtime.stealth.level import Level
 from tltlc.api import record, replace
 
 _LETTER: Final = 25

@@ -12,11 +12,13 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.map_names import MapLabel, is_spoken_of, names
+from tltl_runtime.game.geometry import Box
+from tltl_runtime.game.level import Level as GameLevel
 from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.regression.report.page.plan import MapScale
+from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, is_spoken_of, names
 from tltl_runtime.stealth.enemies.enemy import EYES
-from tltl_runtime.stealth.level import Box, Level, Mover
+from tltl_runtime.stealth.level import Level, Mover
 from tltl_runtime.stealth.rendering.plan import patrol
 from tltl_runtime.stealth.world.geometry import around
 
@@ -40,11 +42,12 @@ _SIGNS: Final = {
 """The legend: the class of each sign on a map, and its meaning."""
 
 
-def level_map(level: Level, sentences: str = "") -> Markup:
+def level_map(level: GameLevel, sentences: str = "") -> Markup:
     """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
 
     Things that the report's ``sentences`` mention are highlighted.
     """
+    assert isinstance(level, Level)
     plan = MapScale(level.bounds)
     width, height = plan.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
@@ -63,8 +66,9 @@ def level_map(level: Level, sentences: str = "") -> Markup:
     )
 
 
-def map_key(level: Level, sentences: str = "") -> Markup:
+def map_key(level: GameLevel, sentences: str = "") -> Markup:
     """The legend of a map, with the signs that occur in it."""
+    assert isinstance(level, Level)
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
     present = {
         "switch": level.switches,
@@ -79,13 +83,14 @@ def map_key(level: Level, sentences: str = "") -> Markup:
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
 
 
-def map_data(level: Level) -> dict[str, Any]:
+def map_data(level: GameLevel) -> dict[str, Any]:
     """The data that the page's script needs to draw onto the map of a level, as JSON.
 
     ``blocks`` and ``movers`` block sight.  Each block is a rectangle on the map and two heights.
     ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes`` is the height of its eyes.
     Lengths are in centimetres, angles in degrees.
     """
+    assert isinstance(level, Level)
     plan = MapScale(level.bounds)
     return {
         "blocks": [_block(plan, solid.box) for solid in level.solids if solid.kind != "floor"],

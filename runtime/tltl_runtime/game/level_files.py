@@ -1,0 +1,58 @@
+"""The files of a game's levels."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from tltl_runtime.game.level import Level
+
+LevelT = TypeVar("LevelT", bound=Level)
+
+
+class LevelFiles(ABC, Generic[LevelT]):
+    """Finds and reads the files of levels.
+
+    ``name`` is the name of a level that comes with the game, or the path of a file.
+    """
+
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the levels that come with the game."""
+
+    @abstractmethod
+    def path(self, name: str) -> Path:
+        """Return the path of a level's file, which may not exist.
+
+        Raises TltlError: TLT0800, no level of the game has that name.
+        """
+
+    @abstractmethod
+    def variants(self, name: str) -> tuple[str, ...]:
+        """Return the variants of a level, in the order of its file; raises the errors of loading it."""
+
+    @abstractmethod
+    def overlays(self, name: str) -> tuple[str, ...]:
+        """Return the names of the overlays that can be added to the variants of a level."""
+
+    @abstractmethod
+    def load_with_changes(self, name: str, variant: str) -> tuple[LevelT, tuple[str, ...]]:
+        """Load a level in one of its variants; return it with the descriptions of the variant's overlays.
+
+        Raises:
+            TltlError: there is no such level or variant, or its file is invalid.
+        """
+
+    @abstractmethod
+    def dependencies(self, name: str, variant: str) -> Iterator[Path]:
+        """Yield the files that a level depends on, among them its spec.
+
+        The files need not load: from a file with errors, everything readable counts.  Paths that do
+        not exist but would take precedence over a file count, too.
+        """
+
+    @abstractmethod
+    def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
+        """Yield the possible paths of ``file_name``, a name in the ``files`` of a level."""

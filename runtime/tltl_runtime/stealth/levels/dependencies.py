@@ -1,0 +1,82 @@
+"""The files that a level depends on."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from tltl_runtime.game.place import overlays_of
+from tltl_runtime.spec.spec_files import source_of, spec_files, to_first_file
+from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
+from tltlc.api import SourceFile, TltlError, fileio
+
+_QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
+_SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
+
+
+def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
+    """Yield the files of the level, the assets and overlays of the variant, and the level's spec.
+
+    The files need not load: from a file with errors, everything readable counts.  Paths that do not
+    exist but would take precedence over a file are included.
+    """
+    yield level
+    base, added = overlays_of(variant)
+    text = source_of(level)
+    table = _table(text)
+    if table is None:
+        words = [first or second for first, second in _QUOTED.findall(text.text)] if text else []
+        assets, overlays, specs = words, words, words
+    else:
+        asset_names = [use.get("asset") for use in _tables(table.get("use"))]
+        asset_names += [enemy.get("kind") for enemy in _tables(table.get("enemy"))]
+        named = table.get("variants")
+        listed = named.get(base) if isinstance(named, dict) else None
+        assets, specs = _texts(asset_names), _texts([table.get("spec")])
+        overlays = _texts(listed if isinstance(listed, list) else [])
+    places = (level.parent, LEVELS)
+    yield from _shared(assets, "assets", places, sure=table is not None)
+    yield from _shared(overlays, "overlays", places, sure=table is not None)
+    yield from (Path(name) for name in added if name.endswith(".toml"))
+    yield from _shared([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
+    for match in filter(None, map(_SPEC.match, specs)):
+        for path in to_first_file(folder / match[1] for folder in (level.parent, *SPECS)):
+            yield from spec_files(path)
+
+
+def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
+    """Yield the possible paths of a level's file.
+
+    They are the level itself, a file beside it or in the package, or an added overlay.
+    """
+    if name == level.name:
+        yield level
+    yield from (level.parent / name, LEVELS / name)
+    for overlay in overlays_of(variant)[1]:
+        if overlay.endswith(".toml") and f"overlays/{Path(overlay).name}" == name:
+            yield Path(overlay)
+
+
+def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
+    """The files of assets or overlays.  Unless ``sure``, a name may be something else: only existing files count."""
+    for name in names:
+        paths = [place / folder / f"{name}.toml" for place in places]
+        if sure or any(map(fileio.is_file, paths)):
+            yield from to_first_file(paths)
+
+
+def _table(text: SourceFile | None) -> dict[str, Any] | None:
+    try:
+        return fileio.parse_toml(text, "TLT0801", "") if text else {}
+    except TltlError:
+        return None
+
+
+def _tables(value: Any) -> list[dict[str, Any]]:
+    return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
+
+
+def _texts(values: Iterable[Any]) -> list[str]:
+    return [value for value in values if isinstance(value, str) and value]
