@@ -250,7 +250,7 @@ def test_a_suite_with_too_many_cases_is_rejected(tmp_path: Path) -> None:
 def test_each_level_of_a_suite_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     read_levels = []
     monkeypatch.setattr(
-        "tltl_runtime.regression.suite.suite.variants", lambda level: read_levels.append(level) or variants(level)
+        "tltl_runtime.stealth.levels.file.variants", lambda level: read_levels.append(level) or variants(level)
     )
     cases = "".join(f'[[case]]\nlevel = "navigation"\nname = "n{number}"\n' for number in range(50))
     assert len(read(tmp_path, cases)) == 50

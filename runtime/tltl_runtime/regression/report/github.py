@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite
-from tltl_runtime.stealth.levels.file import level_path
 from tltlc.api import fileio, workflow_command
 
 _COMMANDS: Final = {"fail": "error", "review": "warning"}
@@ -35,7 +35,7 @@ def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path
 def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
     """The file to annotate: the level, a file that has changed since the baseline, or the suite."""
     if report.played is None:
-        return level_path(case.level)
+        return registered_game().level_files.path(case.level)
     before = dict(report.reference.files) if report.reference else {}
     # The level comes first in `files`.  Prefer overlays: they are more specific.
     changed = [name for name, sha256 in reversed(report.played.files) if before.get(name) != sha256]

@@ -8,23 +8,20 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from os.path import normpath
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-from tltl_runtime.game.place import overlays_of
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Case, Suite
-from tltl_runtime.stealth.levels.file import level_path
-from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
-from tltlc.api import SourceFile, TltlError, fileio, record, specs, syntax
+from tltl_runtime.spec.spec_files import spec_files
+from tltlc.api import fileio, record
 
-_QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
 _ESCAPE: Final = re.compile(rb"\\([0-7]{3}|.)", re.DOTALL)
 _LETTERS: Final = {bytes([key]): bytes([code]) for key, code in zip(b"abtnvfr", range(7, 14), strict=True)}
-_SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 
 
 @record
@@ -74,9 +71,9 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
     such a file affects the case.
     """
     files = [suite.path, suite.baseline, policy_file(case.policy)]
-    files += _level_files(level_path(case.level), case.variant)
+    files += registered_game().level_files.dependencies(case.level, case.variant)
     if case.spec is not None:
-        files += _spec_files(Path(fileio.split_spec_name(case.spec)[0]))
+        files += spec_files(Path(fileio.split_spec_name(case.spec)[0]))
     return tuple(dict.fromkeys(form for path in files for form in (Path(normpath(path.absolute())), path.resolve())))
 
 
@@ -118,100 +115,3 @@ def _unquoted(name: str) -> str:
         bytes([int(escape, 8) % 256]) if escape.isdigit() else _LETTERS.get(escape, escape) for escape in parts[1::2]
     ]
     return os.fsdecode(b"".join(parts))
-
-
-def _level_files(level: Path, variant: str) -> Iterator[Path]:
-    """The files of the level, the assets and overlays of the variant, and the level's spec."""
-    yield level
-    base, added = overlays_of(variant)
-    text = _text(level)
-    table = _table(text)
-    if table is None:
-        words = [first or second for first, second in _QUOTED.findall(text.text)] if text else []
-        assets, overlays, specs = words, words, words
-    else:
-        asset_names = [use.get("asset") for use in _tables(table.get("use"))]
-        asset_names += [enemy.get("kind") for enemy in _tables(table.get("enemy"))]
-        named = table.get("variants")
-        listed = named.get(base) if isinstance(named, dict) else None
-        assets, specs = _texts(asset_names), _texts([table.get("spec")])
-        overlays = _texts(listed if isinstance(listed, list) else [])
-    places = (level.parent, LEVELS)
-    yield from _shared(assets, "assets", places, sure=table is not None)
-    yield from _shared(overlays, "overlays", places, sure=table is not None)
-    yield from (Path(name) for name in added if name.endswith(".toml"))
-    yield from _shared([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
-    for match in filter(None, map(_SPEC.match, specs)):
-        for path in _first(folder / match[1] for folder in (level.parent, *SPECS)):
-            yield from _spec_files(path)
-
-
-def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
-    """The files of assets or overlays.  Unless ``sure``, a name may be something else: only existing files count."""
-    for name in names:
-        paths = [place / folder / f"{name}.toml" for place in places]
-        if sure or any(map(fileio.is_file, paths)):
-            yield from _first(paths)
-
-
-def _spec_files(spec: Path) -> Iterator[Path]:
-    """The file of a spec and all files that it imports, directly or indirectly, each once."""
-    waiting, seen = [spec], {spec.resolve()}
-    while waiting:
-        path = waiting.pop()
-        yield path
-        for imported in _imports(path):
-            if imported.resolve() not in seen:
-                seen.add(imported.resolve())
-                waiting.append(imported)
-
-
-def _imports(spec: Path) -> Iterator[Path]:
-    text = _text(spec)
-    if text is None or spec.suffix != ".tltl":
-        return
-    folder = spec.absolute().parent
-    # The project file sets where imports are searched.
-    yield from _first(place / fileio.PROJECT_FILE for place in (folder, *folder.parents))
-    try:
-        libraries = fileio.project_for(str(spec)).libraries
-    except TltlError:
-        libraries = ()
-    for declaration in syntax.parse(text)[0].declarations:
-        if not isinstance(declaration, syntax.Import):
-            continue
-        if declaration.is_path:
-            yield spec.parent / declaration.target
-        else:
-            name = declaration.target.replace(".", "/") + ".tltl"
-            yield from _first(folder / name for folder in (spec.parent, *libraries, specs.standard_library()))
-
-
-def _first(paths: Iterable[Path]) -> Iterator[Path]:
-    """The paths up to the first existing file.  The paths before it would take precedence."""
-    for path in paths:
-        yield path
-        if fileio.is_file(path):
-            return
-
-
-def _text(path: Path) -> SourceFile | None:
-    try:
-        return fileio.read_source(path, max_bytes=fileio.MAX_ARTEFACT_BYTES)
-    except TltlError:
-        return None
-
-
-def _table(text: SourceFile | None) -> dict[str, Any] | None:
-    try:
-        return fileio.parse_toml(text, "TLT0801", "") if text else {}
-    except TltlError:
-        return None
-
-
-def _tables(value: Any) -> list[dict[str, Any]]:
-    return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
-
-
-def _texts(values: Iterable[Any]) -> list[str]:
-    return [value for value in values if isinstance(value, str) and value]

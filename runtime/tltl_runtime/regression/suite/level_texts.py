@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.place import overlays_of
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]
-"""Names of files, as in ``files`` of a :class:`~tltl_runtime.stealth.level.Level`, each with a text or a hash."""
+"""Names of files, as in ``files`` of a :class:`~tltl_runtime.game.level.Level`, each with a text or a hash."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = fileio.Archive("the baseline", damaged="record it anew", elsewhere="record it anew on this system")
@@ -27,10 +24,10 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
 
     A file that was edited since, and so has another hash, is left out.
     """
-    path = level_path(name_or_path)
+    level_files = registered_game().level_files
     texts = []
     for name, sha256 in files:
-        candidates = (_text(place) for place in _places(path, variant, name))
+        candidates = (_text(place) for place in level_files.candidates(name_or_path, variant, name))
         text = next((text for text in candidates if text is not None and text_sha256(text) == sha256), None)
         if text is not None:
             texts.append((name, text))
@@ -39,8 +36,9 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
 
 def text_now(name_or_path: str, variant: str, name: str) -> str | None:
     """The current text of a file of a level; None if it cannot be read."""
-    path = level_path(name_or_path)
-    return _text(next(filter(fileio.is_file, _places(path, variant, name)), path))
+    level_files = registered_game().level_files
+    candidates = level_files.candidates(name_or_path, variant, name)
+    return _text(next(filter(fileio.is_file, candidates), level_files.path(name_or_path)))
 
 
 def designed(reference: Reference) -> Level | None:
@@ -58,19 +56,10 @@ def designed(reference: Reference) -> Level | None:
     with fileio.temporary_folder() as folder:
         try:
             fileio.unpack(folder, files, _BASELINE)
-            return load_level(str(folder / name), played.variant)
+            level: Level = registered_game().load_level(str(folder / name), played.variant)
+            return level
         except TltlError:
             return None
-
-
-def _places(level: Path, variant: str, name: str) -> Iterator[Path]:
-    """The possible paths of a level's file: the level itself, beside the level, in the package, or an added overlay."""
-    if name == level.name:
-        yield level
-    yield from (level.parent / name, LEVELS / name)
-    for overlay in overlays_of(variant)[1]:
-        if overlay.endswith(".toml") and f"overlays/{Path(overlay).name}" == name:
-            yield Path(overlay)
 
 
 def _text(path: Path) -> str | None:

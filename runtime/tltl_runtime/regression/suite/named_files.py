@@ -8,10 +8,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltlc.api import Diagnostic, Label, TltlError, fileio, replace
 
 _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
@@ -62,7 +62,7 @@ def level_like(name: str, folder: Path) -> str | None:
     with suppress(OSError, ValueError):
         files = sorted(filter(_is_level, (folder / name).parent.glob("*.toml")))
         beside = [(Path(name).parent / path.name).as_posix() for path in files]
-    close = get_close_matches(name, (*beside, *level_names()), n=1)
+    close = get_close_matches(name, (*beside, *registered_game().level_files.names()), n=1)
     return f"did you mean `{close[0]}`?" if close else None
 
 
@@ -81,9 +81,11 @@ def policy_for_its_spec(level: str) -> str | None:
 
     This level may be a copy of it.
     """
+    game = registered_game()
     with suppress(TltlError):
-        made_for = {Path(load_level(name).spec).name: name for name in shipped_policies()}
-        return made_for.get(Path(load_level(level, variants(level)[0]).spec).name)
+        made_for = {Path(game.load_level(name).spec).name: name for name in shipped_policies()}
+        first_variant = game.level_files.variants(level)[0]
+        return made_for.get(Path(game.load_level(level, first_variant).spec).name)
     return None
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.place import level_place, overlays_of, with_overlays
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.named_files import level_like, policy_faults, policy_for_its_spec, spec_faults
-from tltl_runtime.stealth.levels.file import level_names, level_path, shared_names, variants
 from tltl_runtime.support.checked_table import REQUIRED, CheckedTable, wrong
 from tltl_runtime.support.shown_path import shown
 from tltl_runtime.support.suggestion import suggestion
@@ -56,7 +56,7 @@ class Case:
     """A regression test: a policy plays a level in a variant, and a spec judges it.
 
     ``level`` and ``variant`` are arguments of
-    :func:`~tltl_runtime.stealth.levels.file.load_level`.  ``reference`` is the variant whose figures
+    :meth:`~tltl_runtime.game.game.Game.load_level`.  ``reference`` is the variant whose figures
     the case is compared with.  ``spec`` is ``FILE:NAME``, or None for the policy's own spec.
     ``episodes`` is the most that are played.  ``place`` distinguishes levels of the same name: it is
     the level's path relative to the suite, or empty for a level of the package.
@@ -178,7 +178,7 @@ def _case(
         if given and given not in variant_names:
             title = f"the level `{level}` has no variant `{given}`"
             table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(given, variant_names)))
-    overlay_names = shared_names(level_path(level), "overlays")
+    overlay_names = registered_game().level_files.overlays(level)
     for overlay in overlays:
         if not overlay.endswith(".toml") and overlay not in overlay_names:
             title = f"there is no overlay `{overlay}`"
@@ -209,7 +209,7 @@ def _variants(table: CheckedTable, level: str, known: dict[str, tuple[str, ...]]
     """
     if level not in known:
         try:
-            known[level] = variants(level)
+            known[level] = registered_game().level_files.variants(level)
         except TltlError:
             known[level] = ()
     named = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
@@ -226,12 +226,13 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
             help_ = level_like(level, folder) or "paths are relative to the suite"
             table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.place("level"),), help_))
         return str(folder / level), Path(normpath(level)).as_posix()
+    level_files = registered_game().level_files
     try:
-        level_path(level)
+        level_files.path(level)
     except TltlError as error:
         (diagnostic,) = error.diagnostics
         name, variant = level_place(level)
-        is_there = name in level_names() or fileio.is_file(folder / name)
+        is_there = name in level_files.names() or fileio.is_file(folder / name)
         advice = diagnostic.help
         if variant and is_there:
             advice = _apart(name, variant)

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.game.place import shown_variant
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.level_texts import text_now
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
-from tltl_runtime.stealth.levels.file import level_path
 
 
 def unnamed(suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]) -> dict[str, tuple[str, ...]]:
@@ -26,7 +26,7 @@ def unnamed(suite: Suite, left_out: Sequence[Case], references: Sequence[Referen
 
 
 def _changed(suite: Suite, case: Case, references: Sequence[Reference]) -> Iterator[str]:
-    place = (level_path(case.level).stem, shown_variant(case.reference), case.place)
+    place = (registered_game().level_files.path(case.level).stem, shown_variant(case.reference), case.place)
     files = next((reference.played.files for reference in references if _place(reference) == place), ())
     # Files that only the reference variant uses are no dependencies of the case.
     paths = dependencies(suite, case)
