@@ -68,3 +68,19 @@ print(envs.reset(seed=1)[0].shape)
 envs.close()
 """
     assert run(PROGRAM + program).stdout == "(2, 4)\n"
+
+
+def test_the_game_reads_levels_and_recordings(recording: Path) -> None:
+    program = f"""
+from pathlib import Path
+from tltl_runtime.game.registry import registered_game
+game = registered_game()
+level, episode = game.load_level("navigation"), game.read_episode(Path({str(recording)!r}))
+print(game.branches, game.level_hash(level) == game.level_hash(episode.level), game.summary(episode).steps)
+"""
+    assert run(PROGRAM + program).stdout == "(3, 3, 2, 2, 2) True 1\n"
+
+
+def test_vector_environments_of_the_game_report_the_missing_package() -> None:
+    done = run(PROGRAM + "from tltl_runtime.vector import make_vec; make_vec('navigation')")
+    assert done.stderr.splitlines()[-1].endswith("TLT0730: the game needs `pybullet`, which is not installed")
