@@ -19,7 +19,7 @@ _MAIN = """
 import os, signal
 from pathlib import Path
 from tests.waiting import until
-from tltl_runtime.evaluation.local import Process
+from tltl_runtime.evaluation.local import WorkerProcess
 
 if __name__ == "__mp_main__":
     Path("imports").touch()
@@ -30,7 +30,7 @@ class Plays:
         return task
 
 if __name__ == "__main__":
-    worker = Process(Plays)
+    worker = WorkerProcess(Plays)
     future = worker.play("played")
     until(Path("imports").exists, "a worker that imports what it needs")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
