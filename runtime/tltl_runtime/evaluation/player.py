@@ -8,7 +8,7 @@ from typing import Any, Final, Literal, Protocol
 import gymnasium
 
 from tltl_runtime.evaluation.play import play
-from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.episode import Trajectory, trajectory
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.policy import Policy
@@ -100,7 +100,7 @@ class Player:
         episode = replace(self._recorder.episode, player=player)
         kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
         recording = self._game.episode_bytes(episode) if kept else b""
-        return PlayedEpisode(task, played, self._game.trajectory(episode), recording)
+        return PlayedEpisode(task, played, trajectory(episode), recording)
 
     def close(self) -> None:
         """Free the game."""

@@ -78,7 +78,7 @@ class RecordedEpisode(Protocol):
 
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
-"""How an episode ended, and what for."""
+"""Why an episode ended."""
 
 
 @record
@@ -111,3 +111,8 @@ class Trajectory:
     points: NDArray[np.float32]
     states: NDArray[np.int32]
     end: End
+
+
+def trajectory(episode: RecordedEpisode) -> Trajectory:
+    """Return the trajectory of an episode."""
+    return Trajectory(episode.positions[:, :2].astype(np.float32), episode.states, episode.end)

@@ -10,7 +10,7 @@ from typing import Any, Generic
 
 import gymnasium
 
-from tltl_runtime.game.episode import Cause, Trajectory
+from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level_files import LevelFiles, LevelT
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
@@ -145,10 +145,6 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     @abstractmethod
     def episode_bytes(self, episode: EpisodeT) -> bytes:
         """Return the bytes of the file of an episode; equal episodes give equal bytes."""
-
-    @abstractmethod
-    def trajectory(self, episode: EpisodeT) -> Trajectory:
-        """Return the trajectory of an episode."""
 
     @abstractmethod
     def summary(self, episode: EpisodeT, index: int = 0) -> EpisodeSummary:

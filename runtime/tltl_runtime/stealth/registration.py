@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import gymnasium
 
-from tltl_runtime.game.episode import Cause, Trajectory
+from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level_files import LevelFiles
@@ -31,7 +31,6 @@ from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes
-from tltl_runtime.stealth.recordings.trajectory import trajectory
 from tltl_runtime.stealth.snapshot import CHOICES
 from tltl_runtime.stealth.world.faults import player_fault
 from tltl_runtime.stealth.world.player import DECISION
@@ -168,10 +167,6 @@ class StealthGame(Game[Level, Episode]):
     def episode_bytes(self, episode: Episode) -> bytes:
         """Return the bytes of the file of an episode."""
         return to_bytes(episode)
-
-    def trajectory(self, episode: Episode) -> Trajectory:
-        """Return the trajectory of an episode."""
-        return trajectory(episode)
 
     def summary(self, episode: Episode, index: int = 0) -> EpisodeSummary:
         """Return the summary of an episode."""
