@@ -212,12 +212,12 @@ def test_without_descriptors_the_server_retries_after_a_pause(monkeypatch: pytes
 LOW = f"""
 import resource, selectors, sys, threading
 resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64))
-from tltlc.interfaces.playground.server import Server
+from tltlc.interfaces.playground.server import PlaygroundServer
 
 turns = []
 select = selectors.DefaultSelector.select
 selectors.DefaultSelector.select = lambda *given: turns.append(0) or select(*given)
-with Server(0, {HANG_S}) as server:
+with PlaygroundServer(0, {HANG_S}) as server:
     threading.Thread(target=server.serve_forever).start()
     print(server.server_address[1], server.token, flush=True)
     sys.stdin.readline()
