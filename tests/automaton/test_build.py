@@ -160,8 +160,6 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
     program = """
 from tests.reference_formulas import corpus
 from tltlc.automaton.finite.build import build, spec_from_formula
-from tltlc.automaton.text import label_text
-from tltlc.automaton.text import label_text
 small = [entry.formula for entry in corpus() if entry.states is not None and entry.states <= 12]
 print([build(spec_from_formula(formula)) for formula in small])
 """
