@@ -41,7 +41,7 @@ _Node = Union[source.Expression, source.Condition]
 
 
 def defined(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
-    """Return the statements of :meth:`Arithmetic.assigned` with a declaration of the variable.
+    """Return the statements of :meth:`ExpressionTranslator.assigned` with a declaration of the variable.
 
     The declaration includes the value where a single assignment gives it. Pass ``changes=True`` if
     the variable is assigned again later, as when the value of an atom is clamped to its range.
