@@ -16,7 +16,7 @@ from tltlc.artefact import size as sizes
 from tltlc.artefact.decode import read
 from tltlc.artefact.encode import encode
 from tltlc.artefact.layout import WIDTH, layout
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression.python import compile_expressions
@@ -52,6 +52,14 @@ def test_hostile_texts_are_read_back_unchanged(fspa: Fspa) -> None:
     assert not [
         character for character in text if character != "\n" and unicodedata.category(character) in ("Cc", "Cf")
     ]
+
+
+@pytest.mark.parametrize("name", ["alive&alive", "(alive)", "G (alive)", "alive or not"])
+def test_a_name_that_tltlc_would_write_otherwise_stays_a_name(name: str) -> None:
+    fspa = cover_and_hide()
+    label = Text(name, "in unicode", "In English.")
+    fspa = replace(fspa, formula=label, states=(replace(fspa.states[0], label=label), *fspa.states[1:]))
+    assert read(emitted(fspa), "x.fspa.json") == fspa
 
 
 def test_invisible_characters_are_escaped() -> None:

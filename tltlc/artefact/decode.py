@@ -16,6 +16,7 @@ from tltlc.io.json_text import JsonLimitError, loads, non_finite
 from tltlc.io.limits import ARTEFACT
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.parser import FormulaParser
+from tltlc.logic.text.printer import ascii_text
 from tltlc.resolve.spec import Atom, Param, Signal
 
 
@@ -121,11 +122,15 @@ def _pair(pair: dict[str, Any]) -> Pair:
 
 
 def _label_reader(atoms: Iterable[dict[str, Any]]) -> Callable[[dict[str, str]], Formula | Text]:
-    """Return a function that parses the ASCII text of a formula; a text that is none stays text."""
+    """Return a function that parses the ASCII text of a formula as tltlc prints it; any other text stays text."""
     parser = FormulaParser(atom["name"] for atom in atoms)
 
     def read(text: dict[str, str]) -> Formula | Text:
-        return parser.formula(text["ascii"]) or Text(text["ascii"], text["unicode"], text["english"])
+        formula = parser.formula(text["ascii"])
+        # Operators of other tools may have other precedences.
+        if formula is not None and ascii_text(formula) == text["ascii"]:
+            return formula
+        return Text(text["ascii"], text["unicode"], text["english"])
 
     return read
 
