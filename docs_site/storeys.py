@@ -20,10 +20,10 @@ _SIDE_BY_SIDE: Final = " : "
 """Separates the modules of one layer, which do not import each other."""
 
 _COMPILER: Final = "tltlc"
-_STOREYS: Final = {"interfaces": "interfaces", "tools": "tools"}
-"""The storey of a layer of the compiler; the other layers are the spine."""
+_STOREYS: Final = {"api": "façade", "interfaces": "interfaces", "tools": "tools"}
+"""The frame of a layer of the compiler: the façade or a storey; the other layers are the spine."""
 _SPINE: Final = "spine"
-_COLOURS: Final = {"interfaces": "#dbeafe", "tools": "#dcfce7", _SPINE: "#fef3c7"}
+_COLOURS: Final = {"façade": "#ede9fe", "interfaces": "#dbeafe", "tools": "#dcfce7", _SPINE: "#fef3c7"}
 _OTHER: Final = "#f1f5f9"
 """The colour of modules that are on no storey of the compiler."""
 
