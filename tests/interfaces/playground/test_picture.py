@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 import tltlc
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
-from tltlc.automaton.fspa import Fspa
-from tltlc.backends import Notation
+from tltlc.automaton.fspa import Fspa, Notation
 from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Curve
