@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import as_script, element, joined, prose, short
+from tltl_runtime.regression.report.page.markup import as_script, element, prose, short
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(),
@@ -23,13 +23,8 @@ def test_texts_and_attributes_are_escaped() -> None:
     assert markup == '<p title="&quot;&lt;&amp;" class="one" data-row="3">a &lt; b &amp; c<b>bold</b></p>'
 
 
-def test_attributes_without_values_and_void_elements() -> None:
-    assert element("input", checked=True, disabled=False, name=None) == "<input checked>"
-    assert element("p", None) == "<p></p>"
-
-
-def test_joined_parts_are_escaped_one_by_one() -> None:
-    assert joined(["<", Markup("<br>"), None, 7]) == "&lt;<br>7"
+def test_the_parts_of_an_element_are_escaped_one_by_one() -> None:
+    assert element("g", "<", Markup("<path></path>"), 7) == "<g>&lt;<path></path>7</g>"
 
 
 def test_names_between_backquotes_are_code() -> None:

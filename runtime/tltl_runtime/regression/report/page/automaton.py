@@ -10,7 +10,8 @@ from xml.etree import ElementTree
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import element, short
+from tltl_runtime.regression.report.page.markup import short
+from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.traffic import Traffic
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, label_text, record, replace
 
@@ -222,19 +223,14 @@ def _sentence(diagnostic: Diagnostic) -> str:
 
 def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
     """A table of the states: what remains to be done in each, and the numbers of episodes."""
-    heads = ("State", "What remains to be done", "Visited", "Failed", "Visited before", "Failed before")
     rows = [
-        element(
-            "tr",
-            element("th", state.id, scope="row"),
-            element("td", label_text(fspa, state.id)),
-            *(
-                element("td", f"{counts.get(state.id, 0)} of {seen.episodes}", class_="number")
-                for seen in (now, before)
-                for counts in (seen.visited, seen.failed)
-            ),
-        )
+        (state.id, label_text(fspa, state.id), [*_counts(state.id, now), *_counts(state.id, before)])
         for state in fspa.states
     ]
-    head = element("thead", element("tr", *(element("th", title, scope="col") for title in heads)))
-    return element("div", element("table", head, element("tbody", *rows), class_="counts-table"), class_="scroll")
+    return render("counts_table.html", rows=rows)
+
+
+def _counts(state: int, seen: Traffic) -> tuple[str, str]:
+    """The numbers of episodes that visited a state and that failed in it."""
+    visited, failed = (f"{counts.get(state, 0)} of {seen.episodes}" for counts in (seen.visited, seen.failed))
+    return visited, failed

@@ -8,9 +8,24 @@ from markupsafe import Markup
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.page.contents import ReportedCase
-from tltl_runtime.regression.report.page.markup import element
+from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
-from tltlc.api import replace
+from tltlc.api import record, replace
+
+
+@record
+class _DrawnMap:
+    """A map and its key.
+
+    ``shown`` says which episodes it is shown with: ``now``, ``before`` (the baseline) or ``both``.
+    ``is_of_unknown_baseline`` says that the level of the baseline's episodes is unknown.
+    """
+
+    shown: str
+    picture: Markup
+    key: Markup
+    caption: str = ""
+    is_of_unknown_baseline: bool = False
 
 
 def case_maps(case: ReportedCase, level: Level) -> Markup:
@@ -18,24 +33,15 @@ def case_maps(case: ReportedCase, level: Level) -> Markup:
 
     If the level of the baseline looks different, its map is included, too.  The page shows one of them.
     """
-    sentences = "\n".join(case.report.reasons)
-    legend = element("ul", class_="legend shown", aria_label="Legend of the map")
-    return element("div", *_drawn(case, level, sentences), legend)
+    return render("case_maps.html", maps=tuple(_maps(case, level, "\n".join(case.report.reasons))))
 
 
-def _drawn(case: ReportedCase, level: Level, sentences: str) -> Iterator[Markup]:
-    now, old = level_map(level, sentences), case.designed
+def _maps(case: ReportedCase, level: Level, sentences: str) -> Iterator[_DrawnMap]:
+    now, key, old = level_map(level, sentences), map_key(level, sentences), case.designed
     before = level_map(replace(old, name=level.name, variant=level.variant), sentences) if old is not None else None
-    if not case.before or before == now:
-        yield element("div", now, map_key(level, sentences), class_="drawn both")
+    if old is None or not case.before or before == now:
+        yield _DrawnMap("both", now, key, is_of_unknown_baseline=bool(case.before) and old is None)
         return
-    if old is None or before is None:
-        hint = "The baseline's ways are drawn on the level as it is now: what it was then is not known any more."
-        yield element(
-            "div", now, element("p", hint, class_="hint when-before"), map_key(level, sentences), class_="drawn both"
-        )
-        return
-    maps = (("now", level, "as it is now"), ("before", old, "as it was when the baseline was recorded"))
-    for when, shown, words in maps:
-        caption = element("p", f"The level {words}: {shown.name} {shown.variant}.", class_="hint")
-        yield element("div", level_map(shown, sentences), caption, map_key(shown, sentences), class_=f"drawn {when}")
+    yield _DrawnMap("now", now, key, f"The level as it is now: {level.name} {level.variant}.")
+    caption = f"The level as it was when the baseline was recorded: {old.name} {old.variant}."
+    yield _DrawnMap("before", level_map(old, sentences), map_key(old, sentences), caption)

@@ -3,32 +3,46 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Final
+from collections.abc import Iterator
 
 from markupsafe import Markup
 
-from tltl_runtime.game.episode import RecordedEpisode
-from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.automaton import Drawn, counts_table, picture
 from tltl_runtime.regression.report.page.case_maps import case_maps
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
 from tltl_runtime.regression.report.page.episode_links import episode_links
-from tltl_runtime.regression.report.page.markup import element, joined, prose
 from tltl_runtime.regression.report.page.player_panel import player_panel
-from tltl_runtime.regression.report.page.summary import NOT_RUN, badge
-from tltl_runtime.regression.report.page.traffic import Traffic, traffic
-from tltlc.api import Fspa, formula_text
+from tltl_runtime.regression.report.page.render import render
+from tltl_runtime.regression.report.page.traffic import traffic
+from tltlc.api import formula_text, record
 
-_KEY: Final = (
-    "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "
-    "thicker it is. The figure in a state's upper right corner is its distance, the least number of transitions to "
-    "acceptance."
-)
-_SHOWN: Final = (("ways", "ways"), ("time", "time spent"), ("failed", "failed ends"))
-_WHEN: Final = (("now", "now"), ("before", "baseline"))
+
+@record
+class _Reason:
+    """A reason of the verdict, and links to the recorded episodes that show it, or None."""
+
+    text: str
+    links: Markup | None = None
+
+
+@record
+class _Drawings:
+    """What the section of a case with level and automaton shows.
+
+    ``automaton`` is None if its layout failed; ``notes`` are on what it does not show.  ``curves`` are the
+    progress of the recorded episodes, or None without recordings.  ``distribution`` is the distribution of
+    progress over all episodes.  ``table`` has the numbers of episodes of each state.
+    """
+
+    automaton: Markup | None
+    notes: tuple[str, ...]
+    maps: Markup
+    player: Markup
+    curves: Markup | None
+    distribution: Markup
+    table: Markup
 
 
 def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
@@ -36,53 +50,25 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
 
     ``drawn`` is the picture of the case's automaton.
     """
-    report, level, fspa = case.report, case.level, case.fspa
-    parts: list[Markup] = [
-        element("h2", report.name, " ", badge(report.verdict), id=f"title:{slug}"),
-        _facts(report, fspa),
-        *_why(report, case.episodes, slug),
-        *_retrained(case),
-    ]
-    if level is not None and fspa is not None and drawn is not None:
-        now, before = traffic(report.accounts), traffic(case.before)
-        parts += [
-            _toggles(case.before),
-            element("h3", "Automaton", class_="automaton-title"),
-            *_automaton(fspa, drawn, now, before),
-            element("h3", "Map"),
-            element("div", case_maps(case, level), player_panel(fspa, case.episodes), class_="stage"),
-            element("h3", "Progress"),
-            element("div", *_curves(case), class_="curves"),
-            element("h3", "States"),
-            element("details", element("summary", "The automaton as a table"), counts_table(fspa, now, before)),
-        ]
-    return element(
-        "section",
-        *parts,
-        id=slug,
-        class_="case",
-        data_verdict=report.verdict,
-        aria_labelledby=f"title:{slug}",
-        data_when="now",
+    return render(
+        "case_section.html",
+        slug=slug,
+        report=case.report,
+        facts=_facts(case.report),
+        goal=None if case.fspa is None else formula_text(case.fspa),
+        reasons=tuple(_reasons(case, slug)),
+        curve=base64.b64encode(case.curve).decode(),
+        has_baseline=bool(case.before),
+        drawings=_drawings(case, drawn),
     )
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
     """The section of a case that was not judged in this run, with the reason."""
-    earlier = element("p", "An earlier run said ", badge(case.earlier), " of it.") if case.earlier else None
-    return element(
-        "section",
-        element("h2", case.name, " ", badge(NOT_RUN), id=f"title:{slug}"),
-        element("p", prose(case.why)),
-        earlier,
-        id=slug,
-        class_="case",
-        data_verdict=case.earlier or NOT_RUN,
-        aria_labelledby=f"title:{slug}",
-    )
+    return render("not_run_section.html", case=case, slug=slug)
 
 
-def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
+def _facts(report: CaseReport) -> list[str]:
     facts = [f"{report.level} {report.variant}"]
     if report.reference:
         facts.append(f"compared with {report.reference.variant}")
@@ -90,65 +76,29 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
         facts += [f"spec {report.played.spec}", f"policy {report.played.policy[:12]}"]
     if report.figures and not report.certain:
         facts.append("not certain, though all of its episodes were played")
-    goal = element("p", formula_text(fspa), class_="goal") if fspa else None
-    return joined((element("p", " · ".join(facts), class_="facts"), goal))
+    return facts
 
 
-def _why(report: CaseReport, episodes: Mapping[int, RecordedEpisode], slug: str) -> Iterator[Markup]:
-    """The list of reasons.  Findings have links to their recorded episodes."""
-    lines = [element("li", prose(cause)) for cause in report.causes]
-    lines += [
-        element("li", prose(finding.text), episode_links(finding, episodes, slug)) for finding in report.explanation
-    ]
-    lines += [element("li", prose(edit)) for edit in report.edits]
-    if lines:
-        yield element("h3", "Why")
-        yield element("ul", *lines, class_="reasons")
+def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
+    """The reasons of the verdict.  Findings have links to their recorded episodes."""
+    report = case.report
+    yield from map(_Reason, report.causes)
+    for finding in report.explanation:
+        yield _Reason(finding.text, episode_links(finding, case.episodes, slug))
+    yield from map(_Reason, report.edits)
 
 
-def _retrained(case: ReportedCase) -> Iterator[Markup]:
-    """The result of retraining the policy on the changed level."""
-    retrained = case.report.retrained
-    if retrained is None:
-        return
-    yield element("h3", "Trained anew from its policy")
-    yield element("p", prose(retrained.text))
-    yield element("p", f"policy: {retrained.policy}", class_="facts")
-    if case.curve:
-        source = f"data:image/png;base64,{base64.b64encode(case.curve).decode()}"
-        picture_ = element("img", src=source, alt="Pass rate and progress over the steps of the training")
-        yield element("details", element("summary", "How the training went"), picture_)
-
-
-def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Iterator[Markup]:
-    """The picture of the automaton, and notes on what it does not show."""
-    if drawn.svg is not None:
-        inside = picture(fspa, drawn.svg, now, before)
-        yield element("div", inside, class_="scroll", tabindex=0, role="group", aria_label="Automaton")
-        yield element("p", _KEY, class_="hint")
-    yield from (element("p", note, class_="warning") for note in drawn.notes)
-
-
-def _toggles(before: Sequence[Account]) -> Markup:
-    when = [_choice("Episodes", "when", _WHEN)] if before else []
-    return element("form", *when, _choice("On the map", "shown", _SHOWN), class_="toggles", autocomplete="off")
-
-
-def _choice(legend: str, name: str, choices: Sequence[tuple[str, str]]) -> Markup:
-    """A group of radio buttons; the first is selected."""
-    labels = [
-        element("label", element("input", type="radio", name=name, value=value, checked=place == 0), f" {words}")
-        for place, (value, words) in enumerate(choices)
-    ]
-    return element("fieldset", element("legend", legend), *labels)
-
-
-def _curves(case: ReportedCase) -> Iterator[Markup]:
-    if case.episodes:
-        caption = element(
-            "figcaption", "Progress of the recorded episodes of now: green succeeded, red and dashed failed"
-        )
-        yield element("figure", progress_curves(case.episodes), caption)
-    keys = (element("span", "now", class_="key now"), " ", element("span", "baseline", class_="key before"))
-    caption = element("figcaption", "Share of episodes by their best progress: ", *(keys if case.before else keys[:1]))
-    yield element("figure", progress_distribution(case.report.accounts, case.before), caption)
+def _drawings(case: ReportedCase, drawn: Drawn | None) -> _Drawings | None:
+    level, fspa = case.level, case.fspa
+    if level is None or fspa is None or drawn is None:
+        return None
+    now, before = traffic(case.report.accounts), traffic(case.before)
+    return _Drawings(
+        automaton=None if drawn.svg is None else picture(fspa, drawn.svg, now, before),
+        notes=drawn.notes,
+        maps=case_maps(case, level),
+        player=player_panel(fspa, case.episodes),
+        curves=progress_curves(case.episodes) if case.episodes else None,
+        distribution=progress_distribution(case.report.accounts, case.before),
+        table=counts_table(fspa, now, before),
+    )

@@ -1,4 +1,7 @@
-"""Diagrams as inline SVG: progress over time, and the distribution of progress now and before."""
+"""Diagrams as inline SVG: progress over time, and the distribution of progress now and before.
+
+Functions draw them, not templates: nearly every attribute is computed.
+"""
 
 from __future__ import annotations
 

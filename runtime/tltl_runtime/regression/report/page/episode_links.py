@@ -8,13 +8,22 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.explain import Finding
-from tltl_runtime.regression.report.page.markup import element
+from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.suite.slugs import episode_link
+from tltlc.api import record
 
 _BEFORE_END_S: Final = 4.0
 """A failed episode is opened this many seconds before its end, to show what led to the failure."""
+
+
+@record
+class _Link:
+    """A link that plays an episode, and what it does, in words."""
+
+    index: int
+    address: str
+    words: str
 
 
 def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slug: str) -> Markup | None:
@@ -25,16 +34,15 @@ def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slu
     indices = [index for index in finding.episodes if index in episodes]
     if not indices:
         return None
-    before_end = round(_BEFORE_END_S / registered_game().clock_s)
-    links = []
-    for index in indices:
-        episode = episodes[index]
-        step = 0 if episode.success else max(0, len(episode.actions) - before_end)
-        words = f"play {'the end of ' * (step > 0)}episode {index}"
-        address = episode_link(slug, index, step)
-        links += [" ", element("a", str(index), class_="episode", href=address, title=words, aria_label=words)]
     is_end = not all(episodes[index].success for index in indices)
     label = f"play {'the end of ' * is_end}episode{'s' * (len(indices) > 1)}"
     if finding.others:
         label = f"those that do not, {label}" if len(indices) > 1 else f"one that does not, {label}"
-    return element("span", f" {label}:", *links, class_="links")
+    links = [_link(index, episodes[index], slug) for index in indices]
+    return render("episode_links.html", label=label, links=links)
+
+
+def _link(index: int, episode: RecordedEpisode, slug: str) -> _Link:
+    before_end = round(_BEFORE_END_S / registered_game().clock_s)
+    step = 0 if episode.success else max(0, len(episode.actions) - before_end)
+    return _Link(index, episode_link(slug, index, step), f"play {'the end of ' * (step > 0)}episode {index}")

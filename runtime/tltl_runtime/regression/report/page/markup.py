@@ -1,36 +1,26 @@
-"""Build HTML and SVG elements with escaped texts."""
+"""Write SVG elements, sentences and data of the page with escaped texts."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
 from html import escape
 from typing import Any, Final
 
 from markupsafe import Markup
 
-_VOID: Final = frozenset({"br", "hr", "img", "input", "link", "meta"})
 _CODE: Final = re.compile(r"`([^`]+)`")
 _SCRIPT: Final = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028", "\u2029": "\\u2029"}
 
 
 def element(name: str, /, *inside: object, **attributes: object) -> Markup:
-    """Build an element.
+    """Build an SVG element.
 
-    Its contents are escaped unless they are :class:`Markup`; None is left out.  In names of attributes,
-    ``_`` becomes ``-``, and a trailing ``_`` is dropped (``class_``).  The value True gives an attribute
-    without a value; None and False omit the attribute.
+    Its contents are escaped one by one unless they are :class:`Markup`.  In names of attributes, ``_``
+    becomes ``-``, and a trailing ``_`` is dropped (``class_``).
     """
     written = "".join(_attribute(key, value) for key, value in attributes.items())
-    if name in _VOID:
-        return Markup(f"<{name}{written}>")
-    return Markup(f"<{name}{written}>{joined(inside)}</{name}>")
-
-
-def joined(parts: Iterable[object]) -> Markup:
-    """Join parts, each escaped unless it is :class:`Markup`; None is left out."""
-    return Markup("".join(_inside(part) for part in parts if part is not None))
+    return Markup(f"<{name}{written}>{''.join(map(_inside, inside))}</{name}>")
 
 
 def prose(text: str) -> Markup:
@@ -51,10 +41,7 @@ def short(value: float) -> str:
 
 
 def _attribute(key: str, value: object) -> str:
-    if value is None or value is False:
-        return ""
-    name = key.rstrip("_").replace("_", "-")
-    return f" {name}" if value is True else f' {name}="{escape(str(value))}"'
+    return f' {key.rstrip("_").replace("_", "-")}="{escape(str(value))}"'
 
 
 def _inside(part: object) -> str:

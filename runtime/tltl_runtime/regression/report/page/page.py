@@ -7,14 +7,14 @@ import hashlib
 from pathlib import Path
 from typing import Any, Final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from tltl_runtime.regression.report.page.automaton import Drawn, drawn
 from tltl_runtime.regression.report.page.case_data import case_data
 from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
 from tltl_runtime.regression.report.page.contents import SuiteReport
-from tltl_runtime.regression.report.page.markup import as_script, joined
+from tltl_runtime.regression.report.page.markup import as_script
+from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.stealth.colours import colours, state_colours
 from tltl_runtime.regression.report.page.summary import summary
 from tltl_runtime.regression.suite.slugs import slugs
@@ -36,29 +36,19 @@ def html_report(suite: SuiteReport) -> str:
     automata = {case.fspa: None for case in suite.cases}
     pictures: dict[Fspa | None, Drawn] = {fspa: drawn(fspa) for fspa in automata if fspa is not None}
     script = "\n".join(_asset(name) for name in _SCRIPTS)
-    return (
-        _templates()
-        .get_template("report.html")
-        .render(
-            suite=suite.suite,
-            digest=_digest(script),
-            style=Markup(f"{colours()}\n{_asset('report.css')}"),
-            summary=summary(suite, names),
-            sections=joined(
-                (
-                    *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
-                    *(not_run_section(case, slug) for case, slug in not_run),
-                )
-            ),
-            data=as_script(_data([case_data(case, slug) for case, slug in pairs])),
-            script=Markup(script),
-        )
+    return render(
+        "report.html",
+        suite=suite.suite,
+        digest=_digest(script),
+        style=Markup(f"{colours()}\n{_asset('report.css')}"),
+        summary=summary(suite, names),
+        sections=[
+            *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
+            *(not_run_section(case, slug) for case, slug in not_run),
+        ],
+        data=as_script(_data([case_data(case, slug) for case, slug in pairs])),
+        script=Markup(script),
     )
-
-
-def _templates() -> Environment:
-    """The page's templates. They escape every value that is not :class:`Markup`; an unknown name is an error."""
-    return Environment(loader=FileSystemLoader(_FOLDER), autoescape=True, undefined=StrictUndefined)
 
 
 def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:

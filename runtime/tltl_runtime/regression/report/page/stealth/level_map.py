@@ -1,6 +1,7 @@
 """The map of a level as an inline SVG: everything that does not move.  The page's script draws the rest onto it.
 
 The units are centimetres from the north-western corner of the level's bounds, x eastwards, y southwards.
+Functions draw the map, not a template: nearly every attribute is computed.
 """
 
 from __future__ import annotations

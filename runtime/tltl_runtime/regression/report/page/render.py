@@ -1,0 +1,38 @@
+"""The HTML templates of the page, in the folder ``templates``: they lay out what the modules compute."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from tltl_runtime.regression.report.page.markup import prose
+
+_FOLDER: Final = Path(__file__).parent / "templates"
+
+
+def render(template: str, **context: object) -> Markup:
+    """Fill in a template, given the name of its file and the values of its names.
+
+    Values are escaped unless they are :class:`Markup`.  The filter ``prose`` formats sentences.
+
+    Raises:
+        jinja2.UndefinedError: the template uses a name that is not in the context.
+    """
+    return Markup(_environment().get_template(template).render(context))
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(_FOLDER),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["prose"] = prose
+    return environment
