@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import pytest
 
 from tltl_runtime.regression.explain.places import place_name
+from tltl_runtime.regression.report.page.mentions import mentions
 from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_data, map_key
-from tltl_runtime.regression.report.page.stealth.map_names import is_spoken_of
 from tltl_runtime.stealth.level import Box, Solid
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.core.record import replace
@@ -76,22 +76,32 @@ def within(box: Box, other: Box) -> bool:
 
 def test_things_named_in_the_reasons_are_highlighted() -> None:
     level = load_level("navigation", "v2")
-    reasons = "nobody reaches `s2`: the way ends at `corridor_block_2`\nruns out of time in the corridor"
-    root = ElementTree.fromstring(level_map(level, reasons))
+    reasons = ("nobody reaches `s2`: the way ends at `corridor_block_2`", "runs out of time in the corridor")
+    mentioned = mentions(level, reasons)
+    root = ElementTree.fromstring(level_map(level, mentioned))
     outlined = [
         element.findtext("title") for element in root.iter("rect") if "spoken" in element.get("class", "").split()
     ]
     assert outlined == ["corridor_block_2"]
     assert {name for name, kind, *_ in names_on(root) if "spoken" in kind} == {"s2", "corridor_block_2", "corridor"}
-    assert "a reason speaks of it" in map_key(level, reasons) and "a reason speaks of it" not in map_key(level)
+    assert "a reason speaks of it" in map_key(level, mentioned) and "a reason speaks of it" not in map_key(level)
     quiet = names_on(ElementTree.fromstring(level_map(level)))
     assert "corridor_block_2" not in {name for name, *_ in quiet} and not any("spoken" in kind for _, kind, *_ in quiet)
 
 
-@pytest.mark.parametrize("said", ["`wall.far_wall` new", "`wall.far_wall.at` [1, 2] → [3, 4]", "at `far_wall`"])
-def test_keys_of_a_thing_mention_the_thing(said: str) -> None:
-    assert is_spoken_of("far_wall", said)
-    assert not is_spoken_of("wall_", said) and not is_spoken_of("far", said)
+@pytest.mark.parametrize("sentence", ["`wall.far_wall` new", "`wall.far_wall.at` [1, 2] → [3, 4]", "at `far_wall`"])
+def test_keys_of_a_thing_mention_the_thing(sentence: str) -> None:
+    level = load_level("navigation")
+    walls = tuple(replace(level.solids[0], name=name) for name in ("far_wall", "wall_", "far"))
+    assert mentions(replace(level, solids=walls), [sentence]).things == {"far_wall"}
+
+
+def test_the_longest_name_of_a_region_is_mentioned() -> None:
+    level = load_level("navigation")
+    regions = tuple(replace(level.regions[0], name=name) for name in ("left", "left_part", "middle"))
+    named = replace(level, regions=regions)
+    assert mentions(named, ["fails in the left part", "the middle-aged guard"]).regions == {"left_part"}
+    assert mentions(named, ["near the left", "the middle."]).regions == {"left", "middle"}
 
 
 def test_a_patrol_there_and_back_is_drawn_once() -> None:
@@ -114,9 +124,9 @@ def test_names_of_things_in_the_same_place_do_not_cover_each_other() -> None:
     level = load_level("navigation", "v2")
     box = next(solid.box for solid in level.solids if solid.name == "corridor_block_2")
     walls = tuple(Solid(f"corridor_block_{number}", "wall", box) for number in range(10, 22))
-    reasons = " ".join(f"`{wall.name}`" for wall in walls)
     level = replace(level, solids=(*level.solids, *walls))
-    shown = {name: (x, y) for name, kind, x, y in names_on(ElementTree.fromstring(level_map(level, reasons)))}
+    mentioned = mentions(level, [f"`{wall.name}`" for wall in walls])
+    shown = {name: (x, y) for name, kind, x, y in names_on(ElementTree.fromstring(level_map(level, mentioned)))}
     places = [shown[wall.name] for wall in walls]
     for row, (x, y) in enumerate(places):
         assert not any(abs(x - other_x) < 300 and abs(y - other_y) < 40 for other_x, other_y in places[:row])

@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.page.contents import ReportedCase
+from tltl_runtime.regression.report.page.mentions import mentions
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
 from tltlc.api import record, replace
@@ -33,15 +34,19 @@ def case_maps(case: ReportedCase, level: Level) -> Markup:
 
     If the level of the baseline looks different, its map is included, too.  The page shows one of them.
     """
-    return render("case_maps.html", maps=tuple(_maps(case, level, "\n".join(case.report.reasons))))
+    return render("case_maps.html", maps=tuple(_maps(case, level)))
 
 
-def _maps(case: ReportedCase, level: Level, sentences: str) -> Iterator[_DrawnMap]:
-    now, key, old = level_map(level, sentences), map_key(level, sentences), case.designed
-    before = level_map(replace(old, name=level.name, variant=level.variant), sentences) if old is not None else None
-    if old is None or not case.before or before == now:
-        yield _DrawnMap("both", now, key, is_of_unknown_baseline=bool(case.before) and old is None)
+def _maps(case: ReportedCase, level: Level) -> Iterator[_DrawnMap]:
+    old, mentioned = case.designed, mentions(level, case.report.reasons)
+    now, key = level_map(level, mentioned), map_key(level, mentioned)
+    if old is None or not case.before:
+        yield _DrawnMap("both", now, key, is_of_unknown_baseline=bool(case.before))
+        return
+    mentioned_before = mentions(old, case.report.reasons)
+    if level_map(replace(old, name=level.name, variant=level.variant), mentioned_before) == now:
+        yield _DrawnMap("both", now, key)
         return
     yield _DrawnMap("now", now, key, f"The level as it is now: {level.name} {level.variant}.")
     caption = f"The level as it was when the baseline was recorded: {old.name} {old.variant}."
-    yield _DrawnMap("before", level_map(old, sentences), map_key(old, sentences), caption)
+    yield _DrawnMap("before", level_map(old, mentioned_before), map_key(old, mentioned_before), caption)

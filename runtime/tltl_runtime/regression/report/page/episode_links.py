@@ -8,6 +8,7 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.suite.slugs import episode_link

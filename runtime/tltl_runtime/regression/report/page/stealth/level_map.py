@@ -16,8 +16,9 @@ from markupsafe import Markup
 from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import Level as GameLevel
 from tltl_runtime.regression.report.page.markup import element
+from tltl_runtime.regression.report.page.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.regression.report.page.plan import MapScale
-from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, is_spoken_of, names
+from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, names
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Level, Mover
 from tltl_runtime.stealth.rendering.plan import patrol
@@ -43,22 +44,22 @@ _SIGNS: Final = {
 """The legend: the class of each sign on a map, and its meaning."""
 
 
-def level_map(level: GameLevel, sentences: str = "") -> Markup:
+def level_map(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     """Draw the map of a level, with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
 
-    Things that the report's ``sentences`` mention are highlighted.
+    What the report ``mentions`` is highlighted.
     """
     assert isinstance(level, Level)
     plan = MapScale(level.bounds)
     width, height = plan.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
-    below = [*_ground(level, plan, sentences), element("g", class_="heat"), *_entities(level, plan)]
+    below = [*_ground(level, plan, mentions), element("g", class_="heat"), *_entities(level, plan)]
     above = [element("g", class_=layer) for layer in _LAYERS[1:]]
     return element(
         "svg",
         *below,
         *above[:-1],
-        element("g", *map(_name, names(level, plan, sentences)), class_="names"),
+        element("g", *map(_name, names(level, plan, mentions)), class_="names"),
         above[-1],
         class_="plan map",
         viewBox=view,
@@ -67,7 +68,7 @@ def level_map(level: GameLevel, sentences: str = "") -> Markup:
     )
 
 
-def map_key(level: GameLevel, sentences: str = "") -> Markup:
+def map_key(level: GameLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     """The legend of a map, with the signs that occur in it."""
     assert isinstance(level, Level)
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
@@ -78,7 +79,7 @@ def map_key(level: GameLevel, sentences: str = "") -> Markup:
         "mover-way": level.movers,
         **{f"barrier {kind}": kind in barriers for kind in ("solid", "laser")},
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
-        "solid spoken": any(is_spoken_of(solid.name, sentences) for solid in level.solids),
+        "solid spoken": any(solid.name in mentions.things for solid in level.solids),
     }
     rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if present.get(kind, True)]
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
@@ -130,9 +131,9 @@ def _sign(kind: str) -> Markup:
     return element("svg", inside, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
-def _ground(level: Level, plan: MapScale, sentences: str) -> Iterable[Markup]:
-    for solid in sorted(level.solids, key=lambda item: (is_spoken_of(item.name, sentences), item.box.high[2])):
-        kind = f"solid {solid.kind}{' spoken' * is_spoken_of(solid.name, sentences)}"
+def _ground(level: Level, plan: MapScale, mentions: Mentions) -> Iterable[Markup]:
+    for solid in sorted(level.solids, key=lambda item: (item.name in mentions.things, item.box.high[2])):
+        kind = f"solid {solid.kind}{' spoken' * (solid.name in mentions.things)}"
         yield element("rect", element("title", solid.name), class_=kind, **plan.sides(solid.box))
     for region in level.regions:
         yield element("rect", class_="region", **plan.sides(region.box))

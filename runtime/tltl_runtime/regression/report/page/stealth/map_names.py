@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from math import hypot
 from typing import Final
 
 from tltl_runtime.game.geometry import Region
+from tltl_runtime.regression.report.page.mentions import Mentions
 from tltl_runtime.regression.report.page.plan import MapScale, Rect
 from tltl_runtime.stealth.level import Level
 from tltlc.api import record, replace
@@ -48,40 +48,35 @@ class MapLabel:
     spoken: bool = False
 
 
-def names(level: Level, plan: MapScale, sentences: str) -> Iterator[MapLabel]:
+def names(level: Level, plan: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """Place the names of a level.
 
     Switches, exits, barriers, enemies and regions always have names.  Solids and movers have names only
-    if the report's ``sentences`` mention them.
+    if the report ``mentions`` them.
     """
     taken: list[Rect] = []
-    for thing in _things(level, plan, sentences):
+    for thing in _things(level, plan, mentions):
         name = _apart(thing, taken, plan.size)
         taken.append(_around(name))
         yield name
     taken += [plan.rect(solid.box) for solid in level.solids if solid.kind in ("wall", "low")]
     taken += [plan.rect(barrier.box) for barrier in level.barriers]
-    spoken = _regions_spoken_of(level, sentences)
     for row, region in enumerate(level.regions):
         # Where regions overlap, the first one gives the place its name.
         earlier_regions = [plan.rect(other.box) for other in level.regions[:row]]
-        name = _of_region(region, plan.rect(region.box), earlier_regions, taken, spoken=region.name in spoken)
+        spoken = region.name in mentions.regions
+        name = _of_region(region, plan.rect(region.box), earlier_regions, taken, spoken=spoken)
         taken.append(_around(name))
         yield name
 
 
-def is_spoken_of(name: str, sentences: str) -> bool:
-    """Whether sentences mention a thing of that name, or its keys, for example ``wall.NAME.at``."""
-    return re.search(rf"[`.]{re.escape(name)}[`.]", sentences) is not None
-
-
-def _things(level: Level, plan: MapScale, sentences: str) -> Iterator[MapLabel]:
+def _things(level: Level, plan: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """The names of things at their default positions."""
     small = [(switch.name, plan.at(switch.position)) for switch in level.switches]
     small += [(exit_.name, plan.at(exit_.position)) for exit_ in level.exits]
     wide = [(barrier.name, plan.middle(barrier.box)) for barrier in level.barriers]
-    wide += [(solid.name, plan.middle(solid.box)) for solid in level.solids if is_spoken_of(solid.name, sentences)]
-    wide += [(mover.name, plan.at(mover.path[0])) for mover in level.movers if is_spoken_of(mover.name, sentences)]
+    wide += [(solid.name, plan.middle(solid.box)) for solid in level.solids if solid.name in mentions.things]
+    wide += [(mover.name, plan.at(mover.path[0])) for mover in level.movers if mover.name in mentions.things]
     enemies = [(enemy.name, plan.at(enemy.route[0])) for enemy in level.enemies]
     for things, kind, above in (
         (small, "thing-name", _ABOVE),
@@ -91,7 +86,7 @@ def _things(level: Level, plan: MapScale, sentences: str) -> Iterator[MapLabel]:
         for name, (x, y) in things:
             half = _LETTER * len(name) // 2
             middle = min(max(x, half), max(half, plan.size[0] - half))
-            yield MapLabel((name,), kind, middle, y - above, is_spoken_of(name, sentences))
+            yield MapLabel((name,), kind, middle, y - above, name in mentions.things)
 
 
 def _apart(name: MapLabel, taken: Sequence[Rect], size: tuple[int, int]) -> MapLabel:
@@ -111,13 +106,6 @@ def _apart(name: MapLabel, taken: Sequence[Rect], size: tuple[int, int]) -> MapL
         for row in _ROWS
     ]
     return min(candidates, key=lambda candidate: sum(_overlap(_around(candidate), other) for other in taken))
-
-
-def _regions_spoken_of(level: Level, sentences: str) -> set[str]:
-    """The names of regions that sentences mention.  The longest name wins: *the left part* is not *the left*."""
-    called = {region.name.replace("_", " "): region.name for region in level.regions}
-    words = "|".join(map(re.escape, sorted(called, key=len, reverse=True)))
-    return {called[match] for match in re.findall(rf"\bthe ({words})(?![-\w])", sentences)} if called else set()
 
 
 def _of_region(

@@ -1,0 +1,44 @@
+"""The things and regions of a level that the sentences of a report mention.
+
+The sentences are searched for names, since the authors of levels write some of them: the descriptions of
+overlays.  All sentences put names of things between backquotes, and call regions by their names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from tltl_runtime.stealth.level import Level, entity_names
+from tltlc.api import record
+
+
+@record
+class Mentions:
+    """The names of the mentioned things, which are entities and solids, and of the mentioned regions."""
+
+    things: frozenset[str] = frozenset()
+    regions: frozenset[str] = frozenset()
+
+
+NO_MENTIONS: Final = Mentions()
+
+
+def mentions(level: Level, sentences: Sequence[str]) -> Mentions:
+    """Return what sentences mention: ```far_wall```, a key of a thing, ```wall.far_wall.at```, or *the left part*."""
+    text = "\n".join(sentences)
+    names = {*entity_names(level), *(solid.name for solid in level.solids)}
+    return Mentions(frozenset(name for name in names if _mentions_thing(name, text)), _regions(level, text))
+
+
+def _mentions_thing(name: str, text: str) -> bool:
+    return re.search(rf"[`.]{re.escape(name)}[`.]", text) is not None
+
+
+def _regions(level: Level, text: str) -> frozenset[str]:
+    """The names of the mentioned regions.  The longest name wins: *the left part* is not *the left*."""
+    called = {region.name.replace("_", " "): region.name for region in level.regions}
+    words = "|".join(map(re.escape, sorted(called, key=len, reverse=True)))
+    matches = re.findall(rf"\bthe ({words})(?![-\w])", text) if called else ()
+    return frozenset(called[match] for match in matches)
