@@ -11,6 +11,8 @@ from math import floor
 from typing import TYPE_CHECKING, NamedTuple
 
 from tltlc.automaton.fspa import Edge, Fspa
+from tltlc.logic.formula import atom
+from tltlc.logic.text.printer import operand_text
 from tltlc.monitor import Monitor, Step
 from tltlc.monitor.guards import prime_robustness
 
@@ -180,7 +182,7 @@ def _state(label: str) -> tuple[str, ...]:
 
 def bracketed(name: str) -> str:
     """Return the name of an atom as an operand: a comparison gets brackets."""
-    return f"({name})" if "<" in name or ">" in name else name
+    return operand_text(atom(name))
 
 
 def _step(literals: Sequence[str], times: int) -> list[str]:
