@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import pytest
 
 from tltl_runtime.regression.explain.places import place_name
-from tltl_runtime.regression.report.page.mentions import mentions
 from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_data, map_key
+from tltl_runtime.regression.report.page.stealth.mentions import mentions
 from tltl_runtime.stealth.level import Box, Solid
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.core.record import replace

@@ -8,9 +8,9 @@ from markupsafe import Markup
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.page.contents import ReportedCase
-from tltl_runtime.regression.report.page.mentions import mentions
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
+from tltl_runtime.regression.report.page.stealth.mentions import mentions
 from tltlc.api import record, replace
 
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from tltl_runtime.game.level import Level as GameLevel
 from tltl_runtime.stealth.level import Level, entity_names
 from tltlc.api import record
 
@@ -25,8 +26,9 @@ class Mentions:
 NO_MENTIONS: Final = Mentions()
 
 
-def mentions(level: Level, sentences: Sequence[str]) -> Mentions:
+def mentions(level: GameLevel, sentences: Sequence[str]) -> Mentions:
     """Return what sentences mention: ```far_wall```, a key of a thing, ```wall.far_wall.at```, or *the left part*."""
+    assert isinstance(level, Level)
     text = "\n".join(sentences)
     names = {*entity_names(level), *(solid.name for solid in level.solids)}
     return Mentions(frozenset(name for name in names if _mentions_thing(name, text)), _regions(level, text))
