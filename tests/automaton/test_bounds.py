@@ -13,7 +13,7 @@ from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.finite.readback import ObligationWriter
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.automaton.work import Work
 from tltlc.logic import formula as f
@@ -101,7 +101,7 @@ def test_labels_count_down(semantics: str) -> None:
 def test_long_bounds_need_no_deep_stack(bound) -> None:  # type: ignore[no-untyped-def]
     longest, before = bound(1_000), sys.getrecursionlimit()
     step = f.next_ if bound is within else f.weak_next
-    successors, after = Successors(["a"], TransitionDiagrams()), After(["a"], Diagrams(Work(1_000)))
+    successors, after = Successors(["a"], TransitionDiagrams()), ObligationAutomaton(["a"], Diagrams(Work(1_000)))
     sys.setrecursionlimit(len(inspect.stack(0)) + 1_100)
     try:
         assert successors.of_obligation(successors.obligation(step(longest)))

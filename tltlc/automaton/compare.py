@@ -14,7 +14,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of
 from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, pair_marks
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, telling_apart
+from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component
 from tltlc.automaton.work import DEFAULT_WORK, Work
 from tltlc.core.record import record
 
@@ -129,7 +129,7 @@ class _Product:
         def leaves(both: Both) -> list[Leaf]:
             return [(target, marks) for target, marks, _ in self._step(both)]
 
-        part = telling_apart([(0, 0)], leaves, [(these, those)], self._work)
+        part = separating_component([(0, 0)], leaves, [(these, those)], self._work)
         return None if part is None else self._through(part, these, those)
 
     def _through(self, part: Edges, these: Sequence[MarkClause], those: Sequence[MarkClause]) -> Trace:

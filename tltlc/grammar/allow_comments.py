@@ -34,7 +34,7 @@ class Allowed:
 
 def allowed(module: Module) -> Iterator[Allowed]:
     """Yield all codes that comments of the module allow, in order."""
-    for comment, places in spoken_of(module):
+    for comment, places in commented_spans(module):
         for match in _codes(comment):
             start = comment.span.start
             span = Span(start + match.start(1), start + match.end(1))
@@ -51,7 +51,7 @@ def is_allowing(comment: Comment) -> bool:
     return bool(_COMMENT.match(comment.text))
 
 
-def spoken_of(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
+def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
     """Return the allowing comments, each with the clauses and declarations that it applies to; None means the file.
 
     Comments that apply to the same line share one tuple.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Final
 
-from tltlc.grammar.slips import meant
+from tltlc.grammar.slips import likely_name
 
 DECLARATIONS: Final = {
     "import": '`import NAME`, `import NAME (name, name)`, `import NAME as NAME` or `import "file.tltl"`',
@@ -118,4 +118,4 @@ _OTHER_WORDS: Final = frozenset(
 def closest(word: str, known: tuple[str, ...]) -> str | None:
     """Return the known word that ``word`` is a typo of, if there is one and ``word`` means nothing else."""
     word = word.lower()
-    return None if word in _OTHER_WORDS else meant(word, known)
+    return None if word in _OTHER_WORDS else likely_name(word, known)

@@ -22,7 +22,7 @@ _NEGATING: Final = ("no", "nt")
 """Endings that negate a word and are at most two letters long."""
 
 
-def meant(name: str, known: Iterable[str]) -> str | None:
+def likely_name(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that a name is a typo of, if no other known name is as likely.
 
     A name that differs only in capital letters and underscores comes first, then a name that has the
@@ -42,7 +42,7 @@ def meant(name: str, known: Iterable[str]) -> str | None:
     return closest[0] if len(closest) == 1 else None
 
 
-def slips(word: str, known: str) -> int | None:
+def count_slips(word: str, known: str) -> int | None:
     """Return how many typos turn the known word into the word; None if it is another word."""
     most = 0 if len(known) < 2 else 2 if len(known) >= _LONG else 1
     if abs(len(word) - len(known)) > most or not _begin_alike(word, known):
@@ -70,7 +70,7 @@ def _slips_in_parts(name: str, known: str) -> int | None:
     for part, known_part in zip(parts, known_parts, strict=True):
         if part.lower() == known_part.lower():
             continue
-        count = None if part.isdigit() or known_part.isdigit() else slips(part.lower(), known_part.lower())
+        count = None if part.isdigit() or known_part.isdigit() else count_slips(part.lower(), known_part.lower())
         if count is None:
             return None
         total += count

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label, instead
-from tltlc.grammar.slips import meant
+from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import Argument, CallExpr, Expr, NameExpr, Parameter
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
@@ -49,7 +49,7 @@ def _parameter_for(
     if argument.name is not None:
         if argument.name in names:
             return argument.name
-        close = meant(argument.name, names)
+        close = likely_name(argument.name, names)
         hint = f"did you mean `{close}`?" if close else ""
         listed = ", ".join(f"`{name}`" for name in names)
         advice = None if close else f"it takes {listed}" if names else "it takes no arguments"

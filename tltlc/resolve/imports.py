@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
-from tltlc.grammar.slips import meant
+from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import Import, Module
 from tltlc.io.files import is_file, may_be_file, may_read, outside, read_source
 from tltlc.resolve.options import ResolveOptions
@@ -151,7 +151,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
         _check_inside(shown, declaration, source)
         if not is_file(shown):
             file_name = f"{shown.name.removesuffix('.tltl')}.tltl"
-            close = meant(file_name, [path.name for path in _files(shown.parent) if path.name != itself])
+            close = likely_name(file_name, [path.name for path in _files(shown.parent) if path.name != itself])
             unquoted = None if close else _library(target, folders)
             beginning = target[: target.rfind("/") + 1]
             replacement = f'"{beginning}{close}"' if close else unquoted
@@ -170,7 +170,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
         if is_file(folder / name):
             return Path(_normal((folder / name).absolute())), _shown(folder / name)
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
-    close = meant(target, known)
+    close = likely_name(target, known)
     advice = _similar(close) or "a library is a file NAME.tltl beside this one or in a --library folder"
     title, place = f"there is no library `{target}`", declaration.target_span
     fixes = (instead(source, place, close),) if close else ()

@@ -12,7 +12,7 @@ from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression.tree import Const
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
-from tltlc.grammar.slips import meant
+from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Parameter, PredicateDecl
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
@@ -160,7 +160,7 @@ def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, sc
     """Return the problem of a type that the language does not have."""
     known = [*units.TYPES, "entity"]
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
-    close = elsewhere or meant(name, known)
+    close = elsewhere or likely_name(name, known)
     advice = f"did you mean `{close}`?" if close else f"the types are {', '.join(known)}"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span

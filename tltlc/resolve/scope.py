@@ -8,7 +8,7 @@ from typing import Literal, Union
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
-from tltlc.grammar.slips import meant
+from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, NameExpr, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import Loaded
@@ -83,7 +83,7 @@ def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable
     Returns None if no name is close.
     """
     wanted = set(kinds)
-    return meant(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in wanted)])
+    return likely_name(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in wanted)])
 
 
 class _Room:
@@ -199,7 +199,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
 
 
 def _not_offered(scope: Scope, wanted: NameExpr, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
-    close = meant(wanted.name, offered)
+    close = likely_name(wanted.name, offered)
     hint = f"did you mean `{close}`?" if close else ""
     fixes = (instead(scope.source, wanted.span, close),) if close else ()
     title = f"{library} offers no `{wanted.name}`"

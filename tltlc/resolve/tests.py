@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import instead
-from tltlc.grammar.slips import meant
+from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
@@ -23,7 +23,7 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
     context, source = env.context, env.scope.source
     name = declaration.spec.name
     if name not in specs:
-        close = meant(name, specs)
+        close = likely_name(name, specs)
         hint = f"did you mean `{close}`?" if close else ""
         listed = ", ".join(f"`{known}`" for known in specs)
         advice = None if close else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tltl_runtime.cli.support.closed_output import on_without_readers
-from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
+from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_file
 from tltl_runtime.cli.support.printable import plain
-from tltl_runtime.cli.support.suite_argument import check_there
+from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_apart, check_writable
 from tltlc.api import TltlError, cli, fileio
@@ -45,8 +45,8 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     already is not played again where level, policy, spec, seed, versions and code are as they were.  Without SUITE, the
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
-    with cli.Report() as report, learning_for("`tltlc baseline`"), on_without_readers():
-        check_there(suite)
+    with cli.Report() as report, require_learning("`tltlc baseline`"), ignore_closed_pipe():
+        check_suite_exists(suite)
         from tltl_runtime.cli.support.regression_display import RegressionDisplay
         from tltl_runtime.regression.suite.dependencies import files_of
         from tltl_runtime.regression.suite.suite import SHIPPED, read_suite

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.worker_options import WorkersType
@@ -93,7 +93,7 @@ def command(
         raise click.UsageError("name a POLICY or a --level, or both")
     if recorded and not folder:
         raise click.UsageError("--record needs the folder for the recordings: --out DIR")
-    with cli.Report() as report, learning_for("`tltlc evaluate`"):
+    with cli.Report() as report, require_learning("`tltlc evaluate`"):
         from tltl_runtime.cli.support.level_argument import check_named, check_no_toml
 
         check_no_toml(spec)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.input_files import read_each
-from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.options import output_file, summary_format
 from tltlc.api import cli
 
@@ -38,7 +38,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one POLICY")
     summaries: list[dict[str, Any]] = []
-    with cli.Report(format, results=True) as report, learning_for("`tltlc inspect`"):
+    with cli.Report(format, results=True) as report, require_learning("`tltlc inspect`"):
         from tltl_runtime.policies.summary import summary, summary_text
 
         for name, (policy, so_far, ended) in read_each(files, _read, report):

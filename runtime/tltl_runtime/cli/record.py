@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
-from tltl_runtime.cli.support.closed_output import on_without_readers
+from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.printable import plain
@@ -75,7 +75,7 @@ def command(
 
     The exit status is 0 where there are N demonstrations, and 1 where the player stopped before.
     """
-    with cli.Report() as report, on_without_readers():
+    with cli.Report() as report, ignore_closed_pipe():
         from tltl_runtime.stealth.env import make_env
         from tltl_runtime.stealth.recording import RecordEpisode
         from tltl_runtime.training.imitation.demonstrations import Demonstrations

@@ -10,10 +10,10 @@ from typing import Any, Final
 import click
 
 from tltl_runtime.cli.support.changed_option import ChangedCommand
-from tltl_runtime.cli.support.closed_output import on_without_readers
-from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
+from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.options import Function, output_folder
-from tltl_runtime.cli.support.suite_argument import check_there
+from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import is_output
 from tltlc.api import TltlError, cli, fileio
@@ -99,11 +99,11 @@ def command(
         raise click.UsageError("--minutes are those of --retrain: give it, too")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
-    with cli.Report() as report, learning_for("`tltlc regress`"), on_without_readers():
-        check_there(suite)
-        from tltl_runtime.cli.support.regression_run import Wanted, run
+    with cli.Report() as report, require_learning("`tltlc regress`"), ignore_closed_pipe():
+        check_suite_exists(suite)
+        from tltl_runtime.cli.support.regression_run import RegressOptions, run
 
-        wanted = Wanted(
+        wanted = RegressOptions(
             suite=suite,
             changed=tuple(filter(None, changed)) if changed else None,
             folder=folder or _default_folder(suite),

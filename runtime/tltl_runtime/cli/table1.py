@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tltl_runtime.cli.support.closed_output import on_without_readers
-from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
+from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_no_training
@@ -68,14 +68,14 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
     again, the command goes on.  What has changed since, be it a level, a spec, a setting or the code that plays, is
     trained or played anew.
     """
-    with cli.Report() as report, learning_for("`tltlc table1`"), on_without_readers():
-        from tltl_runtime.support.folder_lock import held
+    with cli.Report() as report, require_learning("`tltlc table1`"), ignore_closed_pipe():
+        from tltl_runtime.support.folder_lock import lock_folder
         from tltlc.api import fileio
 
         title = f"another run of `tltlc table1` is at work in `{folder}`"
         busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
         check_no_training(folder)
-        with held(folder, busy, _ELSEWHERE):
+        with lock_folder(folder, busy, _ELSEWHERE):
             wanted = _Wanted(folder, shipped, minutes, workers)
             try:
                 text = _table(wanted)

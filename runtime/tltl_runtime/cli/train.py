@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from tltl_runtime.cli.support.learning import learning_for
+from tltl_runtime.cli.support.learning import require_learning
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.cli.support.worker_options import WorkersType
@@ -134,12 +134,12 @@ def command(
     """
     if resume is not None and folder is not None:
         raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
-    with cli.Report() as report, learning_for("`tltlc train`"):
+    with cli.Report() as report, require_learning("`tltlc train`"):
         from tltl_runtime.cli.support.level_argument import check_no_toml
 
         check_no_toml(spec, settings="--config")
         from tltl_runtime.cli.support.training_run import (
-            Asked,
+            TrainOptions,
             begins_with,
             check_limits,
             new_run,
@@ -150,7 +150,7 @@ def command(
         from tltl_runtime.training.run.run import resume_command
         from tltl_runtime.training.run.settings import settings_text
 
-        asked = Asked(spec=spec, sensors=sensors, **options)
+        asked = TrainOptions(spec=spec, sensors=sensors, **options)
         if print_config:
             settings = (
                 new_settings(asked, begins_with(asked)) if resume is None else resumed_run(asked, resume).settings

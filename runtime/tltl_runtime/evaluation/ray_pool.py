@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Setup
 from tltl_runtime.evaluation.spread import LostError
-from tltl_runtime.vector.cluster import cluster, free_cores, there
+from tltl_runtime.vector.cluster import cluster, free_cores, started_actors
 
 PATIENCE_S: Final = 120.0
 """How long to wait for a free core of a busy cluster, in seconds."""
@@ -28,7 +28,7 @@ def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> It
         shared = ray.put(setup)
         workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
         try:
-            ready = there(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
+            ready = started_actors(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
             yield [workers[index] for index in ready]
         finally:
             for worker in workers:

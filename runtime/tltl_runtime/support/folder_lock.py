@@ -13,7 +13,7 @@ _LOCK: Final = ".lock"
 
 
 @contextmanager
-def held(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
+def lock_folder(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
     """Lock the folder within this context; it is created if it is missing.
 
     The operating system releases the lock when the process ends, even after a crash.

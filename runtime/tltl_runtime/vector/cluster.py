@@ -78,7 +78,7 @@ def free_cores(ray: Any) -> int:
     return max(1, int(ray.available_resources().get("CPU", 1)) // started("WORLD_SIZE", 1))
 
 
-def there(
+def started_actors(
     ray: Any, actors: Sequence[Any], patience: float, waiting: Callable[[float], None] = lambda left: None
 ) -> list[int]:
     """Return the indices, in order, of the actors that have started; some may be missing if others use the cores.

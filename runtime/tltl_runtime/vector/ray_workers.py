@@ -13,7 +13,7 @@ from typing import Any
 from gymnasium.vector import AutoresetMode
 from numpy.typing import DTypeLike, NDArray
 
-from tltl_runtime.vector.cluster import cluster, free_cores, there
+from tltl_runtime.vector.cluster import cluster, free_cores, started_actors
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
@@ -122,7 +122,7 @@ class RayWorkers:
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote() for _ in range(most)]
         placed: list[Any] = []
         try:
-            placed = [actors[index] for index in there(self._ray, actors, max(self._timeout, TO_START_S))]
+            placed = [actors[index] for index in started_actors(self._ray, actors, max(self._timeout, TO_START_S))]
         finally:
             for actor in actors:
                 if actor not in placed:

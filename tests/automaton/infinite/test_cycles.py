@@ -7,7 +7,7 @@ import pytest
 from tests.calls import calls
 from tltlc.automaton.infinite.cycles import Edge, decomposition
 from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks
-from tltlc.automaton.infinite.products import telling_apart
+from tltlc.automaton.infinite.products import separating_component
 from tltlc.automaton.work import OutOfWork, Work
 
 NONE: Marks = frozenset()
@@ -47,7 +47,7 @@ def test_a_comparison_counts_clauses_without_edges() -> None:
 
     def work() -> None:
         with pytest.raises(OutOfWork):
-            telling_apart(
+            separating_component(
                 [(0, 0)],
                 lambda both: [(((both[0] + 1) % SIZE, 0), frozenset((0,)))],
                 [(one, [])],

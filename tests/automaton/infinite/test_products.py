@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, telling_apart
+from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component
 from tltlc.automaton.work import OutOfWork, Work
 
 START, OVER = (0, 0), (1, 1)
@@ -39,15 +39,15 @@ def test_cycles_that_one_accepts_and_the_other_does_not(graph: dict[Both, list[L
         return graph[both]
 
     for way, expected in zip(((one, other), (other, one)), ways, strict=True):
-        cycle = telling_apart([START], graph.__getitem__, [way], Work(1000))
+        cycle = separating_component([START], graph.__getitem__, [way], Work(1000))
         assert (cycle is not None) == expected
         for source, target, marks in cycle or ():
             assert (target, marks) in graph[source]
-    either = telling_apart([START], leaves, [(one, other), (other, one)], Work(1000))
+    either = separating_component([START], leaves, [(one, other), (other, one)], Work(1000))
     assert (either is not None) == any(ways)
     assert sorted(visited) == [START, OVER], "each is asked once"
 
 
 def test_work_is_bounded() -> None:
     with pytest.raises(OutOfWork):
-        telling_apart([START], loops({ONE_INF}).__getitem__, [conditions(1, 1)], Work(1))
+        separating_component([START], loops({ONE_INF}).__getitem__, [conditions(1, 1)], Work(1))

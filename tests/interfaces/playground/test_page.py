@@ -14,7 +14,7 @@ import pytest
 
 from tests.interfaces.playground.test_server import SLOW, serving
 from tests.runtime.regression.page import chromium
-from tltlc.interfaces.playground.browser import leading_to
+from tltlc.interfaces.playground.browser import redirect_file
 from tltlc.interfaces.playground.page_config import examples
 from tltlc.interfaces.playground.site import PYODIDE, site_files
 from tltlc.io.writing import write_files
@@ -400,7 +400,7 @@ def test_the_file_that_serve_opens_leads_to_the_page(browser: Browser, address: 
     context = browser.new_context()
     context.set_default_timeout(chromium.HANG_MS)
     page = context.new_page()
-    with leading_to(address) as uri:
+    with redirect_file(address) as uri:
         page.goto(uri)
         summary(page, "^It compiles")
     assert "token" not in page.url

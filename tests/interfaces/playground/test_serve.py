@@ -20,7 +20,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import ROOT, inside, tltlc  # noqa: F401 (fixtures)
 from tests.waiting import HANG_S
-from tltlc.interfaces.playground.browser import leading_to
+from tltlc.interfaces.playground.browser import redirect_file
 from tltlc.interfaces.playground.site import PYODIDE
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
@@ -153,7 +153,7 @@ def test_the_browser_gets_the_address_in_a_private_file(tmp_path: Path, number: 
 
 def test_the_file_contains_the_exact_address() -> None:
     address = "http://127.0.0.1:1/#token=a&b"
-    with leading_to(address) as uri:
+    with redirect_file(address) as uri:
         text = Path(url2pathname(uri.removeprefix("file:"))).read_text(encoding="utf-8")
     assert unescape(text).count(address) == 2
 

@@ -11,7 +11,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import untrained
-from tltl_runtime.cli.support.training_run import Asked, new_run
+from tltl_runtime.cli.support.training_run import TrainOptions, new_run
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
@@ -68,7 +68,7 @@ def test_a_level_with_overlays_uses_the_shipped_policy_of_the_level(tltlc: Run) 
 
 
 def test_train_accepts_overlays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    options = Asked("brief.tltl", LEVEL, None, None, None, None, None, None, {})
+    options = TrainOptions("brief.tltl", LEVEL, None, None, None, None, None, None, {})
     with click.Context(click.Command("train")):
         run = new_run(options, None)
     assert run.folder == Path("training/cover_and_hide-v0+guard_alert+wide-brief-0")

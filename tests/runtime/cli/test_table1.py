@@ -12,7 +12,7 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tltl_runtime.cli import table1
 from tltl_runtime.regression.table1 import paper_table, table_cells
 from tltl_runtime.regression.table1.paper_table import VARIANTS
-from tltl_runtime.support.folder_lock import held
+from tltl_runtime.support.folder_lock import lock_folder
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.diagnostics.diagnostic import Diagnostic
 
@@ -65,7 +65,7 @@ def test_the_expert_and_the_shipped_policies_fill_the_table(tltlc: Run, monkeypa
 
 def test_a_folder_is_used_by_one_run_at_a_time(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "expert")
-    with held(Path("mine"), Diagnostic("TLT0931", "busy"), ""):
+    with lock_folder(Path("mine"), Diagnostic("TLT0931", "busy"), ""):
         result = tltlc("table1", "--out", "mine", *ONE)
     assert (result.status, result.out) == (1, "")
     assert result.err == (

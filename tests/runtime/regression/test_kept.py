@@ -8,10 +8,10 @@ import pytest
 
 from tests import pipes
 from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, read_kept
-from tltl_runtime.regression.table1.table_cells import Went
+from tltl_runtime.regression.table1.table_cells import EpisodeResult
 
-EPISODES = (Went(True, 1.0, 0.5), Went(False, 0.25, -0.75))
-KIND = tuple[Went, ...]
+EPISODES = (EpisodeResult(True, 1.0, 0.5), EpisodeResult(False, 0.25, -0.75))
+KIND = tuple[EpisodeResult, ...]
 
 
 def test_a_cached_result_is_used_while_its_inputs_are_unchanged(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import Ready, episodes, ready
-from tltl_runtime.regression.verdict.run import CASES, Done, _inputs, case_folder, check, owned, regress
+from tltl_runtime.regression.verdict.run import CASES, Done, _inputs, case_folder, check, lock_run, regress
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.levels.made_for import LEVELS
@@ -460,21 +460,21 @@ def test_a_case_missing_in_the_baseline_is_reported_before_anything_is_played(ga
 def test_an_unwritable_folder_is_reported_before_anything_is_played(game: Path) -> None:
     Path("file").touch()
     for place in ("file", "file/run"):
-        with pytest.raises(TltlError) as error, owned(Path(place)):
+        with pytest.raises(TltlError) as error, lock_run(Path(place)):
             pytest.fail("nothing can be written there")
         assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["TLT0005"]
 
 
 def test_a_folder_is_used_by_one_run_at_a_time(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    with owned(Path("run")):
-        with pytest.raises(TltlError) as error, owned(Path("run")):
+    with lock_run(Path("run")):
+        with pytest.raises(TltlError) as error, lock_run(Path("run")):
             pytest.fail("it is taken")
         (diagnostic,) = error.value.diagnostics
         assert (diagnostic.code, diagnostic.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
-        with owned(Path("new")):
+        with lock_run(Path("new")):
             assert len(list(running(suite, "new"))) == 3, "elsewhere there is room"
-    with owned(Path("run")):
+    with lock_run(Path("run")):
         assert len(list(running(suite))) == 3
 
 

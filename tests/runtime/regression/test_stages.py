@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.regression.explain.stages import Subgoal, near_enough, subgoal, subgoal_of_all, target_of, together
+from tltl_runtime.regression.explain.stages import (
+    Subgoal,
+    near_enough,
+    subgoal,
+    subgoal_of_all,
+    subgoals_text,
+    target_of,
+)
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 
@@ -48,8 +55,10 @@ def test_alternative_goals_are_all_named() -> None:
 
 
 def test_joined_stages_share_the_verb() -> None:
-    assert together([Subgoal("`s1`"), Subgoal("`s2` or `s3`", is_choice=True)]) == "reaches `s1`, then `s2` or `s3`"
-    assert together([Subgoal("`s1`"), Subgoal(other="makes `open` true")]) == "reaches `s1`, makes `open` true"
+    assert (
+        subgoals_text([Subgoal("`s1`"), Subgoal("`s2` or `s3`", is_choice=True)]) == "reaches `s1`, then `s2` or `s3`"
+    )
+    assert subgoals_text([Subgoal("`s1`"), Subgoal(other="makes `open` true")]) == "reaches `s1`, makes `open` true"
 
 
 def test_an_atom_without_a_target_is_made_true() -> None:

@@ -14,7 +14,7 @@ from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.table1 import table_cells
 from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, TableRow, markdown
-from tltl_runtime.regression.table1.table_cells import Went, figures, measured
+from tltl_runtime.regression.table1.table_cells import EpisodeResult, figures, measured
 from tltlc.diagnostics.diagnostic import TltlError
 
 
@@ -57,7 +57,7 @@ def test_the_duration_of_a_training_is_shown(hours: float | None, cloned: float 
 
 
 def test_figures_cover_the_first_runs() -> None:
-    cell = (Went(True, 1.0, 0.5), Went(False, 0.5, -0.5), Went(True, 1.0, 0.7))
+    cell = (EpisodeResult(True, 1.0, 0.5), EpisodeResult(False, 0.5, -0.5), EpisodeResult(True, 1.0, 0.7))
     cell_figures = figures(cell, 2)
     assert (cell_figures.runs, cell_figures.pass_rate, cell_figures.progress.mean, cell_figures.reward.mean) == (
         2,
@@ -114,15 +114,15 @@ def test_the_expert_plays_again_when_the_spec_or_the_code_changes(
 ) -> None:
     played: list[str] = []
 
-    def play(level: str, variant: str, pool: object) -> list[Went]:
+    def play(level: str, variant: str, pool: object) -> list[EpisodeResult]:
         played.append(f"{level}:{variant}")
-        return [Went(True, 1.0, 0.5)]
+        return [EpisodeResult(True, 1.0, 0.5)]
 
     monkeypatch.setattr(table_cells, "_by_expert", play)
 
     def count() -> int:
         """Measure the cell again; return how often the expert has played so far."""
-        assert measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (Went(True, 1.0, 0.5),)
+        assert measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (EpisodeResult(True, 1.0, 0.5),)
         return len(played)
 
     assert (count(), count()) == (1, 1)

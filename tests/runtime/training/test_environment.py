@@ -12,7 +12,7 @@ import torch
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.reset_distribution import EpisodeStart, Replayed
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.vector import make_vec
@@ -43,7 +43,7 @@ STARTS = (
 """The start of the episodes of each environment."""
 
 
-class Fixed(Restarts):
+class Fixed(ReverseCurriculum):
     """Restarts that return the same starts in turn."""
 
     def __init__(self) -> None:

@@ -12,7 +12,7 @@ import pytest
 import torch
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.report import TrainingReport
@@ -153,7 +153,7 @@ def test_starts_of_another_shape_are_rejected(tmp_path: Path) -> None:
 
 def restarts_state() -> dict[str, Any]:
     """The state of restarts with one trajectory and one failure."""
-    restarts = Restarts(4, np.random.default_rng(0))
+    restarts = ReverseCurriculum(4, np.random.default_rng(0))
     restarts.add(SuccessfulEpisode(1, [[0] * 5, [1] * 5], 2))
     restarts.failures.append(FailedEpisode(3, [[0] * 5], 1))
     return restarts.state()
@@ -181,7 +181,7 @@ STARTS: dict[str, Callable[[dict[str, Any]], object]] = {
 @pytest.mark.parametrize("name", STARTS)
 def test_damaged_starts_are_rejected(name: str) -> None:
     whole = restarts_state()
-    Restarts(4, np.random.default_rng(0)).load(whole)
+    ReverseCurriculum(4, np.random.default_rng(0)).load(whole)
     STARTS[name](whole)
     with pytest.raises(ValueError, match="`"):
-        Restarts(4, np.random.default_rng(0)).load(whole)
+        ReverseCurriculum(4, np.random.default_rng(0)).load(whole)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.reset_distribution import Episodes, EpisodeStart, Replayed
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import (
     Exploration,
     FailedEpisode,
@@ -244,8 +244,8 @@ def test_each_place_is_counted_once(env: WorkerVectorEnv) -> None:
     assert len(visited) / 2 < reports[-1].places <= len(visited)
 
 
-def restarts_of(ways: Sequence[SuccessfulEpisode], parts: int, seed: int = 1) -> Restarts:
-    restarts = Restarts(parts, np.random.default_rng(seed))
+def restarts_of(ways: Sequence[SuccessfulEpisode], parts: int, seed: int = 1) -> ReverseCurriculum:
+    restarts = ReverseCurriculum(parts, np.random.default_rng(seed))
     for way in ways:
         restarts.add(way)
     return restarts

@@ -15,7 +15,7 @@ from tests.runtime.training.runs import run_in
 from tests.runtime.training.test_search import restarts_of
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
-from tltl_runtime.training.exploration.self_imitation import BATCH, Lessons, imitate
+from tltl_runtime.training.exploration.self_imitation import BATCH, SelfImitation, imitate
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.runner import Runner
@@ -36,7 +36,7 @@ class Counting(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 
 def test_decisions_are_drawn_with_the_observations_before_them() -> None:
-    lessons = Lessons(make, restarts_of([WAY], 4))
+    lessons = SelfImitation(make, restarts_of([WAY], 4))
     batch = lessons.draw()
     lessons.close()
     assert batch is not None
@@ -55,7 +55,7 @@ def test_a_way_is_replayed_only_once() -> None:
     other = SuccessfulEpisode(6, [[1, 1, 0, 0, 0]] * 30, 1)
     restarts = restarts_of([WAY, other], 4)
     env = Counting(make())
-    lessons = Lessons(lambda: env, restarts)
+    lessons = SelfImitation(lambda: env, restarts)
     for rates in ([0, 0, 0, 0.5], [1, 0, 0, 0], [0, 0, 0.5, 0.5]):
         restarts.rates[1][:] = rates
         for _ in range(5):
@@ -76,7 +76,7 @@ def test_learned_parts_are_not_imitated(rates: list[float], parts: set[int]) -> 
     restarts.passed = 0.0
     assert {index // 10 for _, index in decisions} == parts
     assert len(decisions) <= BATCH
-    assert (Lessons(make, restarts).draw() is None) == (not parts)
+    assert (SelfImitation(make, restarts).draw() is None) == (not parts)
 
 
 def test_a_runner_loads_optimizer_moments_with_another_memory_layout() -> None:
@@ -85,7 +85,7 @@ def test_a_runner_loads_optimizer_moments_with_another_memory_layout() -> None:
     env = TrainingEnv(played, 1)
     config = rsl_config(run.settings, env.shapes, env.branches)
     saved_runner, runner = (Runner(env, dict(config)) for _ in range(2))
-    lessons = Lessons(make, restarts_of([WAY], 4))
+    lessons = SelfImitation(make, restarts_of([WAY], 4))
     batch = lessons.draw()
     lessons.close()
     played.close()
@@ -114,7 +114,7 @@ def test_imitation_makes_the_actions_likelier() -> None:
     env = TrainingEnv(played, 1)
     torch.manual_seed(0)
     runner = Runner(env, rsl_config(run.settings, env.shapes, env.branches))
-    lessons = Lessons(make, restarts_of([WAY], 4))
+    lessons = SelfImitation(make, restarts_of([WAY], 4))
     batch = lessons.draw()
     assert batch is not None
     losses = [imitate(runner.alg, *batch) for _ in range(200)]

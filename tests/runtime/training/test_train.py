@@ -21,7 +21,7 @@ from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.support.record_json import from_json, to_json
 from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.ppo.penalty_weight import dearer
+from tltl_runtime.training.ppo.penalty_weight import raised_penalty
 from tltl_runtime.training.run import training_files as keeping
 from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
@@ -457,7 +457,7 @@ def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
     first, second = train(run)
     assert (first.window.successes, second.stop) == (8, "met")
     assert (first.iteration.losses["severity"], second.iteration.losses["severity"]) == (0.0, pytest.approx(0.6))
-    rise = dearer(run)
+    rise = raised_penalty(run)
     assert rise is not None
     assert first.iteration.losses["dearer"] == rise(0) > 0
 

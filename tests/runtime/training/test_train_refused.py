@@ -15,7 +15,7 @@ import torch
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.training.run.checkpoint import VERSION, write_checkpoint
-from tltl_runtime.training.run.folder import held
+from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import (
     CHECKPOINT,
@@ -118,7 +118,7 @@ def test_a_new_training_does_not_overwrite_another_one(copy: Run) -> None:
 
 
 def test_a_folder_is_used_by_one_training_at_a_time(copy: Run) -> None:
-    with held(copy.folder), pytest.raises(TltlError) as caught:
+    with lock_training(copy.folder), pytest.raises(TltlError) as caught:
         next(train(copy, resume=True))
     compare("TLT0865", caught.value)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.training.runs import run_in
-from tltl_runtime.training.ppo.penalty_weight import Weighing, dearer, weighing
+from tltl_runtime.training.ppo.penalty_weight import Weighing, raised_penalty, weighing
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
 
@@ -28,7 +28,7 @@ def test_the_entropy_weight_falls_and_the_other_weights_rise_from_half_on(
 def test_the_discounted_penalty_rises_to_the_undiscounted_one(tmp_path: Path) -> None:
     run = run_in(tmp_path / "rising")
     limit = run.fspa.limit_steps
-    rise = dearer(run)
+    rise = raised_penalty(run)
     assert limit is not None
     assert rise is not None
     assert rise(0) == pytest.approx(1 - (1 - 0.99**limit) / (0.01 * limit))
@@ -47,4 +47,4 @@ def test_the_discounted_penalty_rises_to_the_undiscounted_one(tmp_path: Path) ->
     ],
 )
 def test_with_other_settings_the_penalty_does_not_rise(tmp_path: Path, changes: dict[str, str]) -> None:
-    assert dearer(run_in(tmp_path / "other", **changes)) is None
+    assert raised_penalty(run_in(tmp_path / "other", **changes)) is None

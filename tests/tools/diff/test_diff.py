@@ -28,7 +28,7 @@ from tltlc.pipeline import compile_source
 from tltlc.tools.diff.diff_json import document
 from tltlc.tools.diff.pairs import FileDiff, diff, diff_files
 from tltlc.tools.diff.text import text
-from tltlc.tools.diff.traces import block, told
+from tltlc.tools.diff.traces import block, trace_description
 
 GOLDEN = Path(__file__).parent / "golden"
 CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
@@ -103,7 +103,7 @@ def test_a_printed_test_tells_the_two_specs_apart(first: Formula, second: Formul
     for trace in (pair.comparison.only_a, pair.comparison.only_b):
         if trace is None:
             continue
-        test = block(pair, told(pair, trace), "one that tells")
+        test = block(pair, trace_description(pair, trace), "one that tells")
         if test is None:
             assert not a.atoms and not b.atoms
             continue

@@ -28,7 +28,7 @@ def check(text: str, style: str) -> str:
     assert not formatted or (lines[0] and lines[-2])
     assert all(line == line.rstrip() for line in lines)
     # A line is too long only if it has a comment or a very long word.
-    if not any(places for _, places in allowed.spoken_of(before)):
+    if not any(places for _, places in allowed.commented_spans(before)):
         assert all(len(line) <= 100 or "//" in line or len(max(line.split(), key=len)) > 40 for line in lines)
     assert "\n\n\n" not in formatted
     assert "\ufeff" not in formatted[:1]
@@ -49,7 +49,7 @@ def spoken_of(module: tree.Module) -> list[set[int] | None]:
     numbers = {span: number for number, span in enumerate(allowed.statements(module))}
     blocks = [declaration.span for declaration in module.declarations if isinstance(declaration, tree.SpecDecl)]
     targets: list[set[int] | None] = []
-    for _, places in allowed.spoken_of(module):
+    for _, places in allowed.commented_spans(module):
         whole = [place for place in places or () if place in blocks]
         outer = [
             place

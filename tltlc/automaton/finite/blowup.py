@@ -44,7 +44,7 @@ def recursion_room() -> Iterator[None]:
 
 def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """Return the error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
-    too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else why(reason)
+    too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else failure_text(reason)
     left = WORK["states of blamed parts"]
 
     def size(part: Conjunct, spec: Spec) -> Size | None:
@@ -56,17 +56,17 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
         left -= measured.number if measured else 0
         return measured
 
-    return blamed(spec, reason, too_large, size)
+    return error_with_clauses(spec, reason, too_large, size)
 
 
-def why(reason: Exception) -> str:
+def failure_text(reason: Exception) -> str:
     """Say why the automaton failed when it was not the budget of states or work that ran out."""
     if isinstance(reason, LabelsTooLong):
         return f"needs labels of more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
 
 
-def blamed(
+def error_with_clauses(
     spec: Spec, reason: Exception, too_large: str, size: Callable[[Conjunct, Spec], Size | None], advice: str = ADVICE
 ) -> TltlError:
     """Return the error, labelled with the parts of the spec whose own automata are largest.

@@ -28,7 +28,7 @@ before it lists them.
 _TEMPORAL: Final = ("U", "W", "X")
 
 
-class After:
+class ObligationAutomaton:
     """Successors of obligations over ``atoms``, as functions of the letter in the table ``letters``.
 
     ``formulas[v]`` is the formula of variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid

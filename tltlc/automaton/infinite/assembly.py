@@ -27,7 +27,7 @@ class TargetsAndGoals(Protocol):
 
 
 @record
-class Parts:
+class AssembledParts:
     """The fields of an Fspa that depend on the steps; edges are sorted by source, target and marks."""
 
     states: tuple[State, ...]
@@ -43,7 +43,7 @@ def assembled(
     exclusive: Sequence[Sequence[int]],
     label: Callable[[int], Formula | Text],
     first: Sequence[int] | None = None,
-) -> Parts:
+) -> AssembledParts:
     """Return states, edges and pairs, with the states in the order of an artefact.
 
     ``label`` returns the label of a state, given its number in the automaton.  ``first``, if given,
@@ -61,7 +61,7 @@ def assembled(
         for state in order
     )
     edges, pairs = _edges(automaton, order, number, atoms, exclusive)
-    return Parts(states, edges, pairs, max((d for d in distance.values() if d is not None), default=0))
+    return AssembledParts(states, edges, pairs, max((d for d in distance.values() if d is not None), default=0))
 
 
 def _edges(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.diagrams import OutOfSteps
-from tltlc.automaton.finite.blowup import ADVICE, Size, blamed, why
+from tltlc.automaton.finite.blowup import ADVICE, Size, error_with_clauses, failure_text
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.work import OutOfWork
@@ -20,7 +20,7 @@ _FOR_ALL_PARTS: Final = 2_000_000
 
 def blow_up(spec: Spec, reason: Exception) -> TltlError:
     """Return the error for a spec whose automaton is too expensive: TLT0501, or TLT0502 for prime implicants."""
-    too_large, advice = why(reason), ADVICE
+    too_large, advice = failure_text(reason), ADVICE
     if isinstance(reason, OutOfWork):
         too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
     left = _FOR_ALL_PARTS
@@ -40,4 +40,4 @@ def blow_up(spec: Spec, reason: Exception) -> TltlError:
         words = f"{states} state{'s' * (states != 1)} and {pairs} pair{'s' * (pairs != 1)}"
         return Size(states * max(pairs, 1), words)
 
-    return blamed(spec, reason, too_large, size, advice)
+    return error_with_clauses(spec, reason, too_large, size, advice)

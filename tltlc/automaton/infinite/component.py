@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Sequence
 from typing import Any, Final
 
 from tltlc.automaton.diagrams import Diagrams
-from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.infinite.delta2 import is_pi_2
 from tltlc.automaton.infinite.graphs import smallest_bottom
 from tltlc.automaton.infinite.leaf_automata import Breakpoint, LeafAutomaton, Memory, Recurrence, RoundRobin
@@ -30,7 +30,7 @@ _NONE: Final[Marks] = frozenset()
 
 
 @record
-class Local:
+class ComponentAutomaton:
     """A component: states with their labels and steps, each step a function from the letter to a :data:`Leaf`.
 
     A run that stays in the component is accepted if it meets one of the clauses ``accepts``.
@@ -41,7 +41,9 @@ class Local:
     accepts: tuple[MarkClause, ...]
 
 
-def parts_of(after: After, normal: Formula, *, keep: bool, in_turn: bool) -> tuple[Skeleton, list[LeafAutomaton]]:
+def parts_of(
+    after: ObligationAutomaton, normal: Formula, *, keep: bool, in_turn: bool
+) -> tuple[Skeleton, list[LeafAutomaton]]:
     """Return the Boolean skeleton of a normalised formula, and its parts.
 
     If ``in_turn``, parts that can be followed one at a time become one part.  For ``keep`` see
@@ -77,11 +79,11 @@ def has_turns(normal: Formula) -> bool:
     return sum(operand.op == rigid for operand in normal.args) > 1 or any(map(has_turns, normal.args))
 
 
-def _recurrence(after: After, formula: Formula, *, keep: bool) -> Recurrence:
+def _recurrence(after: ObligationAutomaton, formula: Formula, *, keep: bool) -> Recurrence:
     return Recurrence(after, formula.args[0].args[0], "inf" if formula.op == "G" else "fin", keep=keep)
 
 
-def _breakpoint(after: After, formula: Formula) -> Breakpoint:
+def _breakpoint(after: ObligationAutomaton, formula: Formula) -> Breakpoint:
     return Breakpoint(after, formula, "inf" if is_pi_2(formula) else "fin")
 
 
@@ -92,7 +94,7 @@ def local(
     first: int,
     skeleton: Skeleton,
     parts: Sequence[LeafAutomaton],
-) -> Local:
+) -> ComponentAutomaton:
     """Return the smallest bottom component of the product of the labels ``inside`` with the parts' memories.
 
     The product starts at the label ``first`` with the initial memories.  ``step_of`` returns the
@@ -107,7 +109,7 @@ def local(
         accepts = [MarkClause(frozenset(), frozenset())] if accepts else []
     members = set(best)
     chosen = {state: step for state, step in steps.items() if state in members}
-    return Local({state: state[0] for state in chosen}, chosen, tuple(accepts))
+    return ComponentAutomaton({state: state[0] for state in chosen}, chosen, tuple(accepts))
 
 
 def explored(
@@ -128,7 +130,7 @@ def explored(
     return steps, smallest_bottom(targets, initial)
 
 
-def merged(letters: Diagrams[Any], one: Local) -> Local:
+def merged(letters: Diagrams[Any], one: ComponentAutomaton) -> ComponentAutomaton:
     """Merge states that cannot be distinguished by labels and by the marks that clauses use."""
     labels, steps, accepts = one.labels, one.steps, one.accepts
     used = frozenset().union(*(clause.fins | clause.infs for clause in accepts))
@@ -157,7 +159,7 @@ def merged(letters: Diagrams[Any], one: Local) -> Local:
         return leaf if target[0] == "exit" else (first[block[target]], marks & used)
 
     kept = {state: letters.mapped(final, steps[state], memo) for state in first.values()}
-    return Local({state: labels[state] for state in kept}, kept, accepts)
+    return ComponentAutomaton({state: labels[state] for state in kept}, kept, accepts)
 
 
 def _step(

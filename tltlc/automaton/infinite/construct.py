@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps, at_most_one
 from tltlc.automaton.guards import TooManyPrimes
-from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.infinite.assembled_components import Place, joined
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
 from tltlc.automaton.infinite.component import IMPOSSIBLE, State, has_turns, local, merged, parts_of
@@ -39,7 +39,7 @@ _FOR_SHRINKING: Final = 400_000
 """Steps for removing states of a component; when they are used up, the other states stay."""
 
 Labels = dict[int, int]
-"""A map of labels, which are obligations of :class:`~tltlc.automaton.infinite.after_automaton.After`."""
+"""A map of labels, which are obligations of :class:`~tltlc.automaton.infinite.after_automaton.ObligationAutomaton`."""
 
 
 def rabin(
@@ -66,7 +66,7 @@ class _Construction:
         # A larger budget is set because the default is too little for some component.
         self._for_an_attempt = _FOR_AN_ATTEMPT * max(1, work // DEFAULT_WORK)
         self.letters: Diagrams[Any] = Diagrams(self.work)
-        self.after = After(atoms, self.letters)
+        self.after = ObligationAutomaton(atoms, self.letters)
         self.initial = self.after.obligation(formula)
         self._exclusive = exclusive
         self._allowed = at_most_one(self.letters, exclusive, True, False)

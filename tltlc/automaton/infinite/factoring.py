@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, Literal
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps
-from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.infinite.infinite import conjunction, disjunction
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.automaton.work import Work
@@ -39,7 +39,7 @@ class Factoring:
     """Rewrites formulas in normal form over ``atoms``; the results are equal on every infinite trace."""
 
     def __init__(self, atoms: Sequence[str]) -> None:
-        self._after = After(atoms, Diagrams(Work(0)))
+        self._after = ObligationAutomaton(atoms, Diagrams(Work(0)))
         nothing: _Term = frozenset()
         self._terms: dict[tuple[_Op, int], tuple[_Term, ...]] = {
             ("or", FALSE): (),

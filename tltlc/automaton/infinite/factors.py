@@ -16,7 +16,7 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
-from tltlc.automaton.infinite.component import Leaf, Local, State
+from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State
 from tltlc.automaton.infinite.cycles import accepting_parts, parts, rejecting_parts
 from tltlc.automaton.infinite.mark_conditions import Marks
 from tltlc.automaton.infinite.pairs import Piece
@@ -29,7 +29,7 @@ _Edge = tuple[State, State, Marks, int]
 """An edge of the component, and the number of the factor's edge that stands for it."""
 
 
-def factor(letters: Diagrams[Any], one: Local, key: Callable[[State], State], work: Work) -> Piece | None:
+def factor(letters: Diagrams[Any], one: ComponentAutomaton, key: Callable[[State], State], work: Work) -> Piece | None:
     """Return the factor of a component by a key of its states; None if its edges cannot decide acceptance.
 
     The key after a letter must depend only on the key before it and on the letter.  Raises
@@ -78,7 +78,7 @@ def factor(letters: Diagrams[Any], one: Local, key: Callable[[State], State], wo
     return Piece({name: one.labels[states[0]] for name, states in groups.items()}, steps, len(accepting))
 
 
-def _ranks(edges: list[_Edge], one: Local, work: Work) -> dict[int, int] | None:
+def _ranks(edges: list[_Edge], one: ComponentAutomaton, work: Work) -> dict[int, int] | None:
     """Return the rank of each edge of the factor; None if some edge gets none.
 
     The least rank that a run takes infinitely often decides: even ranks accept.

@@ -7,7 +7,7 @@ from random import Random
 from typing import Final
 
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, side_by_side, telling_apart
+from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component, side_by_side
 from tltlc.automaton.work import Work
 
 _WORDS: Final = 48
@@ -47,7 +47,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
         return [leaf for leaf in successors if leaf[0][0] != leaf[0][1]]
 
     these, those = conditions(pairs, pairs)
-    return telling_apart([(one, other)], leaves, [(these, those), (those, these)], work) is None
+    return separating_component([(one, other)], leaves, [(these, those), (those, these)], work) is None
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:

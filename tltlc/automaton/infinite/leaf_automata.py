@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, Protocol
 
-from tltlc.automaton.infinite.after_automaton import After
+from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.infinite.infinite import substituted_below
 from tltlc.automaton.infinite.mark_conditions import Kind
 from tltlc.automaton.transitions import FALSE, TRUE
@@ -47,7 +47,7 @@ class Breakpoint:
     obligation becomes false, and the formula holds if finitely many letters are marked.
     """
 
-    def __init__(self, after: After, formula: Formula, kind: Kind) -> None:
+    def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind) -> None:
         self.kind = kind
         self._after = after
         self._weakened: dict[int, int] = {}
@@ -107,7 +107,7 @@ class Recurrence:
     ``keep``, the other attempts are then dropped.
     """
 
-    def __init__(self, after: After, formula: Formula, kind: Kind, *, keep: bool) -> None:
+    def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind, *, keep: bool) -> None:
         self.kind = kind
         self._after = after
         self._keep = keep
@@ -157,7 +157,7 @@ class RoundRobin:
     memories of the parts add up instead of multiplying.
     """
 
-    def __init__(self, after: After, parts: Sequence[Recurrence]) -> None:
+    def __init__(self, after: ObligationAutomaton, parts: Sequence[Recurrence]) -> None:
         self.kind = parts[0].kind
         self._letters = after.letters
         self._parts = parts

@@ -14,7 +14,7 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
-from tltlc.automaton.infinite.component import Leaf, Local, State, explored
+from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State, explored
 from tltlc.automaton.infinite.cycles import Edge, Node, decomposition
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.core.record import record
@@ -28,14 +28,14 @@ Walk = tuple[Any, ...]
 
 @record
 class Piece:
-    """A component whose letters are marked with Rabin pairs; exits and labels are as in :class:`Local`."""
+    """A component whose letters are marked with Rabin pairs; exits and labels are as in :class:`ComponentAutomaton`."""
 
     labels: dict[State, int]
     steps: dict[State, int]
     pairs: int
 
 
-def with_pairs(letters: Diagrams[Any], one: Local, work: Work) -> Piece:
+def with_pairs(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> Piece:
     """Return the component with Rabin pairs, the smallest that the methods of this module make; raises OutOfWork."""
     pieces: list[Piece] = []
     direct = as_it_stands(letters, one)
@@ -53,7 +53,7 @@ def with_pairs(letters: Diagrams[Any], one: Local, work: Work) -> Piece:
     return min(pieces, key=lambda piece: (len(piece.steps), piece.pairs))
 
 
-def as_it_stands(letters: Diagrams[Any], one: Local) -> Piece | None:
+def as_it_stands(letters: Diagrams[Any], one: ComponentAutomaton) -> Piece | None:
     """Return the component with its clauses as pairs; None unless each clause has at most one ``inf`` mark."""
     if any(len(clause.infs) > 1 for clause in one.accepts):
         return None
@@ -71,7 +71,7 @@ def as_it_stands(letters: Diagrams[Any], one: Local) -> Piece | None:
     return Piece(one.labels, steps, len(one.accepts))
 
 
-def _in_turn(letters: Diagrams[Any], one: Local, work: Work) -> Piece:
+def _in_turn(letters: Diagrams[Any], one: ComponentAutomaton, work: Work) -> Piece:
     """Return the component with a Rabin pair for each clause, which waits for the clause's ``infs`` in turn."""
     orders = [sorted(clause.infs) for clause in one.accepts]
     first = next(iter(one.steps))
@@ -102,7 +102,7 @@ def _in_turn(letters: Diagrams[Any], one: Local, work: Work) -> Piece:
     return Piece({state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, len(orders))
 
 
-def _edges(letters: Diagrams[Any], one: Local) -> list[Edge]:
+def _edges(letters: Diagrams[Any], one: ComponentAutomaton) -> list[Edge]:
     return [
         (state, target, marks)
         for state, step in one.steps.items()
@@ -185,7 +185,7 @@ class _Walks:
         )
 
 
-def _walked(letters: Diagrams[Any], one: Local, tree: Node, *, one_at_a_time: bool, work: Work) -> Piece:
+def _walked(letters: Diagrams[Any], one: ComponentAutomaton, tree: Node, *, one_at_a_time: bool, work: Work) -> Piece:
     walks = _Walks(tree, one_at_a_time=one_at_a_time)
     first = next(iter(one.steps))
 

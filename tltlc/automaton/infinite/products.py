@@ -49,7 +49,7 @@ def side_by_side(
     return leaves
 
 
-def telling_apart(
+def separating_component(
     starts: Iterable[Both], leaves: Callable[[Both], Sequence[Leaf]], ways: Ways, work: Work
 ) -> Edges | None:
     """Return a reachable strongly connected set of edges that meets one of the alternatives

@@ -13,7 +13,7 @@ from typing import Any
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.pairs import Piece
-from tltlc.automaton.infinite.products import Both, Leaf, conditions, side_by_side, telling_apart
+from tltlc.automaton.infinite.products import Both, Leaf, conditions, separating_component, side_by_side
 from tltlc.automaton.work import OutOfWork, Work
 
 
@@ -74,4 +74,4 @@ def _is_equal(letters: Diagrams[Any], one: Piece, other: Piece, work: Work) -> b
 
     these, those = conditions(one.pairs, one.pairs)
     starts = [(state, state) for state in one.steps]
-    return telling_apart(starts, leaves, [(these, those), (those, these)], work) is None
+    return separating_component(starts, leaves, [(these, those), (those, these)], work) is None

@@ -28,7 +28,7 @@ _PAGE: Final = """\
 
 
 @contextmanager
-def leading_to(address: str) -> Iterator[str]:
+def redirect_file(address: str) -> Iterator[str]:
     """Yield the URI of a temporary file that redirects to an address.
 
     Only this user can read the file, which is removed at the end of the context.

@@ -21,7 +21,7 @@ _MOST: Final = 30
 """The most impossible traces that one comparison may find."""
 
 
-class Reality:
+class FeasibleLetters:
     """Searches samples for the letters over the atoms of two automata.
 
     ``impossible`` collects the literals for which no sample was found. ``never`` has literals that

@@ -93,9 +93,9 @@ def compare(
     only_a, only_b = separating(one, other, work, never), separating(other, one, work, never)
     impossible: dict[Literals, None] = {}
     if real and (only_a or only_b):
-        from tltlc.tools.diff.feasible_letters import Reality
+        from tltlc.tools.diff.feasible_letters import FeasibleLetters
 
-        reality = Reality(one, other, never)
+        reality = FeasibleLetters(one, other, never)
         only_a, only_b = reality.real(only_a, one, other, work), reality.real(only_b, other, one, work)
         impossible = reality.impossible
     relation: Relation = (

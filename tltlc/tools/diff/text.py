@@ -13,7 +13,7 @@ from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.differences import Difference
 from tltlc.tools.diff.phrases import listed, sample_text, type_text, unrelated, value_text, values_text
-from tltlc.tools.diff.traces import block, step_lines, told
+from tltlc.tools.diff.traces import block, step_lines, trace_description
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
@@ -120,7 +120,7 @@ def _left_out(impossible: Sequence[Literals]) -> str:
 
 def _trace(pair: SpecPair, trace: Trace, by: str, other: str) -> Iterator[str]:
     """Yield a trace in words and, if a test can show the difference, as a ``test`` block."""
-    outcome = told(pair, trace)
+    outcome = trace_description(pair, trace)
     is_whole = pair.comparison.relation is not None
     heading = (
         f"a trace that {by} accepts and {other} does not"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @record
-class Told:
+class TraceDescription:
     """A trace that only one spec accepts, and the state of each spec after it.
 
     The cycle of an infinite trace is taken once.
@@ -30,15 +30,15 @@ class Told:
     b: State
 
 
-def told(pair: SpecPair, trace: Trace) -> Told:
+def trace_description(pair: SpecPair, trace: Trace) -> TraceDescription:
     """Return the states that the two specs of a pair reach by a trace over the atoms of both."""
     letters = (*trace.prefix, *trace.cycle)
     split = pair.comparison.split
     a = _state(pair.a, [own_letter(letter, split, pair.a, OF_A) for letter in letters])
-    return Told(trace, a, _state(pair.b, [own_letter(letter, split, pair.b, OF_B) for letter in letters]))
+    return TraceDescription(trace, a, _state(pair.b, [own_letter(letter, split, pair.b, OF_B) for letter in letters]))
 
 
-def block(pair: SpecPair, outcome: Told, title: str) -> tuple[str, str] | None:
+def block(pair: SpecPair, outcome: TraceDescription, title: str) -> tuple[str, str] | None:
     """Return a ``test`` block for a trace, and which spec it tests.
 
     It tests B, or A if only A has all atoms of the trace. Returns None if no test can show the

@@ -11,7 +11,7 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
-from tltlc.grammar.allow_comments import spoken_of, statements
+from tltlc.grammar.allow_comments import commented_spans, statements
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Comment, EntityDecl, Module
 
@@ -38,7 +38,7 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     statements that share a line with a comment keep sharing it. If that is not enough, their
     declarations are kept as they are written.
     """
-    before = spoken_of(module)
+    before = commented_spans(module)
     lists = [
         declaration
         for declaration in module.declarations
@@ -50,7 +50,7 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     laid_out, _ = parse(SourceFile("<layout>", text))
     back = dict(zip(statements(laid_out), statements(module), strict=True))
     wrong: set[Span] = set()
-    after = spoken_of(laid_out)
+    after = commented_spans(laid_out)
     # Comments on the same line share one tuple of places, before and after.
     pairs = {
         (id(places), id(new_places)): (places, new_places)

@@ -12,7 +12,7 @@ from tltlc.automaton.fspa import Verdict
 from tltlc.automaton.infinite.analysis import Analysis, analysis_of_rabin
 from tltlc.automaton.infinite.assembled_components import Place, joined
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
-from tltlc.automaton.infinite.component import IMPOSSIBLE, Local, State
+from tltlc.automaton.infinite.component import IMPOSSIBLE, ComponentAutomaton, State
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.pairs import Piece, as_it_stands, with_pairs
 from tltlc.automaton.work import Work
@@ -129,7 +129,9 @@ def _infinite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, An
         labels: dict[State, int] = {(number,): number for number in group}
         steps: dict[State, int] = {(number,): letters.mapped(leaf, moves[number], memo) for number in group}
         stays = any(target in inside for number in group for target in targets(number))
-        piece = _piece(letters, Local(labels, steps, acceptance.clauses)) if stays else Piece(labels, steps, 0)
+        piece = (
+            _piece(letters, ComponentAutomaton(labels, steps, acceptance.clauses)) if stays else Piece(labels, steps, 0)
+        )
         for state, number in piece.labels.items():
             entry.setdefault(number, (len(pieces), state))
         pieces.append(piece)
@@ -137,7 +139,7 @@ def _infinite(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, An
     return automaton, analysis_of_rabin(automaton, letters.work)
 
 
-def _piece(letters: Diagrams[Any], one: Local) -> Piece:
+def _piece(letters: Diagrams[Any], one: ComponentAutomaton) -> Piece:
     """Return a component with pairs: the pairs of the file, unless fewer are found."""
     best, unchanged = with_pairs(letters, one, letters.work), as_it_stands(letters, one)
     return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix
-from tltlc.grammar.allow_comments import spoken_of
+from tltlc.grammar.allow_comments import commented_spans
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
 from tltlc.tools.lint.rule import LintFinding
@@ -37,7 +37,7 @@ def of_findings(findings: Iterable[LintFinding], module: Module) -> Iterator[Off
     A fix must not change what the ``allow`` comments of the module apply to. If the module has such
     comments, this tries each fix once, and stops after ``WORK["fixes tried"]`` fixes.
     """
-    has_comments = bool(spoken_of(module))
+    has_comments = bool(commented_spans(module))
     tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}
     for finding in findings:
         for fix in finding.diagnostic.fixes:

@@ -8,7 +8,7 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
-from tltlc.grammar.allow_comments import spoken_of
+from tltlc.grammar.allow_comments import commented_spans
 from tltlc.grammar.tree import Module
 from tltlc.io.limits import WORK
 from tltlc.pipeline import CompileOptions
@@ -74,7 +74,7 @@ def _applied(module: Module, left: tuple[LintFinding, ...]) -> tuple[SourceFile,
     fixable = _without_overlaps([finding for finding in left if finding.fix])
     if not fixable:
         return module.source, []
-    if spoken_of(module):
+    if commented_spans(module):
         applied, edits = _keeping_scopes(module, fixable)
     else:
         applied, edits = fixable, _edits(fixable)

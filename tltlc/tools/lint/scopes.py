@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Edit
-from tltlc.grammar.allow_comments import spoken_of
+from tltlc.grammar.allow_comments import commented_spans
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Comment, Module
 from tltlc.tools.lint.removal import without
@@ -39,7 +39,7 @@ def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | 
     when the first declaration of a file is removed, a comment on the next one can become a comment
     on the whole file.
     """
-    scopes = spoken_of(module)
+    scopes = commented_spans(module)
     known, changes = frozenset(edits), _Changes(edits)
     kept = [
         comment.span
@@ -58,7 +58,7 @@ def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | 
     # Equal sets get equal numbers, so that the scopes of many comments on one line compare fast.
     numbers: dict[frozenset[int] | None, int] = {}
     starts_before = _of_each(scopes, lambda places: _number(all_changes.starts(places), numbers))
-    starts_now = _of_each(spoken_of(fixed), lambda places: _number(_starts(places), numbers))
+    starts_now = _of_each(commented_spans(fixed), lambda places: _number(_starts(places), numbers))
     before = {
         all_changes.moved(comment.span.start): starts
         for comment, starts in starts_before

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def on_without_readers() -> Iterator[None]:
+def ignore_closed_pipe() -> Iterator[None]:
     """Discard what is printed into a closed pipe, as after ``head``, instead of ending the command."""
     before = sys.stdout, sys.stderr
     streams = []

@@ -26,7 +26,7 @@ _COMMAND = "tltlc train --from"
 
 
 @record
-class Beginning:
+class InitialPolicyOptions:
     """An initial policy and its file."""
 
     policy: Policy
@@ -38,13 +38,13 @@ class Beginning:
         return self.policy.card
 
 
-def beginning(named: Path) -> Beginning:
+def beginning(named: Path) -> InitialPolicyOptions:
     """Read the policy of ``--from``, named as for `tltlc evaluate`; raises TltlError if it cannot be read."""
     path = policy_file(named)
-    return Beginning(read_policy(path), path)
+    return InitialPolicyOptions(read_policy(path), path)
 
 
-def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
+def own_place(named: Path, begun: InitialPolicyOptions) -> tuple[str, str]:
     """The level and the variant that a policy was trained on; raises TltlError if they are unknown."""
     path, name, variant = policy_place(named, None, _COMMAND)
     if name is None:
@@ -53,7 +53,7 @@ def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
     return name, variant or "v0"
 
 
-def as_its_policy(settings: TrainingSettings, begun: Beginning, config: Path | None) -> TrainingSettings:
+def as_its_policy(settings: TrainingSettings, begun: InitialPolicyOptions, config: Path | None) -> TrainingSettings:
     """Return the settings with the policy's network.
 
     Raises:
@@ -71,7 +71,7 @@ def as_its_policy(settings: TrainingSettings, begun: Beginning, config: Path | N
     return replace(settings, network=network)
 
 
-def check_beginning(begun: Beginning, level: Level, fspa: Fspa, asked: Mapping[str, Any]) -> Sensors:
+def check_beginning(begun: InitialPolicyOptions, level: Level, fspa: Fspa, asked: Mapping[str, Any]) -> Sensors:
     """Check the initial policy and return its sensors, which the agent uses.  ``asked`` are the sensor options.
 
     Raises:
@@ -101,7 +101,7 @@ def moved(run: Run, named: Path) -> Run:
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 
 
-def _other_senses(begun: Beginning, level: Level, asked: Mapping[str, Any]) -> Iterator[str]:
+def _other_senses(begun: InitialPolicyOptions, level: Level, asked: Mapping[str, Any]) -> Iterator[str]:
     own, sensors = begun.card.sensors, chosen(level, asked) if asked else begun.card.sensors
     for key in asked:
         if getattr(sensors, key) != getattr(own, key):

@@ -12,7 +12,7 @@ _MODULES: Final = {"torch", "rsl_rl", "tensordict", "safetensors", "tensorboard"
 
 
 @contextmanager
-def learning_for(command: str) -> Iterator[None]:
+def require_learning(command: str) -> Iterator[None]:
     """Raise TltlError, TLT0730, with the command to install it, if a package of the extra ``rl`` is missing."""
     try:
         yield

@@ -55,7 +55,7 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
         raise click.UsageError(f"`{path}` is no spec; {', '.join(suggestions)}", click.get_current_context())
 
 
-def check_there(level: str, variant: str, command: str) -> None:
+def check_level_exists(level: str, variant: str, command: str) -> None:
     """Raise TltlError, TLT0001, if a level's file is missing.  The help suggests ``command`` with --level."""
     if level.endswith(".toml") and not fileio.exists(level):
         suffix = "" if variant == "v0" else f":{variant}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
-from tltl_runtime.cli.support.level_argument import check_spelling, check_there, names_level
+from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
 from tltl_runtime.game.place import level_place
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
@@ -36,7 +36,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
     if name is None and fileio.is_file(policy / RUN):
         # The card has only the level's name; the folder of the training has the path of its file.
         name, variant = read_place(policy)
-        check_there(name, variant, f"{command} {quote(str(policy))}")
+        check_level_exists(name, variant, f"{command} {quote(str(policy))}")
     return path, name, variant
 
 

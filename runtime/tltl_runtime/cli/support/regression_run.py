@@ -24,7 +24,7 @@ from tltl_runtime.regression.suite.dependencies import Selection, files_of, sele
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, Suite, read_suite
 from tltl_runtime.regression.suite.unnamed_changes import unnamed
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
-from tltl_runtime.regression.verdict.run import Done, check, owned, regress
+from tltl_runtime.regression.verdict.run import Done, check, lock_run, regress
 from tltl_runtime.support.number_text import listed
 from tltlc.api import TltlError, cli, record, workflow_command
 
@@ -34,7 +34,7 @@ _MEANT: Final = "v1 and v2 of the shipped levels are changed on purpose: see the
 
 
 @record
-class Wanted:
+class RegressOptions:
     """The options of ``tltlc regress``.
 
     ``files`` are the files of reports, by their options.  ``folder`` is the folder of the run.
@@ -62,7 +62,7 @@ class Wanted:
         return {option: path for option, path in self.files.items() if not is_output(path)}
 
 
-def run(wanted: Wanted) -> int:
+def run(wanted: RegressOptions) -> int:
     """Judge the requested cases, report on them, and return the exit status.
 
     On KeyboardInterrupt or an error, report on the finished cases and raise the exception again.
@@ -83,7 +83,7 @@ def run(wanted: Wanted) -> int:
     _tell_unnamed(suite, selection.left_out, references)
     check(suite, cases, references)
     results: list[Done] = []
-    with owned(wanted.folder):
+    with lock_run(wanted.folder):
         try:
             _play(suite, cases, references, wanted, results)
             _retrain(suite, wanted, results)
@@ -96,7 +96,7 @@ def run(wanted: Wanted) -> int:
     return cli.exits.CLEAN if all(done.report.verdict == "pass" for done in results) else cli.exits.FINDINGS
 
 
-def _chosen(suite: Suite, wanted: Wanted) -> Selection:
+def _chosen(suite: Suite, wanted: RegressOptions) -> Selection:
     """Select the cases to judge; print to standard error which are left out."""
     if wanted.changed is None:
         return Selection(suite.cases)
@@ -136,7 +136,7 @@ def _tell_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Refe
 
 
 def _play(
-    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], wanted: Wanted, results: list[Done]
+    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], wanted: RegressOptions, results: list[Done]
 ) -> None:
     """Play the cases; print each finished case at once and add it to ``results``."""
     width = max((len(plain(case.name)) for case in cases), default=0)
@@ -153,7 +153,7 @@ def _play(
                 click.echo(line, err=wanted.printed is not None)
 
 
-def _retrain(suite: Suite, wanted: Wanted, results: list[Done]) -> None:
+def _retrain(suite: Suite, wanted: RegressOptions, results: list[Done]) -> None:
     """Retrain for the cases in ``results`` that do not pass, if requested."""
     if wanted.minutes is not None:
         again = join([*_again(wanted), "--retrain"])
@@ -161,12 +161,12 @@ def _retrain(suite: Suite, wanted: Wanted, results: list[Done]) -> None:
         retrain_cases(options, results, to_stderr=wanted.printed is not None)
 
 
-def _untrained(wanted: Wanted, results: list[Done]) -> int:
+def _untrained(wanted: RegressOptions, results: list[Done]) -> int:
     """The number of cases whose requested training is not finished."""
     return 0 if wanted.minutes is None else sum(done.to_train is not None for done in results)
 
 
-def _again(wanted: Wanted) -> list[str]:
+def _again(wanted: RegressOptions) -> list[str]:
     """The words of the command that continues a run, without --retrain and --minutes."""
     options = {
         "--out": wanted.folder,
@@ -181,7 +181,7 @@ def _again(wanted: Wanted) -> list[str]:
     return words if wanted.changed is None else [*words, "--changed", *wanted.changed]
 
 
-def _stopped(wanted: Wanted, results: list[Done], cases: int) -> None:
+def _stopped(wanted: RegressOptions, results: list[Done], cases: int) -> None:
     """Print the progress of a stopped run and the command that continues it."""
     words = _again(wanted)
     if wanted.minutes is not None:
@@ -193,7 +193,7 @@ def _stopped(wanted: Wanted, results: list[Done], cases: int) -> None:
 
 
 def _outcome(
-    suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], wanted: Wanted, results: list[Done]
+    suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], wanted: RegressOptions, results: list[Done]
 ) -> SuiteRun:
     """The outcome of the run so far."""
     missing = tuple(case.name for case in cases[len(results) :])
@@ -201,7 +201,7 @@ def _outcome(
     return SuiteRun(suite, wanted.folder, tuple(results), complete, left_out, missing, wanted.changed or ())
 
 
-def _tell_too(outcome: SuiteRun, wanted: Wanted) -> None:
+def _tell_too(outcome: SuiteRun, wanted: RegressOptions) -> None:
     """Report on a run that an error has ended.  A further error is printed, so that it does not hide the first."""
     try:
         _tell(outcome, wanted)
@@ -217,7 +217,7 @@ def _are_meant(outcome: SuiteRun) -> bool:
     )
 
 
-def _tell(outcome: SuiteRun, wanted: Wanted) -> None:
+def _tell(outcome: SuiteRun, wanted: RegressOptions) -> None:
     """Print the summary and write the requested reports."""
     reports = [done.report for done in outcome.cases]
     click.echo(sum_line(reports, outcome.missing), err=wanted.printed is not None)

@@ -7,7 +7,7 @@ from pathlib import Path
 from tltlc.api import fileio
 
 
-def check_there(suite: Path | None) -> None:
+def check_suite_exists(suite: Path | None) -> None:
     """Check early that the suite exists, before torch is imported, which takes seconds.
 
     Raises:

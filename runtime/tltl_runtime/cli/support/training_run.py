@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeVar
 import click
 
 from tltl_runtime.cli.support.initial_policy import (
-    Beginning,
+    InitialPolicyOptions,
     as_its_policy,
     beginning,
     check_beginning,
@@ -18,7 +18,7 @@ from tltl_runtime.cli.support.initial_policy import (
     moved,
     own_place,
 )
-from tltl_runtime.cli.support.level_argument import check_spelling, check_there, names_level, own_level
+from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level, own_level
 from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
@@ -58,7 +58,7 @@ T = TypeVar("T")
 
 
 @record
-class Asked:
+class TrainOptions:
     """The options of ``tltlc train``; None, or an empty mapping of sensors, if an option is not given."""
 
     spec: str | None
@@ -75,7 +75,7 @@ class Asked:
     policy: Path | None = None
 
 
-def new_run(asked: Asked, folder: Path | None) -> Run:
+def new_run(asked: TrainOptions, folder: Path | None) -> Run:
     """Set up a new training, by default in a folder that is named after it.
 
     Raises:
@@ -124,19 +124,19 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     )
 
 
-def begins_with(asked: Asked) -> Beginning | None:
+def begins_with(asked: TrainOptions) -> InitialPolicyOptions | None:
     """The initial policy of a new training, or None; raises the errors of :func:`beginning`."""
     return None if asked.policy is None else beginning(asked.policy)
 
 
-def new_settings(asked: Asked, begun: Beginning | None) -> TrainingSettings:
+def new_settings(asked: TrainOptions, begun: InitialPolicyOptions | None) -> TrainingSettings:
     """The settings of a new training; raises the errors of :func:`read_settings` and :func:`as_its_policy`."""
     settings = _with_limits(read_settings(asked.config), asked)
     settings = replace(settings, method=_or(asked.method, settings.method))
     return settings if begun is None else as_its_policy(settings, begun, asked.config)
 
 
-def resumed_run(asked: Asked, folder: Path) -> Run:
+def resumed_run(asked: TrainOptions, folder: Path) -> Run:
     """Set up the training in ``folder`` to be resumed.
 
     Only some settings may change.  Level, demonstrations and initial policy must be the same, but their
@@ -177,7 +177,7 @@ def check_limits(run: Run) -> None:
         raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
 
 
-def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
+def _place(asked: TrainOptions, begun: InitialPolicyOptions | None) -> tuple[str, str]:
     """The level and the variant of a new training: from ``--level``, else from the spec, else from the policy."""
     if asked.level is not None:
         path, variant = level_place(asked.level)
@@ -189,10 +189,10 @@ def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
     raise _usage("say what to train for: a spec, a level, or both")
 
 
-def _at_its_level(run: Run, asked: Asked) -> Run:
+def _at_its_level(run: Run, asked: TrainOptions) -> Run:
     """Update the path of the level's file if ``--level`` names the same level; check that the file exists."""
     if asked.level is None:
-        check_there(run.level, run.variant, resume_command(run.folder))
+        check_level_exists(run.level, run.variant, resume_command(run.folder))
         return run
     path, variant = level_place(asked.level)
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
@@ -244,7 +244,7 @@ def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
     return settings
 
 
-def _with_limits(settings: TrainingSettings, asked: Asked) -> TrainingSettings:
+def _with_limits(settings: TrainingSettings, asked: TrainOptions) -> TrainingSettings:
     """Update settings with the options for limits, workers and device."""
     stop, rollout = settings.stop, settings.rollout
     if asked.workers == "ray":
@@ -263,7 +263,7 @@ def _or(asked: T | None, known: T) -> T:
     return known if asked is None else asked
 
 
-def _differences(run: Run, asked: Asked, settings: TrainingSettings) -> Iterator[str]:
+def _differences(run: Run, asked: TrainOptions, settings: TrainingSettings) -> Iterator[str]:
     """Yield a sentence for each difference between a training and the options."""
     where = f"the training in `{run.folder}`"
     if asked.level is not None:

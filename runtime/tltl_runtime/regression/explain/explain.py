@@ -11,7 +11,7 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.path_points import places_along
-from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, together
+from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_text
 from tltl_runtime.support.number_text import counted, percent
 from tltlc.api import Fspa, record
 
@@ -66,7 +66,7 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
             if len(passed_now) / len(now) > _USUAL:
                 done.append(stage)
             continue
-        first = f"{together(done)} as before, then " if done else ""
+        first = f"{subgoals_text(done)} as before, then " if done else ""
         failed = tuple(account.summary.index for account in now if account not in passed_now)
         counts = [
             counted(len(passed), len(all_), "episodes") for passed, all_ in ((passed_now, now), (passed_before, before))
@@ -75,7 +75,7 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
         yield Finding(text, failed, others=True)
         return
     if done:
-        yield Finding(f"{together(done)} as before", ())
+        yield Finding(f"{subgoals_text(done)} as before", ())
 
 
 def _visited(fspa: Fspa, accounts: Sequence[Account]) -> list[tuple[int, set[int]]]:

@@ -126,7 +126,7 @@ def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
     return all((atom, truth) in prime for edge in useful_edges for prime in edge.guard.primes)
 
 
-def together(subgoals: Sequence[Subgoal]) -> str:
+def subgoals_text(subgoals: Sequence[Subgoal]) -> str:
     """Describe successive subgoals: ``reaches `s1`, `s2```.
 
     If one of them is a choice: ``reaches `s1`, then `a` or `b```.

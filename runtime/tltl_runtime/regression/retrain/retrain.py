@@ -27,7 +27,7 @@ from tltl_runtime.regression.verdict.play import Ready, episodes
 from tltl_runtime.regression.verdict.run import WRITABLE, Done, case_folder
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.folder import held
+from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
 from tltl_runtime.training.run.metrics import METRICS
 from tltl_runtime.training.run.record import recorded_end
@@ -130,7 +130,7 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
             process trains there.
     """
     names = (RUN, CHECKPOINT, POLICY, CURVE, METRICS, EPISODE, _RESULT)
-    with held(folder):
+    with lock_training(folder):
         if not (folder / RECORD).exists():
             for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
                 fileio.remove_file(path, WRITABLE)

@@ -28,7 +28,7 @@ SEED: Final = 25_000
 
 
 @record
-class Went:
+class EpisodeResult:
     """The result of an episode."""
 
     success: bool
@@ -36,7 +36,7 @@ class Went:
     reward: float
 
 
-def figures(episodes: Sequence[Went], runs: int) -> CellFigures:
+def figures(episodes: Sequence[EpisodeResult], runs: int) -> CellFigures:
     """Return the figures of a cell over its first ``runs`` episodes."""
     first = episodes[:runs]
     return CellFigures(
@@ -47,7 +47,9 @@ def figures(episodes: Sequence[Went], runs: int) -> CellFigures:
     )
 
 
-def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> tuple[Went, ...]:
+def measured(
+    folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool
+) -> tuple[EpisodeResult, ...]:
     """Return the episodes of a cell: cached in ``folder``, or played now and stored there.
 
     Without a ``policy``, the expert plays.  The current spec of the level judges the episodes.
@@ -58,7 +60,7 @@ def measured(folder: Path, model: Model, level: str, variant: str, policy: Path 
     """
     path = folder / f"{level}-{variant}-{model}.json"
     inputs = _inputs(level, variant, policy)
-    if (cached := read_kept(tuple[Went, ...], path, inputs)) is not None:
+    if (cached := read_kept(tuple[EpisodeResult, ...], path, inputs)) is not None:
         return cached
     episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
     fileio.write_file(path, kept_text(inputs, episodes), over_inputs=True)
@@ -74,13 +76,13 @@ def _inputs(level: str, variant: str, policy: Path | None) -> str:
     return inputs_hash([game.level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
 
 
-def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:
+def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeResult]:
     spec = spec_of(registered_game().load_level(level, variant))
     for episode in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
-        yield Went(episode.success, episode.progress, episode.reward)
+        yield EpisodeResult(episode.success, episode.progress, episode.reward)
 
 
-def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
+def _by_expert(level: str, variant: str, pool: Pool) -> Generator[EpisodeResult]:
     """Play the careful expert's episodes on this machine, with the same seeds as the policies."""
     tasks = [EpisodeRequest(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
@@ -89,7 +91,7 @@ def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
         return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
 
     for result in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
-        yield Went(result.played.success, result.played.progress, result.played.reward)
+        yield EpisodeResult(result.played.success, result.played.progress, result.played.reward)
 
 
 class _ExpertPlayer:

@@ -15,7 +15,7 @@ from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, r
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, write_baseline
 from tltl_runtime.regression.verdict.confidence import rate_interval
-from tltl_runtime.regression.verdict.play import Ready, Told, episodes, ready
+from tltl_runtime.regression.verdict.play import OnEpisode, Ready, episodes, ready
 from tltl_runtime.regression.verdict.verdict import Verdict, judge
 from tltl_runtime.support.source_hash import sources_hash
 from tltlc.api import TltlError, fileio, record, replace
@@ -36,7 +36,7 @@ class Compared:
 
 
 def record_baseline(
-    suite: Suite, pool: Pool, on_episode: Told, kept: tuple[Reference, ...] = ()
+    suite: Suite, pool: Pool, on_episode: OnEpisode, kept: tuple[Reference, ...] = ()
 ) -> Generator[Compared]:
     """Play all episodes of each combination of level, variant, spec and policy in the suite.
 
@@ -54,7 +54,13 @@ def record_baseline(
 
 
 def write_recorded(
-    suite: Suite, path: Path, pool: Pool, on_episode: Told, older: tuple[Reference, ...] = (), *, fresh: bool = False
+    suite: Suite,
+    path: Path,
+    pool: Pool,
+    on_episode: OnEpisode,
+    older: tuple[Reference, ...] = (),
+    *,
+    fresh: bool = False,
 ) -> Generator[Compared]:
     """Record the baseline of a suite with :func:`record_baseline` and write it to ``path`` at the end.
 
@@ -132,7 +138,7 @@ def _ready(case: Case, seed: int) -> Ready:
 
 
 def _recorded(
-    groups: Sequence[Sequence[Ready]], pool: Pool, on_episode: Told, kept: tuple[Reference, ...]
+    groups: Sequence[Sequence[Ready]], pool: Pool, on_episode: OnEpisode, kept: tuple[Reference, ...]
 ) -> Generator[Compared]:
     for group in groups:
         longest = max(group, key=lambda prepared: prepared.case.episodes)
@@ -146,7 +152,7 @@ def _recorded(
         yield Compared(reference, tuple(prepared.case for prepared in group), outdated)
 
 
-def _played(prepared: Ready, pool: Pool, on_episode: Told) -> Reference:
+def _played(prepared: Ready, pool: Pool, on_episode: OnEpisode) -> Reference:
     accounts: list[Account] = []
     # Read the texts first: an edit during play raises an error, so these are the texts that are played.
     texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)

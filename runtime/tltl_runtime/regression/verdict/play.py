@@ -25,7 +25,7 @@ from tltl_runtime.spec.task import read_spec
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
-Told = Callable[[Case, int, Account], None]
+OnEpisode = Callable[[Case, int, Account], None]
 """A callback for each played episode: the case, the number of episodes so far, and the last account."""
 
 _PLAYER: Final = "policy"

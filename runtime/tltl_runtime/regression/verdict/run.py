@@ -15,8 +15,8 @@ from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, r
 from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.regression.suite.suite import Case, Suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
-from tltl_runtime.regression.verdict.play import JudgedCase, Ready, Told, judged, ready
-from tltl_runtime.support.folder_lock import held
+from tltl_runtime.regression.verdict.play import JudgedCase, OnEpisode, Ready, judged, ready
+from tltl_runtime.support.folder_lock import lock_folder
 from tltl_runtime.support.record_json import to_json
 from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
 
@@ -82,7 +82,7 @@ def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]
         _prepared(suite, case, references)
 
 
-def owned(folder: Path) -> AbstractContextManager[None]:
+def lock_run(folder: Path) -> AbstractContextManager[None]:
     """Lock the folder of a run; create it if it is missing.
 
     Raises:
@@ -90,7 +90,7 @@ def owned(folder: Path) -> AbstractContextManager[None]:
     """
     title = f"another run of `tltlc regress` plays in `{folder}`"
     busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
-    return held(folder, busy, WRITABLE)
+    return lock_folder(folder, busy, WRITABLE)
 
 
 def regress(
@@ -99,7 +99,7 @@ def regress(
     references: tuple[Reference, ...],
     folder: Path,
     pool: Pool,
-    on_episode: Told,
+    on_episode: OnEpisode,
     *,
     fresh: bool = False,
 ) -> Generator[Done]:
@@ -154,7 +154,7 @@ def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tu
     return prepared, reference
 
 
-def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, pool: Pool, on_episode: Told) -> Done:
+def _done(suite: Suite, prepared: Ready, reference: Reference, folder: Path, pool: Pool, on_episode: OnEpisode) -> Done:
     """Return the cached result of a case, or play it now.
 
     Raises:

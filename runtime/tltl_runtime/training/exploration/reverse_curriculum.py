@@ -52,7 +52,7 @@ _SPARE = 1.5, 20
 """The limit of an episode on a way: the rest of the way times the first number, plus the second."""
 
 
-class Restarts:
+class ReverseCurriculum:
     """Draws starts from the reverse curriculum; ``generator`` must not be shared.
 
     ``ways`` has the shortest known ways for each end, including the agent's own successes.  They

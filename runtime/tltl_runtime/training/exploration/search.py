@@ -102,7 +102,7 @@ class Searched:
     complete: bool
 
 
-def together(before: Searched, later: Searched) -> Searched:
+def joined_searches(before: Searched, later: Searched) -> Searched:
     """Combine two searches of one training, whose ways are all used.
 
     ``places`` is that of the later one.

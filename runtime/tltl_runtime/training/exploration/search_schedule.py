@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import Player, Searched, TrajectorySearch
 from tltl_runtime.training.ppo.distributed import Peers
 from tltl_runtime.training.ppo.environment import TrainingEnv
@@ -21,7 +21,7 @@ def searched_first(
     run: Run,
     own: Peers,
     played: WorkerVectorEnv,
-    restarts: Restarts,
+    restarts: ReverseCurriculum,
     checkpoint: Checkpoint | None,
     searching: Searching,
     player: Player | None,
@@ -57,7 +57,7 @@ def searched_again(run: Run, own: Peers, env: TrainingEnv, state: Checkpoint, se
 
 
 def _run_search(
-    run: Run, search: TrajectorySearch, restarts: Restarts, before_s: float, searching: Searching
+    run: Run, search: TrajectorySearch, restarts: ReverseCurriculum, before_s: float, searching: Searching
 ) -> Searched:
     """Run a search, at most to the training's limit of minutes; add its ways to the restarts."""
     for searched in search.run():

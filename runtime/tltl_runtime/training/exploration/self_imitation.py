@@ -19,20 +19,20 @@ from rsl_rl.algorithms import PPO
 from tensordict import TensorDict
 from torch import Tensor
 
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 
 BATCH: Final = 256
 """The number of decisions that are drawn for an optimiser step."""
 
 
-class Lessons:
+class SelfImitation:
     """Draws self-imitation batches from the ways of ``restarts``.
 
     Observations come from replaying the ways in an environment of ``make``.
     """
 
-    def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], restarts: Restarts) -> None:
+    def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], restarts: ReverseCurriculum) -> None:
         self._make, self._restarts = make, restarts
         self._env: gymnasium.Env[Any, Any] | None = None
         self._sensed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}

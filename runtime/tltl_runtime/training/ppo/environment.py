@@ -15,9 +15,9 @@ from torch import Tensor
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
 from tltl_runtime.training.exploration.reset_distribution import Episodes
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import end_of
-from tltl_runtime.training.exploration.self_imitation import Lessons
+from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.imitation.imitation_data import Demonstrated
 from tltl_runtime.vector import WorkerVectorEnv
 
@@ -50,8 +50,8 @@ class TrainingEnv(VecEnv):
         env: WorkerVectorEnv,
         seed: int | Sequence[int],
         device: str = "cpu",
-        restarts: Restarts | None = None,
-        lessons: Lessons | None = None,
+        restarts: ReverseCurriculum | None = None,
+        lessons: SelfImitation | None = None,
         demonstrated: Demonstrated | None = None,
         dearer: Callable[[int], float] | None = None,
         limit_steps: int | None = None,
@@ -155,7 +155,7 @@ class TrainingEnv(VecEnv):
 
 
 def _update_restarts(
-    restarts: Restarts,
+    restarts: ReverseCurriculum,
     episodes: Episodes,
     over: NDArray[np.bool_],
     ends: Mapping[int, int],

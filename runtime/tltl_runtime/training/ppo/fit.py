@@ -18,7 +18,7 @@ _NETWORK: Final = "_state_dict"
 """The suffix of the names under which an algorithm saves its networks and optimisers."""
 
 
-def take_up(checkpoint: Checkpoint, runner: Runner, states: int) -> None:
+def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> None:
     """Load the weights and optimisers of a checkpoint into a new runner.
 
     ``states`` is the number of states of the spec's automaton.  Raises RecordJsonError if the

@@ -40,7 +40,7 @@ def weighing(ppo: Ppo, met: float) -> Weighing:
     )
 
 
-def dearer(run: Run) -> Callable[[int], float] | None:
+def raised_penalty(run: Run) -> Callable[[int], float] | None:
     """Return a function of the steps: the undiscounted terminal penalty minus the configured one.
 
     Returns None if the penalty does not rise during the training.

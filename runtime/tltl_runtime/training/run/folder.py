@@ -10,7 +10,7 @@ from tltl_runtime.training.run.run import WRITABLE
 from tltlc.api import Diagnostic
 
 
-def held(folder: Path) -> AbstractContextManager[None]:
+def lock_training(folder: Path) -> AbstractContextManager[None]:
     """Lock the folder inside the block, so that no other process trains in it.
 
     The folder is created if it is missing.
@@ -20,4 +20,4 @@ def held(folder: Path) -> AbstractContextManager[None]:
     """
     title = f"another process trains in `{folder}`"
     busy = Diagnostic("TLT0865", title, help="wait for its end; a new training may go elsewhere, with --out")
-    return held_folder.held(folder, busy, WRITABLE)
+    return held_folder.lock_folder(folder, busy, WRITABLE)

@@ -13,15 +13,15 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.reset_distribution import Replayed
-from tltl_runtime.training.exploration.reverse_curriculum import Restarts
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import Player, Searched
 from tltl_runtime.training.exploration.search_schedule import Searching, searched_first
-from tltl_runtime.training.exploration.self_imitation import Lessons
+from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.imitation.imitation_data import Demonstrated, read_demonstrations, record_expert
 from tltl_runtime.training.ppo.distributed import Peers, cores
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.ppo.penalty_weight import dearer
+from tltl_runtime.training.ppo.penalty_weight import raised_penalty
 from tltl_runtime.training.ppo.streams import Purpose, stream
 from tltl_runtime.training.run.checkpoint import Checkpoint, damaged, level_changed, read_checkpoint
 from tltl_runtime.training.run.initial_policy import read_initial
@@ -137,11 +137,11 @@ def prepared(
         restarts = _restarts(run, own, checkpoint)
         searched = searched_first(run, own, played, restarts, checkpoint, searching, _player(run, own, initial))
         if run.settings.exploration.imitation:
-            lessons = Lessons(_env_of(run), restarts)
+            lessons = SelfImitation(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
     reset_seeds = [int(seed) for seed in seeds]
     limit_steps = run.fspa.limit_steps
-    env = TrainingEnv(played, reset_seeds, device, restarts, lessons, to_imitate, dearer(run), limit_steps)
+    env = TrainingEnv(played, reset_seeds, device, restarts, lessons, to_imitate, raised_penalty(run), limit_steps)
     return env, searched
 
 
@@ -165,11 +165,11 @@ def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
     return play
 
 
-def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
+def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> ReverseCurriculum:
     """Return the restarts of this process, with the ways of the checkpoint."""
     iteration = checkpoint.iteration if checkpoint else 0
     generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
-    restarts = Restarts(run.settings.exploration.parts, generator)
+    restarts = ReverseCurriculum(run.settings.exploration.parts, generator)
     if checkpoint:
         # If there are more processes than before, the new ones begin with the ways of older ones.
         rank = own.rank % len(checkpoint.processes)

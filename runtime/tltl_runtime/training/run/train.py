@@ -12,12 +12,12 @@ from rsl_rl.algorithms import PPO
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.support.record_json import RecordJsonError
-from tltl_runtime.training.exploration.search import Searched, together
+from tltl_runtime.training.exploration.search import Searched, joined_searches
 from tltl_runtime.training.exploration.search_schedule import Searching, searched_again
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.distributed import Peers, joined
-from tltl_runtime.training.ppo.fit import take_up
+from tltl_runtime.training.ppo.fit import restore_checkpoint
 from tltl_runtime.training.ppo.penalty_weight import weighing
 from tltl_runtime.training.ppo.policy import card_of, policy_of
 from tltl_runtime.training.ppo.process_exchange import gathered, own_state, set_generators
@@ -25,13 +25,13 @@ from tltl_runtime.training.ppo.streams import Purpose, stream
 from tltl_runtime.training.ppo.windows import Standstill, Windows
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, copied, damaged
 from tltl_runtime.training.run.confirmation import confirm
-from tltl_runtime.training.run.folder import held
+from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.requirements import class_of, device_of
 from tltl_runtime.training.run.run import CHECKPOINT, Run, identity
 from tltl_runtime.training.run.settings import algorithm_name, rsl_config
 from tltl_runtime.training.run.setup import begun, demonstrated, environments, initial_policy, prepared
-from tltl_runtime.training.run.training_files import Keeping
+from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace
 
@@ -79,7 +79,7 @@ def train(
         own, device = stack.enter_context(joined(device_of(run.settings.device)))
         checkpoint = None
         if own.rank == 0:
-            stack.enter_context(held(run.folder))
+            stack.enter_context(lock_training(run.folder))
             checkpoint = begun(run, resume)
         checkpoint = own.broadcast(checkpoint)
         stack.enter_context(threads(1))
@@ -117,7 +117,7 @@ class _Training:
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
             try:
-                take_up(begun, runner, len(run.fspa.states))
+                restore_checkpoint(begun, runner, len(run.fspa.states))
             except RecordJsonError as error:
                 raise damaged(run.folder / CHECKPOINT, str(error)) from None
             runner.current_learning_iteration = begun.iteration
@@ -129,14 +129,14 @@ class _Training:
         if searched:
             seconds = own.broadcast(self._state.seconds + searched.seconds)
             if before := self._state.searched:
-                searched = together(before, searched)
+                searched = joined_searches(before, searched)
             self._state = replace(self._state, searched=searched, seconds=seconds)
         if searched or begun is None:
             self._state = replace(self._state, processes=tuple(own.gather(own_state(runner))))
         self._seconds_before, self._began = self._state.seconds, time.perf_counter()
         self._replayed_before = self._state.replayed
         self._standstill, self._stands_still = Standstill(*self._state.standstill), False
-        self._keeping = Keeping(run, self._card, begun) if own.rank == 0 else None
+        self._keeping = TrainingFiles(run, self._card, begun) if own.rank == 0 else None
         self._tell_time()
 
     def reports(self) -> Generator[TrainingReport]:
@@ -207,7 +207,7 @@ class _Training:
         seconds = self._seconds()
         if state.searched and searched:
             # `complete` is only about the search before the training.
-            searched = replace(together(state.searched, searched), complete=state.searched.complete)
+            searched = replace(joined_searches(state.searched, searched), complete=state.searched.complete)
             standstill = self._standstill.state()
             self._state = replace(state, searched=searched, processes=processes, seconds=seconds, standstill=standstill)
             if self._keeping:

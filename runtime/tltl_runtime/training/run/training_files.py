@@ -14,7 +14,7 @@ from tltl_runtime.training.run.report import TrainingReport
 from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run
 
 
-class Keeping:
+class TrainingFiles:
     """Writes the folder of a training; only the first process does so.
 
     ``card`` is the card of its policies.  ``saved`` is the checkpoint in the folder, or None.

@@ -104,10 +104,10 @@ def _open(address: str, stack: ExitStack) -> None:
     from threading import Thread
 
     from tltlc.diagnostics.diagnostic import TltlError
-    from tltlc.interfaces.playground.browser import leading_to
+    from tltlc.interfaces.playground.browser import redirect_file
 
     try:
-        file = stack.enter_context(leading_to(address))
+        file = stack.enter_context(redirect_file(address))
     except (OSError, TltlError):
         print("no temporary file can be written: open the address yourself", file=sys.stderr, flush=True)
         return
