@@ -6,14 +6,19 @@ that is written as a product.
 
 Evaluation is as lazy as in Python: operands of ``and`` and ``or`` that need statements of their own
 go into separate branches.
+
+Branches nest at most about :data:`_MOST_BRANCHES` deep, since Python takes 100 levels of indentation,
+and Lua 200 levels of blocks. What is deeper is computed before, into a variable, if the conditions on
+the way to it hold.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import reduce
-from typing import Final, Union
+from typing import Final, Union, overload
 
+from tltlc.core.record import replace
 from tltlc.expression import tree as source
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
 from tltlc.program.tree import (
@@ -21,6 +26,7 @@ from tltlc.program.tree import (
     Any,
     Assign,
     BinaryNumber,
+    Bool,
     Compare,
     Declare,
     Expression,
@@ -37,7 +43,11 @@ from tltlc.program.tree import (
 _DEEPEST: Final = 30
 """The depth at which expressions are split. C# and GDScript compilers take some hundreds of levels, Lua takes 200."""
 
+_MOST_BRANCHES: Final = 20
+"""The depth at which branches are split, counted apart for cases inside cases and for cases one after another."""
+
 _Node = Union[source.Expression, source.Condition]
+_Path = tuple[source.Condition, ...]
 
 
 def defined(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
@@ -49,7 +59,19 @@ def defined(name: str, statements: Sequence[Statement], *, changes: bool = True)
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
         return (*before, Declare(name, "real", last.value, changes))
-    return (Declare(name, "real", None, changes), *statements)
+    return (Declare(name, "real", None, changes or _is_reassigned(name, statements)), *statements)
+
+
+def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
+    """Whether statements assign a first value to a variable, which branches replace."""
+    for place, statement in enumerate(statements, start=1):
+        if isinstance(statement, Assign) and statement.name == name and place < len(statements):
+            return True
+        if isinstance(statement, If):
+            bodies = (*(body for _, body in statement.cases), statement.otherwise)
+            if any(_is_reassigned(name, body) for body in bodies):
+                return True
+    return False
 
 
 class ExpressionTranslator:
@@ -60,19 +82,24 @@ class ExpressionTranslator:
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
-        self._signals, self._params, self._prefix = signals, params, prefix
+        self._signals, self._params, self._prefix = dict(signals), params, prefix
         self._count = 0
 
     def assigned(self, name: str, expression: source.Expression) -> list[Statement]:
         """Return statements that assign the value of an expression to a declared variable."""
         lines: list[Statement] = []
+        if _branch_depth(expression) > _MOST_BRANCHES:
+            expression = self._split(expression, lines, (), 0)
         if isinstance(expression, source.When):
-            return self._cases(name, expression)
+            return [*lines, *self._cases(name, expression)]
         value = self._value(expression, lines)
         return [*lines, Assign(name, value)]
 
-    def _cases(self, name: str, node: source.When) -> list[Statement]:
-        """Return a ``when`` as branches; nested only where a condition needs statements of its own."""
+    def _cases(self, name: str, node: source.When, depth: int = 1) -> list[Statement]:
+        """Return a ``when`` as branches; nested only where a condition needs statements of its own.
+
+        ``depth`` counts the branches that are nested for this reason.
+        """
         condition, value = node.cases[0]
         before: list[Statement] = []
         cases = [(self._test(condition, before), tuple(self.assigned(name, value)))]
@@ -81,9 +108,77 @@ class ExpressionTranslator:
             test = self._test(condition_after, needed)
             if needed:
                 rest = source.When(node.cases[index:], node.otherwise)
-                return [*before, If(tuple(cases), tuple(self._cases(name, rest)))]
+                if depth >= _MOST_BRANCHES:
+                    return [*before, *self._one_by_one(name, tuple(cases), rest)]
+                return [*before, If(tuple(cases), tuple(self._cases(name, rest, depth + 1)))]
             cases.append((test, tuple(self.assigned(name, its_value))))
         return [*before, If(tuple(cases), tuple(self.assigned(name, node.otherwise)))]
+
+    def _one_by_one(
+        self, name: str, first: tuple[tuple[Expression, tuple[Statement, ...]], ...], rest: source.When
+    ) -> list[Statement]:
+        """Return cases as branches one after another, and a variable that says whether one is still to be found."""
+        lines: list[Statement] = [Assign(name, Real(0.0))]
+        open_ = Variable(self._declared("bool", lines, changes=True))
+        lines.append(Assign(open_.name, Bool(True)))
+        lines.append(If(tuple((test, (*body, Assign(open_.name, Bool(False)))) for test, body in first)))
+        for condition, value in rest.cases:
+            needed: list[Statement] = []
+            test = self._test(condition, needed)
+            taken = (*self.assigned(name, value), Assign(open_.name, Bool(False)))
+            lines.append(If(((open_, (*needed, If(((test, taken),)))),)))
+        lines.append(If(((open_, tuple(self.assigned(name, rest.otherwise))),)))
+        return lines
+
+    @overload
+    def _split(self, node: source.Condition, lines: list[Statement], path: _Path, depth: int) -> source.Condition: ...
+
+    @overload
+    def _split(self, node: source.Expression, lines: list[Statement], path: _Path, depth: int) -> source.Expression: ...
+
+    @overload
+    def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node: ...
+
+    def _split(self, node: _Node, lines: list[Statement], path: _Path, depth: int) -> _Node:
+        """Return the node with its cases below the greatest depth replaced by variables.
+
+        Statements that compute these go to ``lines``. They run only if all conditions of ``path``, which
+        lead to the node, hold.
+        """
+        if isinstance(node, source.When):
+            if depth == _MOST_BRANCHES:
+                return self._computed_before(node, lines, path)
+            cases: list[tuple[source.Condition, source.Expression]] = []
+            for condition, value in node.cases:
+                test = self._split(condition, lines, path, depth + 1)
+                cases.append((test, self._split(value, lines, (*path, test), depth + 1)))
+                path = (*path, source.Condition("not", (test,)))
+            return source.When(tuple(cases), self._split(node.otherwise, lines, path, depth + 1))
+        if isinstance(node, source.Condition) and node.op in ("and", "or"):
+            parts: list[source.Condition] = []
+            for part in node.args:
+                assert isinstance(part, source.Condition), "and and or take conditions"
+                parts.append(self._split(part, lines, path, depth))
+                path = (*path, parts[-1] if node.op == "and" else source.Condition("not", (parts[-1],)))
+            return source.Condition(node.op, tuple(parts))
+        if isinstance(node, (source.Op, source.Condition)):
+            args = tuple(self._split(argument, lines, path, depth) for argument in node.args)
+            return replace(node, args=args)
+        return node
+
+    def _computed_before(self, node: source.When, lines: list[Statement], path: _Path) -> source.SignalValue:
+        self._count += 1
+        name = f"{self._prefix}{self._count}"
+        if path:
+            test = self._test(source.Condition("and", path), lines)
+            lines.append(Declare(name, "real", Real(0.0), changes=True))
+            lines.append(If(((test, tuple(self.assigned(name, node))),)))
+        else:
+            lines += defined(name, self.assigned(name, node), changes=False)
+        # No signal of a spec has a name with blanks.
+        stand_in = source.SignalValue(f"computed before: {name}")
+        self._signals[stand_in.name] = name
+        return stand_in
 
     # --- numbers ----------------------------------------------------------------------------------
 
@@ -96,8 +191,10 @@ class ExpressionTranslator:
         if isinstance(node, source.ParamValue):
             return Variable(self._params[node.name])
         if isinstance(node, source.When):
-            name = self._declared("real", lines)
-            lines += self._cases(name, node)
+            self._count += 1
+            name = f"{self._prefix}{self._count}"
+            branches = self._cases(name, node)
+            lines += [Declare(name, "real", None, _is_reassigned(name, branches)), *branches]
             return Variable(name)
         if node.op == "^" and isinstance(exponent := node.args[1], source.Const):
             factors = MULTIPLIED_EXPONENTS.get(exponent.value)
@@ -197,6 +294,16 @@ class ExpressionTranslator:
             case Negate(operand) | Not(operand):
                 return 1 + self._depth(operand)
         return 0
+
+
+def _branch_depth(node: _Node) -> int:
+    """Return how deep ``when`` nests in a node."""
+    if isinstance(node, source.When):
+        inside = [*(part for case in node.cases for part in case), node.otherwise]
+        return 1 + max(map(_branch_depth, inside))
+    if isinstance(node, (source.Op, source.Condition)):
+        return max(map(_branch_depth, node.args))
+    return 0
 
 
 def _all_or_any(op: str, tests: list[Expression]) -> Expression:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Final
+from typing import Final, Literal
 
 from tltlc.expression.tree import (
     ArithmeticOp,
@@ -169,7 +169,40 @@ def _refusing(name: str) -> ConformanceCase:
     return ConformanceCase(fspa, f"Predicates without a value: {name.replace('_', ' ')}.", tuple(traces))
 
 
+def _deep(inside: Literal["value", "otherwise", "condition"]) -> Expression:
+    """Return a ``when`` in each value, each ``otherwise`` or each condition of another one, 96 operators deep."""
+    node: Expression = Const(0.5)
+    for level in range(48 if inside == "condition" else 96):
+        reached, value = _test(">", _X, level / 100 - 0.5), level / 1000 - 0.5
+        if inside == "value":
+            node = _when(reached, node, value)
+        elif inside == "otherwise":
+            node = _when(reached, value, node)
+        else:
+            node = _when(_test(">", node, 0.01 * (level % 7)), value, 0.3)
+    return node
+
+
+def _chain() -> Expression:
+    """Return 160 cases whose conditions need statements of their own in some languages."""
+    near = ((_test("<", _op("^", _op("-", _Y, at / 80 - 1.0), 2.0), 1e-4), Const(at / 160)) for at in range(160))
+    return When(tuple(near), Const(-0.25))
+
+
+def _branching(name: str) -> ConformanceCase:
+    first, second = {
+        "deep_values": (_deep("value"), _deep("otherwise")),
+        "deep_conditions": (_deep("condition"), _chain()),
+    }[name]
+    fspa = _both(name, first, second).fspa
+    columns = [signal.name for signal in fspa.signals]
+    samples = [[-0.6 + step / 20, -1.0 + step / 16][: len(columns)] for step in range(32)]
+    traces = tuple(table(columns, samples[at:]) for at in (0, 10, 20))
+    return ConformanceCase(fspa, f"Branches inside branches: {name.replace('_', ' ')}.", traces)
+
+
 CASES: Final[Makers] = {
     **{name: partial(_function, number, name) for number, name in enumerate(_EXPRESSIONS)},
     **{name: partial(_refusing, name) for name in _REFUSED},
+    **{name: partial(_branching, name) for name in ("deep_values", "deep_conditions")},
 }
