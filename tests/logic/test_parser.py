@@ -80,7 +80,7 @@ def test_deep_formulas_need_no_recursion() -> None:
 
 
 def test_bounds_that_count_down_share_their_expansion(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parser_module, "MOST_EXPANDED", 3_000)
+    monkeypatch.setattr(parser_module, "WORK", {"expanded bounds": 3_000})
     parser = FormulaParser(["a", "b"])
     for steps in range(3_000, 0, -1):
         assert parser.formula(f"F[0,{steps}] a") is not None

@@ -180,6 +180,7 @@ WORK: Final[Mapping[str, int]] = {
     "check of a predicate": 600_000,
     "checks of all predicates": 1_500_000,
     "arithmetic of all atoms": 200_000,
+    "expanded bounds": 100_000,
     "guard literals": 1_500_000,
     "states of parts": 150_000,
     "states of blamed parts": 40_000,

@@ -10,11 +10,9 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
+from tltlc.io.limits import WORK
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
-
-MOST_EXPANDED: Final = 2_000_000
-"""The most operands of all formulas to which one parser expands bounds."""
 
 _TOKEN: Final = re.compile(
     r"(?P<op><->|->|[!&|()]|[XNFGUWRM](?![\w.\[]))|(?P<bound>[FG])\[0,(?P<steps>[0-9]{1,7})\]"
@@ -64,7 +62,7 @@ class FormulaParser:
         others = sorted(set(known) - self._plain, key=len, reverse=True)
         self._others = re.compile(rf"(?:{'|'.join(map(re.escape, others))})(?![\w.])") if others else None
         self._expansions: dict[tuple[str, Formula], list[Formula]] = {}
-        self._left = MOST_EXPANDED
+        self._left = WORK["expanded bounds"]
         self._parsed: dict[str, Formula | None] = {}
 
     def formula(self, text: str) -> Formula | None:
