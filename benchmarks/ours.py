@@ -62,7 +62,7 @@ def _guarded(formula: Formula, atoms: Sequence[str]) -> list[str]:
     successors, machine, allowed = minimal_machine(formula, atoms, DEFAULT_STATE_BUDGET)
     guards = Guards(successors.diagrams, atoms, allowed)
     edges = {guard for transition in machine.transitions.values() for guard in guards.by_leaf(transition).values()}
-    return [guards.text(guard) for guard in edges]
+    return [str(guards.formula(guard)) for guard in edges]
 
 
 def _build(formula: Formula) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State
 from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
-from tltlc.logic.formula import FALSE, always, and_, atom, eventually, then
+from tltlc.logic.formula import FALSE, TRUE, always, and_, atom, eventually, not_, then
 from tltlc.resolve import spec
 
 
@@ -18,8 +18,8 @@ def cover_and_hide() -> Fspa:
     third = and_(eventually(atom(c)), goal)
     second = and_(then(atom(b), atom(c)), goal)
     whole = and_(then(atom(a), then(atom(b), atom(c))), goal)
-    dead = Guard(f"!{p}", (((3, False),),))
-    safe = Guard(p, (((3, True),),))
+    dead = Guard(not_(atom(p)), (((3, False),),))
+    safe = Guard(atom(p), (((3, True),),))
     return Fspa(
         name="cover_and_hide",
         doc="Button 1, then button 2, then the exit, without dying.",
@@ -54,7 +54,7 @@ def cover_and_hide() -> Fspa:
             Edge(1, 1, _stay(1, b)),
             Edge(1, 2, dead),
             Edge(1, 3, _advance(1, b)),
-            Edge(2, 2, Guard("true", ((),))),
+            Edge(2, 2, Guard(TRUE, ((),))),
             Edge(3, 2, dead),
             Edge(3, 3, _stay(2, c)),
             Edge(3, 4, _advance(2, c)),
@@ -79,7 +79,7 @@ def near(distance: str, close: float = 1.0, far: str = "level_size") -> Expressi
 
 
 def _advance(goal: int, name: str) -> Guard:
-    return Guard(f"{name} & alive", (((goal, True), (3, True)),))
+    return Guard(and_(atom(name), atom("alive")), (((goal, True), (3, True)),))
 
 
 def _stay(goal: int, name: str) -> Guard:
@@ -89,4 +89,4 @@ def _stay(goal: int, name: str) -> Guard:
     """
     other_goals = [((other, True), (3, True)) for other in range(3) if other != goal]
     primes = sorted([((goal, False), (3, True)), *other_goals])
-    return Guard(f"!{name} & alive", tuple(primes))
+    return Guard(and_(not_(atom(name)), atom("alive")), tuple(primes))

@@ -110,5 +110,5 @@ def test_a_short_form_stays_a_sum_where_the_product_would_be_very_long(monkeypat
         both = diagrams.node(2 * pair, REJECT, diagrams.node(2 * pair + 1, REJECT, ACCEPT))
         guard = diagrams.disjoin(guard, both)
     monkeypatch.setattr(guards, "PRIME_LIMIT", 7)
-    text = guards.Guards(diagrams, "abcdef").text(guard)
-    assert text == "a & b | c & d | e & f"
+    formula = guards.Guards(diagrams, "abcdef").formula(guard)
+    assert str(formula) == "a & b | c & d | e & f"

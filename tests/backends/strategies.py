@@ -114,7 +114,8 @@ def hostile_automata(draw: st.DrawFn) -> Fspa:
     no_formulas = hostile_texts.filter(lambda text: parser.formula(text) is None)
     text = st.builds(Text, no_formulas, hostile_texts, hostile_texts)
     states = tuple(replace(state, label=draw(text)) for state in fspa.states)
-    edges = tuple(replace(edge, guard=Guard(draw(st.sampled_from(names)), edge.guard.primes)) for edge in fspa.edges)
+    guards = no_formulas.map(lambda text: Text(text, text, text))
+    edges = tuple(replace(edge, guard=Guard(draw(guards), edge.guard.primes)) for edge in fspa.edges)
     signal = draw(hostile_texts.filter(lambda name: bool(name) and name != "health"))
     return replace(
         fspa,

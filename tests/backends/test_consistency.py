@@ -17,8 +17,9 @@ from tltlc.artefact.consistency import problems
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State
 from tltlc.core.record import replace
 from tltlc.expression.tree import ParamValue, SignalValue
+from tltlc.logic.formula import TRUE, atom, not_
 
-SAFE = Guard("alive", (((3, True),),))
+SAFE = Guard(atom("alive"), (((3, True),),))
 
 
 def messages(fspa: Fspa) -> list[str]:
@@ -54,27 +55,27 @@ def test_compiled_automata_are_consistent(fspa: Fspa) -> None:
         (changed("edges", 0, source=9), "there is no state 9"),
         (changed("edges", 1, target=0), "two edges lead from state 0 to state 0"),
         (changed("edges", 0, target=4), "the edges are not sorted by source and target"),
-        (changed("edges", 2, guard=Guard("x", (((7, True),),))), "there are only 4 atoms"),
+        (changed("edges", 2, guard=Guard(atom("x"), (((7, True),),))), "there are only 4 atoms"),
         (changed("states", 1, distance=1), "the distance of state 1 is 2, not 1"),
         (changed("states", 2, distance=7), "the distance of state 2 is null, not 7"),
         (changed("states", 4, verdict="satisfied"), "the verdict of state 4 is `holding`, not `satisfied`"),
         (replace(cover_and_hide(), spec_size=4), "spec_size is 3, not 4"),
         (
-            changed("edges", 11, guard=Guard("true", ((),))),
+            changed("edges", 11, guard=Guard(TRUE, ((),))),
             "the guards from state 4 to states 2 and 4 can be true at once",
         ),
         (changed("edges", 6, guard=SAFE), "some samples lead nowhere from state 2"),
-        (changed("edges", 11, guard=Guard("x", (((3, True), (3, False)),))), "an implicant names an atom twice"),
+        (changed("edges", 11, guard=Guard(atom("x"), (((3, True), (3, False)),))), "an implicant names an atom twice"),
         (
-            changed("edges", 11, guard=Guard("x", (((0, True), (1, True)),))),
+            changed("edges", 11, guard=Guard(atom("x"), (((0, True), (1, True)),))),
             "an implicant asks for two exclusive atoms at once",
         ),
         (
-            changed("edges", 11, guard=Guard("alive", (((3, True),), ((0, True), (3, True))))),
+            changed("edges", 11, guard=Guard(atom("alive"), (((3, True),), ((0, True), (3, True))))),
             "an implicant is contained in another",
         ),
         (
-            changed("edges", 0, guard=Guard("x", (((0, False), (3, True)),))),
+            changed("edges", 0, guard=Guard(atom("x"), (((0, False), (3, True)),))),
             "an implicant is missing, so that the guard's robustness would be wrong",
         ),
     ],
@@ -210,9 +211,9 @@ def test_exactly_the_complete_sets_of_primes_pass(terms: list[tuple[tuple[int, b
     rest = tuple(sorted(all_primes(samples - guard)))
     fspa = cover_and_hide()
     states = tuple(replace(fspa.states[2], id=index) for index in range(2))
-    edges = [Edge(0, 0, Guard("g", primes)), Edge(1, 1, Guard("true", ((),)))]
+    edges = [Edge(0, 0, Guard(atom("g"), primes)), Edge(1, 1, Guard(TRUE, ((),)))]
     if rest:
-        edges.insert(1, Edge(0, 1, Guard("!g", rest)))
+        edges.insert(1, Edge(0, 1, Guard(not_(atom("g")), rest)))
     else:
         states, edges = states[:1], edges[:1]
     fspa = replace(fspa, exclusive=(), states=states, edges=tuple(edges), spec_size=0)
@@ -226,7 +227,7 @@ def test_a_guard_that_covers_too_little_or_too_much_is_reported(fspa: Fspa, data
     edge = fspa.edges[index]
     names = len(fspa.atoms)
     other = Guard(
-        "?",
+        atom("?"),
         data.draw(
             st.lists(
                 st.dictionaries(st.integers(0, names - 1), st.booleans(), max_size=2).map(
@@ -279,6 +280,6 @@ def test_work_on_guards_beside_many_exclusive_atoms_is_limited() -> None:
     extra_atoms = tuple(replace(fspa.atoms[0], base=f"a{number}", arguments=()) for number in range(200))
     group = tuple(range(len(fspa.atoms), len(fspa.atoms) + 200))
     states = tuple(State(number, fspa.states[0].label, False, "pending", None) for number in range(2_000))
-    edges = tuple(Edge(number, number, Guard("alive", (((3, True),),))) for number in range(2_000))
+    edges = tuple(Edge(number, number, Guard(atom("alive"), (((3, True),),))) for number in range(2_000))
     fspa = replace(fspa, atoms=(*fspa.atoms, *extra_atoms), exclusive=(group,), states=states, edges=edges)
     assert calls(lambda: list(guards.guard_problems(fspa))) < 10 * guards.WORK_LIMIT

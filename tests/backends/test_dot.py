@@ -11,12 +11,13 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Pair, Text
-from tltlc.automaton.text import label_text
+from tltlc.automaton.text import guard_text, label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
 from tltlc.backends.drawing.folding import whole
-from tltlc.backends.drawing.texts import GuardNotation, arrows, visible, wrapped
+from tltlc.backends.drawing.texts import arrows, visible, wrapped
 from tltlc.core.record import replace
+from tltlc.logic.formula import and_, atom, not_, or_
 
 
 def emitted(fspa: Fspa, options: Options | None = None) -> str:
@@ -79,7 +80,7 @@ def test_notations(notation: Notation, label: str, guard: str) -> None:
 def test_every_state_and_guard_is_drawn_once(fspa: Fspa) -> None:
     drawn = parsed(emitted(fspa))
     assert len(drawn.nodes()) == len(fspa.states) + 1
-    expected = arrows(fspa, whole(fspa).edges, "unicode")
+    expected = arrows(whole(fspa).edges, "unicode")
     assert sum(map(len, expected.values())) == len(fspa.edges)
     shown = {tuple(map(int, edge)): words_of(edge.attr["label"]) for edge in drawn.edges() if edge[0] != "start"}
     assert len(drawn.edges()) == len(shown) + 1
@@ -113,7 +114,7 @@ def test_parallel_edges_share_an_arrow_that_shows_their_pairs() -> None:
 
 def test_an_arrow_with_very_many_guards_counts_the_rest() -> None:
     fspa = cover_and_hide()
-    edges = tuple(replace(fspa.edges[0], guard=Guard(f"p{index}", ())) for index in range(MOST_GUARDS + 3))
+    edges = tuple(replace(fspa.edges[0], guard=Guard(atom(f"p{index}"), ())) for index in range(MOST_GUARDS + 3))
     drawn = parsed(emitted(replace(fspa, edges=edges)))
     loop = drawn.get_edge("0", "0")
     shown = words_of(loop.attr["label"]).split()
@@ -202,9 +203,7 @@ def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
 
 
 def test_operators_inside_names_of_atoms_are_kept() -> None:
-    fspa = cover_and_hide()
-    atoms = tuple(
-        replace(a, base=n, arguments=()) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True)
-    )
-    guards = GuardNotation(replace(fspa, atoms=atoms), "unicode")
-    assert guards.text("!x! & (a & b | !true_love) -> true") == "¬x! ∧ (a & b ∨ ¬true_love) ⇒ ⊤"
+    names = ("x!", "a & b", "true_love")
+    guard = Guard(and_(not_(atom(names[0])), or_(atom(names[1]), not_(atom(names[2])))), ())
+    assert guard_text(guard, "unicode") == "¬x! ∧ (a & b ∨ ¬true_love)"
+    assert guard_text(guard, "english") == "not x! and (a & b or not true_love)"

@@ -14,6 +14,7 @@ from tltlc.backends import Options
 from tltlc.backends.dot import graph
 from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, EdgeLabel, folded, span, whole
 from tltlc.core.record import replace
+from tltlc.logic.formula import atom
 
 
 def automaton(formula: str) -> Fspa:
@@ -58,12 +59,12 @@ def chains(draw: st.DrawFn) -> Fspa:
     states = tuple(
         replace(cover_and_hide().states[draw(st.sampled_from([0, 0, 0, 0, 4]))], id=index) for index in range(size)
     )
-    guards = st.sampled_from([Guard("p", (((0, True),),)), *3 * [Guard("q", (((1, True),),))]])
+    guards = st.sampled_from([Guard(atom("p"), (((0, True),),)), *3 * [Guard(atom("q"), (((1, True),),))]])
     aside = st.sampled_from([0, 0, 0, 0, size - 1, size // 2])
     edges = {}
     for index in range(size):
         edges[index, (index + 1) % size] = draw(guards)
-        edges.setdefault((index, draw(aside)), Guard("r", (((2, True),),)))
+        edges.setdefault((index, draw(aside)), Guard(atom("r"), (((2, True),),)))
     rows = tuple(Edge(source, target, guard) for (source, target), guard in sorted(edges.items(), key=lambda e: e[0]))
     return replace(cover_and_hide(), states=states, edges=rows)
 
@@ -179,7 +180,7 @@ def test_the_number_of_folded_states(formula: str, inner: list[int], states: int
 def test_an_entrance_from_outside_ends_a_run() -> None:
     fspa = automaton("F[0,40] a")
     middle = 20
-    detour = Edge(1, middle, Guard("b", (((0, False),),)))
+    detour = Edge(1, middle, Guard(atom("b"), (((0, False),),)))
     runs = check(replace(fspa, edges=(*fspa.edges, detour))).folded.values()
     inner = [state.id for run in runs for state in run]
     assert [len(run) for run in runs] == [18, 20]

@@ -13,7 +13,7 @@ from tests.fixtures import cover_and_hide
 from tests.logic.strategies import formulas
 from tltlc import __version__, backends, compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
-from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
+from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, Text
 from tltlc.automaton.infinite.build import build_infinite
 from tltlc.automaton.infinite.lasso import holds_on_lasso
 from tltlc.automaton.transitions import TransitionDiagrams
@@ -23,6 +23,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import Limit
 from tltlc.logic import oracle
+from tltlc.logic.formula import FALSE
 from tltlc.resolve.spec import Spec
 
 INFINITE = """
@@ -193,9 +194,8 @@ def test_an_edge_can_be_in_many_sets() -> None:
 
 def test_labels_come_from_the_primes_not_from_the_text() -> None:
     fspa = cover_and_hide()
-    misleading = replace(
-        fspa, edges=tuple(replace(edge, guard=Guard("t] 0 [t", edge.guard.primes)) for edge in fspa.edges)
-    )
+    text = Text("t] 0 [t", "t] 0 [t", "t] 0 [t")
+    misleading = replace(fspa, edges=tuple(replace(edge, guard=Guard(text, edge.guard.primes)) for edge in fspa.edges))
     assert emitted(misleading) == emitted(fspa)
 
 
@@ -213,7 +213,7 @@ def test_a_guard_too_large_for_a_short_label_is_the_sum_of_its_primes(fspa: Fspa
 def test_an_edge_that_no_letter_takes_has_a_false_label() -> None:
     fspa = cover_and_hide()
     at = [(edge.source, edge.target) for edge in fspa.edges].index((2, 2))
-    edges = (*fspa.edges[:at], Edge(2, 0, Guard("false", ())), *fspa.edges[at:])
+    edges = (*fspa.edges[:at], Edge(2, 0, Guard(FALSE, ())), *fspa.edges[at:])
     assert "[@allowed & f] 0\n[@allowed] 2\n" in emitted(replace(fspa, edges=edges))
     assert "[f] 0\n[t] 2\n" in emitted(replace(fspa, edges=edges, exclusive=()))
 

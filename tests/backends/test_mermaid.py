@@ -44,7 +44,7 @@ def check(fspa: Fspa) -> None:
     classes = [match for line in rest if (match := CLASS.fullmatch(line))]
     dashed = [int(match[1]) for line in rest if (match := FOLDED.fullmatch(line))]
     assert [int(match[2]) for match in states] == [state.id for state in drawing.states]
-    expected = arrows(fspa, drawing.edges, "unicode")
+    expected = arrows(drawing.edges, "unicode")
     assert [(int(match[1]), int(match[2])) for match in edges] == list(expected)
     assert all(
         words(match[3]) == visible(" ".join("; ".join(guards).split())).split() or words(match[3])[-1] == "…"

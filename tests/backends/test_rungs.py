@@ -14,6 +14,7 @@ from tltlc.backends.drawing.counting_states import folded_in_step
 from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, whole
 from tltlc.backends.drawing.picture_content import notes, shown
 from tltlc.core.record import replace
+from tltlc.logic.formula import atom
 
 IN_STEP = (
     "F[0,{n}] a & F[0,{m}] b",
@@ -32,7 +33,7 @@ def in_step() -> st.SearchStrategy[Fspa]:
     )
 
 
-GUARDS = [Guard(name, (((index, True),),)) for index, name in enumerate("pqrs")]
+GUARDS = [Guard(atom(name), (((index, True),),)) for index, name in enumerate("pqrs")]
 
 
 @st.composite

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from tltlc.artefact.checks import RECOMPILE, Origin, check_arithmetic, check_consistency, check_format
-from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State, Text
+from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Pair, State, Text
 from tltlc.core.names import split_name
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
@@ -94,11 +94,11 @@ def _decoded(document: object, origin: Origin) -> Fspa:
 def _fspa(document: dict[str, Any]) -> Fspa:
     spec = document["spec"]
     limit = spec["limit_steps"]
-    label = _label_reader(document["atoms"])
+    formula = _formula_reader(document["atoms"])
     return Fspa(
         name=spec["name"],
         doc=spec["doc"],
-        formula=label(spec["formula"]),
+        formula=formula(spec["formula"]),
         level=spec["level"],
         limit_steps=None if limit is None else int(limit),
         judge=spec["judge"],
@@ -109,8 +109,8 @@ def _fspa(document: dict[str, Any]) -> Fspa:
         params=tuple(_param(param) for param in document["params"]),
         atoms=tuple(_atom(atom) for atom in document["atoms"]),
         exclusive=tuple(tuple(int(atom) for atom in group) for group in document["exclusive"]),
-        states=tuple(_state(state, label) for state in document["states"]),
-        edges=tuple(_edge(edge) for edge in document["edges"]),
+        states=tuple(_state(state, formula) for state in document["states"]),
+        edges=tuple(_edge(edge, formula) for edge in document["edges"]),
         spec_size=int(document["spec_size"]),
         acceptance=tuple(_pair(pair) for pair in document.get("acceptance", {"pairs": ()})["pairs"]),
     )
@@ -121,7 +121,10 @@ def _pair(pair: dict[str, Any]) -> Pair:
     return Pair(fin, inf)
 
 
-def _label_reader(atoms: Iterable[dict[str, Any]]) -> Callable[[dict[str, str]], Formula | Text]:
+_Reader = Callable[[dict[str, str]], Formula | Text]
+
+
+def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _Reader:
     """Return a function that parses the ASCII text of a formula as tltlc prints it; any other text stays text."""
     parser = FormulaParser(atom["name"] for atom in atoms)
 
@@ -156,18 +159,19 @@ def _atom(atom: dict[str, Any]) -> Atom:
     return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments)
 
 
-def _state(state: dict[str, Any], label: Callable[[dict[str, str]], Formula | Text]) -> State:
+def _state(state: dict[str, Any], formula: _Reader) -> State:
     distance = state["distance"]
     return State(
         int(state["id"]),
-        label(state["label"]),
+        formula(state["label"]),
         state["accepting"],
         state["verdict"],
         None if distance is None else int(distance),
     )
 
 
-def _edge(edge: dict[str, Any]) -> Edge:
+def _edge(edge: dict[str, Any], formula: _Reader) -> Edge:
     guard = edge["guard"]
+    text = dict.fromkeys(NOTATIONS, guard["text"])
     primes = tuple(tuple((int(index), polarity) for index, polarity in prime) for prime in guard["primes"])
-    return Edge(int(edge["source"]), int(edge["target"]), Guard(guard["text"], primes))
+    return Edge(int(edge["source"]), int(edge["target"]), Guard(formula(text), primes))

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any, Final
 
 from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, State
-from tltlc.automaton.text import formula_text, label_text
+from tltlc.automaton.text import formula_text, guard_texts, label_text
 from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Param, Signal
 
@@ -39,7 +38,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "exclusive": [list(group) for group in fspa.exclusive],
         "states": [_state(fspa, state) for state in fspa.states],
         "initial": 0,
-        "edges": _edges(fspa.edges),
+        "edges": _edges(fspa),
         "spec_size": fspa.spec_size,
         **_acceptance(fspa),
     }
@@ -82,15 +81,15 @@ def _state(fspa: Fspa, state: State) -> dict[str, Any]:
     }
 
 
-def _edges(edges: Iterable[Edge]) -> list[dict[str, Any]]:
+def _edges(fspa: Fspa) -> list[dict[str, Any]]:
     # Equal literals share one list: a large automaton has millions of them.
     literals: dict[tuple[int, bool], list[int | bool]] = {}
 
     def literal(atom: int, polarity: bool) -> list[int | bool]:
         return literals.setdefault((atom, polarity), [atom, polarity])
 
-    def encoded(edge: Edge) -> dict[str, Any]:
+    def encoded(edge: Edge, guard: str) -> dict[str, Any]:
         primes = [[literal(*pair) for pair in prime] for prime in edge.guard.primes]
-        return {"source": edge.source, "target": edge.target, "guard": {"text": edge.guard.text, "primes": primes}}
+        return {"source": edge.source, "target": edge.target, "guard": {"text": guard, "primes": primes}}
 
-    return [encoded(edge) for edge in edges]
+    return [encoded(edge, guard) for edge, guard in zip(fspa.edges, guard_texts(fspa), strict=True)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import guard_texts
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import ARTEFACT
 
@@ -31,7 +32,7 @@ def check_size(what: str, size: int, commas: int = 0) -> None:
 def least_size(fspa: Fspa) -> tuple[int, int]:
     """Return the least bytes and commas that the edges of an artefact take; edges dominate a large artefact."""
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
-    texts = sum(len(edge.guard.text) for edge in fspa.edges)
+    texts = sum(map(len, guard_texts(fspa)))
     size = len(_SHORTEST_EDGE) * len(fspa.edges) + texts + len("[0, true], ") * literals
     return size, 3 * len(fspa.edges) + 2 * literals - 1
 

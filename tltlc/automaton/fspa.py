@@ -26,7 +26,7 @@ NOTATIONS: Final[tuple[Notation, ...]] = ("ascii", "unicode", "english")
 
 @record
 class Text:
-    """The name that another tool gives to a formula or a state, in three notations: no formula of the language."""
+    """What another tool writes for a formula, a label or a guard, in three notations: no formula of the language."""
 
     ascii: str
     unicode: str
@@ -58,12 +58,13 @@ class State:
 class Guard:
     """The condition under which an edge is taken.
 
-    ``primes`` are all prime implicants of the guard (``((),)`` is true); ``text`` is a short
-    formula.  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
+    ``formula`` is a short formula of it; ``str(formula)`` is its ASCII notation.  In an automaton of
+    another tool, it may be text that is no formula.  ``primes`` are all prime implicants of the
+    guard (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
     ``guard or not D`` that are not contained in ``not D`` (semantics, section 3).
     """
 
-    text: str
+    formula: Formula | Text
     primes: tuple[Implicant, ...]
 
 

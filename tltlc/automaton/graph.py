@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import guard_texts
 
 if TYPE_CHECKING:
     import networkx
@@ -37,12 +38,12 @@ def to_networkx(fspa: Fspa) -> networkx.DiGraph:
             verdict=state.verdict,
             distance=state.distance,
         )
+    texts = guard_texts(fspa)
     joined: dict[tuple[int, int], list[int]] = {}
     for index, edge in enumerate(fspa.edges):
         joined.setdefault((edge.source, edge.target), []).append(index)
     for (source, target), indices in joined.items():
-        guards = [fspa.edges[index].guard for index in indices]
-        text = " | ".join(guard.text for guard in guards)
-        primes = tuple(prime for guard in guards for prime in guard.primes)
+        text = " | ".join(texts[index] for index in indices)
+        primes = tuple(prime for index in indices for prime in fspa.edges[index].guard.primes)
         graph.add_edge(source, target, guard=text, primes=primes, indices=tuple(indices))
     return graph

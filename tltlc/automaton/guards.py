@@ -1,4 +1,4 @@
-"""Guards: Boolean functions of the atoms, written as their prime implicants and as a short text.
+"""Guards: Boolean functions of the atoms, as their prime implicants and as a short formula.
 
 A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT``
 (:mod:`tltlc.automaton.transitions`).  A literal is the int ``2 * atom + polarity``; a cube is an
@@ -14,7 +14,7 @@ from tltlc.automaton.fspa import Implicant
 from tltlc.automaton.transitions import ACCEPT, IMPOSSIBLE, REJECT, TransitionDiagrams
 from tltlc.io.limits import WORK
 from tltlc.logic import formula as build
-from tltlc.logic.text.printer import operand_text
+from tltlc.logic.formula import Formula
 
 Cube = tuple[int, ...]
 
@@ -58,9 +58,8 @@ class Guards:
         "_by_leaf",
         "_covers",
         "_diagrams",
-        "_names",
+        "_literals",
         "_negations",
-        "_operands",
         "_pairs",
         "_possible_cubes",
         "_primes",
@@ -72,12 +71,10 @@ class Guards:
     def __init__(self, diagrams: TransitionDiagrams, names: Sequence[str], allowed: int = ACCEPT) -> None:
         self._diagrams = diagrams
         self._allowed = allowed
-        self._names = names
         self._total = 0
         self._products = 0
         self._remembered = 0
-        positive = [operand_text(build.atom(name)) for name in names]
-        self._operands = [text for name in positive for text in (f"!{name}", name)]
+        self._literals = [literal for name in names for literal in (build.not_(build.atom(name)), build.atom(name))]
         self._pairs = [(atom, polarity) for atom in range(len(names)) for polarity in (False, True)]
         self._by_leaf: dict[int, dict[int, int]] = {}
         self._primes = dict(_PRIMES_OF_CONSTANTS)
@@ -124,7 +121,7 @@ class Guards:
         pairs = self._pairs
         return tuple([tuple([pairs[literal] for literal in cube]) for cube in cubes])
 
-    def text(self, guard: int) -> str:
+    def formula(self, guard: int) -> Formula:
         """Return a short formula of the guard.
 
         It is an irredundant sum of products, or a product of sums if that is shorter.  On letters
@@ -139,27 +136,14 @@ class Guards:
             self._possible_cubes.clear()
             self._primes = dict(_PRIMES_OF_CONSTANTS)
             self._remembered = self._products
+        literals = self._literals
         products = self._cover(guard, self._upper(guard))
-        if len(products) == 1:
-            return self._product(products[0])
-        sums = self._negated_sums(guard)
-        if not sums or sum(map(len, sums)) >= sum(map(len, products)):
-            return " | ".join([self._joined(" & ", cube) for cube in sorted(products)])
-        disjunctions = sorted([tuple([literal ^ 1 for literal in cube]) for cube in sums])
-        if len(disjunctions) == 1:
-            return self._joined(" | ", disjunctions[0])
-        brackets = "({})".format
-        return " & ".join([(brackets if len(cube) > 1 else str)(self._joined(" | ", cube)) for cube in disjunctions])
-
-    def _product(self, cube: Cube) -> str:
-        """Return the text of a guard that is one product; a single literal needs no brackets."""
-        if len(cube) == 1 and cube[0] & 1:
-            return self._names[cube[0] >> 1]
-        return self._joined(" & ", cube) if cube else "true"
-
-    def _joined(self, symbol: str, cube: Cube) -> str:
-        operands = self._operands
-        return symbol.join([operands[literal] for literal in cube])
+        if len(products) > 1:
+            sums = self._negated_sums(guard)
+            if sums and sum(map(len, sums)) < sum(map(len, products)):
+                disjunctions = sorted([tuple([literal ^ 1 for literal in cube]) for cube in sums])
+                return build.and_(*[build.or_(*[literals[literal] for literal in cube]) for cube in disjunctions])
+        return build.or_(*[build.and_(*[literals[literal] for literal in cube]) for cube in sorted(products)])
 
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
         """Return a product of sums, each sum as the cube that it forbids; empty if there are too many."""

@@ -1,12 +1,12 @@
-"""Print the formula of an automaton and the labels of its states, in three notations."""
+"""Print the formula of an automaton, the labels of its states and the guards of its edges, in three notations."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from tltlc.automaton.fspa import Fspa, Notation, Text
+from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.text.printer import ascii_text, english_text, unicode_text
+from tltlc.logic.text.printer import ascii_text, english_text, unicode_text, words_text
 
 _LONGEST_IN_ENGLISH: Final = 2_000
 """Formulas with more characters get no English sentence: it would be too long to read."""
@@ -32,6 +32,20 @@ def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
         if label is FALSE and accepting:
             return _ENDS
     return _text(label, notation, endless=endless)
+
+
+def guard_text(guard: Guard, notation: Notation = "ascii") -> str:
+    """Return the short formula of a guard in a notation; ``english`` spells the operators as words."""
+    if isinstance(guard.formula, Formula) and notation == "english":
+        return words_text(guard.formula)
+    return _text(guard.formula, notation, endless=False)
+
+
+def guard_texts(fspa: Fspa) -> tuple[str, ...]:
+    """Return the guard of each edge in the ASCII notation.  Edges with the same guard share one text."""
+    guards = {edge.guard.formula: edge.guard for edge in fspa.edges}
+    texts = {formula: guard_text(guard) for formula, guard in guards.items()}
+    return tuple(texts[edge.guard.formula] for edge in fspa.edges)
 
 
 def _text(formula: Formula | Text, notation: Notation, *, endless: bool) -> str:

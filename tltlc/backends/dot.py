@@ -102,7 +102,7 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
         text = span(*(label_text(fspa, end.id, options.notation) for end in (run[0], run[-1])))
         _draw_state(drawn, run, text, detail != "sketch")
     drawn.edge("start", "0")
-    for (source, target), guards in arrows(fspa, drawing.edges, options.notation).items():
+    for (source, target), guards in arrows(drawing.edges, options.notation).items():
         _draw_arrow(drawn, fspa.states[source], fspa.states[target], guards, detail == "full")
     return str(drawn.source)
 

@@ -41,7 +41,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
     lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escaped(fspa.name)}"]
     lines += [_state(fspa, drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
     lines.append("    [*] --> s0")
-    for (source, target), guards in arrows(fspa, drawing.edges, options.notation).items():
+    for (source, target), guards in arrows(drawing.edges, options.notation).items():
         lines.append(f"    s{source} --> s{target}: {_lines([*(f'{guard};' for guard in guards[:-1]), guards[-1]])}")
     legend = (on_distances(drawing, "In brackets", "thick outline"), *notes(fspa, drawing))
     lines.append(f'    state "{_lines(legend)}" as legend')

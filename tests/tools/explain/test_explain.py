@@ -27,7 +27,6 @@ from tltlc.logic.oracle import all_traces, robustness_of_state
 from tltlc.monitor.guards import holds
 from tltlc.pipeline import compile_source, read_artefact
 from tltlc.tools.explain.explanation import explain
-from tltlc.tools.explain.formulas import guard_reader
 from tltlc.tools.explain.sections import SectionTable, document
 from tltlc.tools.explain.text import text
 from tltlc.tools.explain.values import values
@@ -83,14 +82,15 @@ def test_names_within_names_are_parsed() -> None:
 
 @settings(max_examples=100, deadline=None)
 @given(FORMULAS)
-def test_guards_are_read_back_from_their_texts(formula: Formula) -> None:
+def test_formulas_of_guards_are_true_where_the_guards_are(formula: Formula) -> None:
     fspa = build(spec_from_formula(formula))
-    read = guard_reader(fspa)
     names = [atom.name for atom in fspa.atoms]
-    for edge in fspa.edges:
+    for edge in decoded(fspa).edges:
+        guard = edge.guard.formula
+        assert isinstance(guard, Formula)
         for number in range(2 ** len(names)):
             truth = {name: 1.0 if number >> place & 1 else -1.0 for place, name in enumerate(names)}
-            is_true = robustness_of_state(read(edge.guard), truth) > 0
+            is_true = robustness_of_state(guard, truth) > 0
             assert is_true == holds(edge.guard, [truth[name] for name in names])
 
 

@@ -223,7 +223,7 @@ def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Tra
     for source, leaf in enumerate(order):
         for target, guard in guards.by_leaf(minimal.transitions[diagrams.value[leaf][0]]).items():
             if guard not in guard_of:
-                guard_of[guard] = Guard(guards.text(guard), guards.primes(guard))
+                guard_of[guard] = Guard(guards.formula(guard), guards.primes(guard))
             edges.append(Edge(source, number[target], guard_of[guard]))
     return tuple(sorted(edges, key=lambda edge: (edge.source, edge.target)))
 

@@ -47,7 +47,7 @@ def restored(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
     edges = []
     for edge in fspa.edges:
         if edge.guard not in restored_guards:
-            restored_guards[edge.guard] = Guard(edge.guard.text, _primes(edge.guard.primes, order))
+            restored_guards[edge.guard] = Guard(edge.guard.formula, _primes(edge.guard.primes, order))
         edges.append(Edge(edge.source, edge.target, restored_guards[edge.guard]))
     return replace(fspa, atoms=spec.atoms, exclusive=spec.exclusive, edges=tuple(edges))
 

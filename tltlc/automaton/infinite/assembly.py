@@ -83,7 +83,7 @@ def _edges(
         transition = leaves.transition(automaton.letters, automaton.steps[state], diagrams)
         for leaf, guard in guards.by_leaf(transition).items():
             if guard not in guard_of:
-                guard_of[guard] = Guard(guards.text(guard), guards.primes(guard))
+                guard_of[guard] = Guard(guards.formula(guard), guards.primes(guard))
             target, marks = leaves.values[diagrams.value[leaf][0]]
             marked_edges.append((number[state], number[target], sorted(marks), guard_of[guard]))
             if len(marked_edges) > WORK["edges"]:

@@ -6,14 +6,9 @@ import re
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
-from tltlc.automaton.fspa import Fspa, Notation
+from tltlc.automaton.fspa import Notation
+from tltlc.automaton.text import guard_text
 from tltlc.backends.drawing.folding import DrawnEdge
-
-_OPERATORS: dict[Notation, dict[str, str]] = {
-    "unicode": {"!": "¬", "&": "∧", "|": "∨", "->": "⇒", "<->": "⇔", "true": "⊤", "false": "⊥"},
-    "ascii": {},
-    "english": {"!": "not ", "&": "and", "|": "or", "->": "implies", "<->": "iff"},
-}
 
 # Controls, invisible and direction-changing characters, and halves of surrogate pairs.
 _unseen = re.compile(
@@ -30,36 +25,16 @@ _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/"
 _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
-class GuardNotation:
-    """Translates the texts of guards into a notation; the names of the automaton's atoms stay unchanged."""
-
-    def __init__(self, fspa: Fspa, notation: Notation) -> None:
-        names = sorted((atom.name for atom in fspa.atoms), key=len, reverse=True)
-        # Longer tokens come first, so that no operator matches inside a name, and `->` does not match inside `<->`.
-        tokens = [*map(re.escape, names), "<->", "->", "[!&|]", r"\b(?:true|false)\b"]
-        self._tokens = re.compile("|".join(tokens))
-        self._operators = _OPERATORS[notation]
-        self._names = frozenset(names)
-
-    def text(self, guard: str) -> str:
-        """Return the guard, which is given in the ASCII notation of artefacts."""
-        return self._tokens.sub(lambda match: self._token(match.group()), guard)
-
-    def _token(self, token: str) -> str:
-        return token if token in self._names else self._operators.get(token, token)
-
-
-def arrows(fspa: Fspa, edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
+def arrows(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
     """Return the guards of the edges between each source and target.
 
     Over infinite traces, the pairs that name an edge follow its guard: ``a & b [fin 0] [inf 1]``.
     Several edges that differ in their pairs share one arrow.
     """
-    guards = GuardNotation(fspa, notation)
     guards_of_arrow: dict[tuple[int, int], list[str]] = {}
     for edge in edges:
         marks = (f"[{kind} {pair}]" for pair, kind in edge.label.marks)
-        text = " ".join([guards.text(edge.label.guard.text), *marks])
+        text = " ".join([guard_text(edge.label.guard, notation), *marks])
         guards_of_arrow.setdefault((edge.source, edge.target), []).append(text)
     return guards_of_arrow
 

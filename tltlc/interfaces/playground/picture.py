@@ -55,8 +55,8 @@ class _Picture:
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
         self.fspa, self.drawing = fspa, drawing
         self.trap = _trap(drawing)
-        self.guards = arrows(fspa, drawing.edges, notation)
-        self.titles = arrows(fspa, drawing.edges, "english")
+        self.guards = arrows(drawing.edges, notation)
+        self.titles = arrows(drawing.edges, "english")
         self.lines = {ends: self._lines(ends) for ends in self.guards}
         self.runs = {state.id: drawing.folded.get(state.id, (state,)) for state in drawing.states}
         self.labels = {state: _label_lines(fspa, run, notation) for state, run in self.runs.items()}

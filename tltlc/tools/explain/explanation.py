@@ -7,15 +7,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
 from tltlc.automaton.text import formula_text, label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import folded
 from tltlc.core.record import record
-from tltlc.logic.formula import TRUE, Formula, rebuild
+from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, or_, rebuild
 from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
-from tltlc.tools.explain.formulas import guard_reader, literals
 from tltlc.tools.explain.judgement import ending
 from tltlc.tools.explain.next_steps import leading_on
 from tltlc.tools.witness.traces import Witness, accepting, rejecting
@@ -152,10 +151,19 @@ def _outline(formula: Formula, *, endless: bool) -> Outline:
 
 def _guards(fspa: Fspa) -> tuple[Formula, ...]:
     """Return the guard of each edge as a formula."""
-    read = guard_reader(fspa)
-    by_text = {edge.guard.text: edge.guard for edge in fspa.edges}
-    formulas = {text: read(guard) for text, guard in by_text.items()}
-    return tuple(formulas[edge.guard.text] for edge in fspa.edges)
+    return tuple(_formula(fspa, edge.guard) for edge in fspa.edges)
+
+
+def _formula(fspa: Fspa, guard: Guard) -> Formula:
+    if isinstance(guard.formula, Text):
+        return or_(*(_literals(fspa, prime) for prime in guard.primes))
+    return guard.formula
+
+
+def _literals(fspa: Fspa, implicant: Implicant) -> Formula:
+    """Return the conjunction of literals; ``true`` if there are none."""
+    named = [(atom(fspa.atoms[index].name), holds) for index, holds in implicant]
+    return and_(*(literal if holds else not_(literal) for literal, holds in named))
 
 
 def _words(state: Formula) -> str:
@@ -215,7 +223,7 @@ def _way(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
     steps: list[WayStep] = []
     cycle: int | None = None
     for index, move in enumerate(witness.moves):
-        condition, state = _words(literals(fspa, move.prime)), fspa.edges[move.edge].target
+        condition, state = _words(_literals(fspa, move.prime)), fspa.edges[move.edge].target
         if index == witness.cycle:
             cycle = len(steps)
         elif steps and steps[-1].what == condition:
