@@ -9,8 +9,10 @@
 >>> [str(state.label) for state in fspa.states]
 ['F exit_reached & G(health > 0)', 'G(health > 0)', 'false']
 
-Importing this package loads nothing else. Each public name below is loaded on first use.
+Importing this package loads nothing else of it. Each public name below is loaded on first use.
 """
+
+from tltlc.core.moved_modules import keep_old_names
 
 # Type checkers treat this as true. Importing it from `typing` would add some milliseconds to each start.
 TYPE_CHECKING = False
@@ -57,6 +59,16 @@ _HOMES = {
     "load_hoa": "tltlc.tools.hoa.load",
     "to_networkx": "tltlc.automaton.graph",
 }
+
+keep_old_names(
+    {
+        "tltlc.comparison": "tltlc.automaton.compare",
+        "tltlc.fmt": "tltlc.tools.fmt",
+        "tltlc.playground": "tltlc.interfaces.playground",
+        "tltlc.rabin": "tltlc.automaton.infinite",
+        "tltlc.rabin.work": "tltlc.automaton.work",
+    }
+)
 
 
 def __getattr__(name: str) -> object:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tltlc.api import keep_old_names
+
 if TYPE_CHECKING:
     from tltl_runtime.spec.task import Task as Task
     from tltl_runtime.spec.task import load_task as load_task
@@ -21,6 +23,16 @@ _HOMES = {
     "TltlEnv": "tltl_runtime.spec.wrapper",
     "load_task": "tltl_runtime.spec.task",
 }
+
+keep_old_names(
+    {
+        "tltl_runtime.batch": "tltl_runtime.spec.batch",
+        "tltl_runtime.stealth.episodes": "tltl_runtime.stealth.recordings",
+        "tltl_runtime.stealth.episodes.cause": "tltl_runtime.stealth.recordings.cause",
+        "tltl_runtime.stealth.episodes.file": "tltl_runtime.stealth.recordings.file",
+        "tltl_runtime.training.gail": "tltl_runtime.training.imitation.gail",
+    }
+)
 
 
 def __getattr__(name: str) -> object:

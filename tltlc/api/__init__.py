@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import State as State
     from tltlc.automaton.text import formula_text as formula_text
     from tltlc.automaton.text import label_text as label_text
+    from tltlc.core.moved_modules import keep_old_names as keep_old_names
     from tltlc.core.record import EMPTY as EMPTY
     from tltlc.core.record import MissingFieldsError as MissingFieldsError
     from tltlc.core.record import record as record
@@ -72,6 +73,7 @@ _HOMES = {
     "Step": "tltlc.monitor",
     "TltlError": "tltlc.diagnostics.diagnostic",
     "formula_text": "tltlc.automaton.text",
+    "keep_old_names": "tltlc.core.moved_modules",
     "label_text": "tltlc.automaton.text",
     "record": "tltlc.core.record",
     "replace": "tltlc.core.record",
@@ -103,6 +105,7 @@ __all__ = [
     "expressions",
     "fileio",
     "formula_text",
+    "keep_old_names",
     "label_text",
     "monitors",
     "ranges",
