@@ -60,7 +60,7 @@ tests: $(VENV)/.installed-dev
 N      ?= 10
 BUSY   ?= 6
 test-again: $(VENV)/.installed-dev
-	$(BIN)/python -m tests.again $(N) $(BUSY) $(ARGS)
+	$(BIN)/python -m tests.repeated_runs $(N) $(BUSY) $(ARGS)
 
 # Trainings that are killed and go on, the shipped suite, large formulas: some minutes more.
 test-slow: $(VENV)/.installed-dev

@@ -150,7 +150,7 @@ def way_digest(episode: Episode) -> str:
 
 def judged(suite: Suite, case: Case) -> Record:
     """The verdict of ``tltlc regress`` on a case, and what it rests upon."""
-    from tltl_runtime.regression.verdict.run import regress
+    from tltl_runtime.regression.verdict.suite_run import regress
 
     reference = _reference(suite, case)
     (done,) = regress(suite, [case], (reference,), suite.path.parent / "run", 1, lambda *_: None)

@@ -17,7 +17,7 @@ from unittest.mock import patch
 
 from benchmarks.markdown import table
 from benchmarks.store import ROOT
-from tests.resolve import test_predicate_check as inline_tests
+from tests.resolve import test_range_proof as inline_tests
 from tltlc.core.record import record
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import ArithmeticOp, Condition, Const, Expression, Op, SignalValue, When
@@ -25,10 +25,10 @@ from tltlc.grammar.parser import parse
 from tltlc.io.files import read_source
 from tltlc.resolve import range_proof, spec
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolution
 from tltlc.resolve.range_proof import check, continuity, elimination, exact, jumps, proof, witness
 from tltlc.resolve.range_proof.proof import holds_at_once
 from tltlc.resolve.range_proof.region import ConstrainedBox
+from tltlc.resolve.resolution import resolution
 
 FOLDERS: Final = {"standard library": "stdlib_predicates", "examples": "examples", "tests": "tests"}
 SEED: Final = 1

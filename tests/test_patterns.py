@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from lark import Lark
 
-from tests.soon import soon
+from tests.time_limit import run_with_time_limit
 from tltlc.grammar.lexer import _pattern as lexer_pattern
 
 _ROOT = Path(__file__).resolve().parents[1]
@@ -60,7 +60,7 @@ def _value(node: ast.AST | None, known: dict[str, object]) -> object:
 
 
 def _match_soon(patterns: list[tuple[str, int]], times: int) -> None:
-    soon(
+    run_with_time_limit(
         "import re\n"
         "from tests.hostile_texts import hostile_texts\n"
         f"for pattern, flags in {patterns!r}:\n"

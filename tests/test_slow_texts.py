@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.soon import soon
+from tests.time_limit import run_with_time_limit
 
 
 @pytest.mark.parametrize(
@@ -29,4 +29,4 @@ from tests.soon import soon
     ids=["blank lines", "unknown keys", "digits", "blanks", "quotes", "quotes and a backslash"],
 )
 def test_slow_texts_are_processed_quickly(code: str) -> None:
-    soon(code)
+    run_with_time_limit(code)

@@ -18,7 +18,7 @@ from tltlc.core.moved_modules import keep_old_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa as Fspa
-    from tltlc.automaton.graph import to_networkx as to_networkx
+    from tltlc.automaton.networkx_graph import to_networkx as to_networkx
     from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
     from tltlc.diagnostics.diagnostic import TltlError as TltlError
     from tltlc.logic.formula import Formula as Formula
@@ -57,7 +57,7 @@ _HOMES = {
     "compile_text": "tltlc.pipeline",
     "load": "tltlc.pipeline",
     "load_hoa": "tltlc.tools.hoa.load",
-    "to_networkx": "tltlc.automaton.graph",
+    "to_networkx": "tltlc.automaton.networkx_graph",
 }
 
 keep_old_names(

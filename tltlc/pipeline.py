@@ -20,7 +20,7 @@ from tltlc.grammar.parser import parse
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.io.resources import bounded
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import Resolution, resolution
+from tltlc.resolve.resolution import Resolution, resolution
 
 if TYPE_CHECKING:
     import os

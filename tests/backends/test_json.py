@@ -15,7 +15,7 @@ from tltlc import backends
 from tltlc.artefact import size as sizes
 from tltlc.artefact.decode import read
 from tltlc.artefact.encode import encode
-from tltlc.artefact.layout import WIDTH, layout
+from tltlc.artefact.json_layout import WIDTH, layout
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

@@ -35,7 +35,7 @@ from tests.grammar.test_english import (
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.parser import parse
-from tltlc.resolve.program import resolve
+from tltlc.resolve.resolution import resolve
 from tltlc.tools.lint.fixes import of_errors
 from tltlc.tools.lint.scopes import after
 

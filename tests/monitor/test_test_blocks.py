@@ -5,7 +5,7 @@ import pytest
 from tests.calls import calls
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.monitor.tests import run_tests
+from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import compile_source
 
 SPEC = """

@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.expression.evaluate import evaluate
 from tltlc.grammar.parser import parse
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
+from tltlc.resolve.resolution import resolve
 from tltlc.resolve.spec import ResolvedFile, Spec
 
 

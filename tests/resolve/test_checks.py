@@ -13,8 +13,8 @@ from tltlc.grammar.parser import parse
 from tltlc.io.limits import WORK
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
 from tltlc.resolve.range_proof import work
+from tltlc.resolve.resolution import resolve
 
 
 def test_a_wrong_range_is_an_error_with_a_witness() -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.calls import calls
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
-from tltlc.resolve.program import resolve
+from tltlc.resolve.resolution import resolve
 
 ROOT = Path(__file__).parents[2]
 TEXTS = [

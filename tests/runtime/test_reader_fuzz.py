@@ -39,11 +39,11 @@ from tltl_runtime.stealth.recordings.summary import judged_with, trace_csv
 from tltl_runtime.stealth.recordings.summary import summary as episode_summary
 from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
 from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.ppo.windows import Windows
+from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics, truncate
 from tltl_runtime.training.run.record import ended_as, record_so_far, recorded_end
-from tltl_runtime.training.run.run import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
+from tltl_runtime.training.run.run_file import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
 from tltl_runtime.training.run.settings import read_settings
 
 FOLDER: Final = ROOT / "runtime" / "tltl_runtime"
@@ -350,7 +350,7 @@ def _read_checkpoint(path: Path) -> None:
         assert checkpoint is not None
         assert isinstance(checkpoint.weights, dict)
         checkpoint.reason(run.settings.stop)
-        windows = Windows(2, 4, 100)
+        windows = RecentEpisodes(2, 4, 100)
         windows.load(checkpoint.window, checkpoint.unbroken)
         assert windows.window.count <= 8
         _summarize_training(record_so_far(path.parent))

@@ -17,14 +17,14 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.monitor.samples import range_text
-from tltlc.program import judge, pieces, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.names import visible
 from tltlc.program.printer import Printer
 from tltlc.program.template import filled
 from tltlc.program.tree import FAILING, Assign, Int
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 from tltlc.resolve.spec import Atom, Param, Signal
 
 TARGET = Target(
@@ -166,7 +166,7 @@ class _Source:
             step = _C.block(self._step())
         places = {
             "p": self._prefix,
-            "title": pieces.title(fspa, self._printer.comment),
+            "title": snippets.title(fspa, self._printer.comment),
             "file": self._file,
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),
@@ -184,7 +184,8 @@ class _Source:
                 or ["sample.none = false;"]
             ),
             "param_defaults": _C.block(
-                [f"params.{name} = {pieces.number(param.value)};" for param, name in params] or ["params.none = false;"]
+                [f"params.{name} = {snippets.number(param.value)};" for param, name in params]
+                or ["params.none = false;"]
             ),
             "param_checks": _C.block([line for index in range(len(params)) for line in self._param_check(index)]),
             "param_names": _list([_string(param.name) for param in fspa.params], '""'),
@@ -216,7 +217,7 @@ class _Source:
         """Return the fields of a struct, each with its comment; C requires at least one field."""
         lines: list[str] = []
         for name, type_, declared in fields:
-            remarks = self._printer.comment(pieces.described(name, declared))
+            remarks = self._printer.comment(snippets.described(name, declared))
             field = f"{type_} {name};"
             # A short comment goes on the line of its field.
             if len(remarks) == 1 and len(field) + len(remarks[0]) < 100:
@@ -228,8 +229,8 @@ class _Source:
     def _param_check(self, index: int) -> list[str]:
         param, name = self._fspa.params[index], f"params->{self._program.params[index]}"
         tests = [f"isfinite({name})"]
-        tests += [] if param.low is None else [f"{name} >= {pieces.number(param.low)}"]
-        tests += [] if param.high is None else [f"{name} <= {pieces.number(param.high)}"]
+        tests += [] if param.low is None else [f"{name} >= {snippets.number(param.low)}"]
+        tests += [] if param.high is None else [f"{name} <= {snippets.number(param.high)}"]
         lines = self._refused(f"{self._prefix}_wrong_param", index)
         # The message shows the value.
         lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
@@ -245,7 +246,11 @@ class _Source:
     def _states(self) -> list[str]:
         lines: list[str] = []
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
-            values = (f"{self._prefix}_{state.verdict}", pieces.boolean(state.accepting), pieces.boolean(ends))
+            values = (
+                f"{self._prefix}_{state.verdict}",
+                snippets.boolean(state.accepting),
+                snippets.boolean(ends),
+            )
             lines.append(f"{_INDENT * 2}{{{', '.join(values)}}},")
         return lines
 
@@ -266,7 +271,7 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
@@ -291,7 +296,7 @@ class _Source:
         tests = self._range_tests([(signal, name) for _, signal, name in numbers])
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
         for index, signal, name in numbers:
-            low, high = pieces.number(signal.low, "-HUGE_VAL"), pieces.number(signal.high, "HUGE_VAL")
+            low, high = snippets.number(signal.low, "-HUGE_VAL"), snippets.number(signal.high, "HUGE_VAL")
             lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {index}, {low}, {high}, {name});")
             lines.append(f"{_INDENT}if (monitor->problem) return false;")
         return [*lines, "}"]
@@ -309,15 +314,15 @@ class _Source:
         for signal, name in numbers:
             low, high = signal.low, signal.high
             if low is not None and high is not None:
-                bounded += [f"{name} >= {pieces.number(low)}", f"{name} <= {pieces.number(high)}"]
+                bounded += [f"{name} >= {snippets.number(low)}", f"{name} <= {snippets.number(high)}"]
                 continue
             summed.append(name)
             if low is not None:
                 least.setdefault(low, []).append(name)
             if high is not None:
                 greatest.setdefault(high, []).append(name)
-        tests = [f"{self._fold('min', names)} >= {pieces.number(low)}" for low, names in least.items()]
-        tests += [f"{self._fold('max', names)} <= {pieces.number(high)}" for high, names in greatest.items()]
+        tests = [f"{self._fold('min', names)} >= {snippets.number(low)}" for low, names in least.items()]
+        tests += [f"{self._fold('max', names)} <= {snippets.number(high)}" for high, names in greatest.items()]
         tests += [f"isfinite({' + '.join(summed)})"] if summed else []
         return tests + bounded
 
@@ -376,13 +381,13 @@ class _Source:
         """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
         ends, verdict = f"states[{states.TARGET}].ends", f"states[{states.TARGET}].verdict"
-        lines = [f"double {judge.BEST} = monitor->progress;", f"bool {judge.DONE} = monitor->done;"]
-        lines.append(f"double {judge.REWARD};")
+        lines = [f"double {reward_step.BEST} = monitor->progress;", f"bool {reward_step.DONE} = monitor->done;"]
+        lines.append(f"double {reward_step.REWARD};")
         declarations = {
-            judge.STEPS_REAL: f"double {judge.STEPS_REAL} = (double){judge.STEPS};",
-            judge.ENDS: f"bool {judge.ENDS} = {ends};",
-            judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == {self._prefix}_violated;",
-            judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == {self._prefix}_satisfied;",
+            reward_step.STEPS_REAL: f"double {reward_step.STEPS_REAL} = (double){reward_step.STEPS};",
+            reward_step.ENDS: f"bool {reward_step.ENDS} = {ends};",
+            reward_step.VIOLATED: f"bool {reward_step.VIOLATED} = {verdict} == {self._prefix}_violated;",
+            reward_step.SATISFIED: f"bool {reward_step.SATISFIED} = {verdict} == {self._prefix}_satisfied;",
         }
         lines += [f"const {line}" for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
@@ -402,7 +407,7 @@ def _bytes(text: str) -> bytes:
 
 def _string(text: str) -> str:
     """Return a string literal in ASCII. Question marks are escaped, since two of them begin a trigraph."""
-    return pieces.quoted(text, _octal, pieces.in_ascii).replace("?", "\\?")
+    return snippets.quoted(text, _octal, snippets.in_ascii).replace("?", "\\?")
 
 
 def _octal(character: str) -> str:

@@ -13,13 +13,13 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.monitor.samples import range_text
-from tltlc.program import judge, pieces, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, remark
 from tltlc.program.template import filled
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, Statement, Variable
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
@@ -118,7 +118,7 @@ class _Source:
             step = _CSharp.block(self._step(), 3)
         places = {
             "p": fspa.name,
-            "title": pieces.title(fspa, self._printer.comment),
+            "title": snippets.title(fspa, self._printer.comment),
             "file": self._file,
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
@@ -130,7 +130,7 @@ class _Source:
                 [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
             ),
             "param_defaults": _CSharp.block(
-                [f"own.{name} = {pieces.number(param.value)};" for param, name in params], 5
+                [f"own.{name} = {snippets.number(param.value)};" for param, name in params], 5
             ),
             "param_checks": _CSharp.block([line for param, name in params for line in _param_check(param, name)], 3),
             "states": _CSharp.block(self._states(), 3),
@@ -142,7 +142,11 @@ class _Source:
     def _states(self) -> list[str]:
         lines: list[str] = []
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
-            values = (f"Verdict.{state.verdict.capitalize()}", pieces.boolean(state.accepting), pieces.boolean(ends))
+            values = (
+                f"Verdict.{state.verdict.capitalize()}",
+                snippets.boolean(state.accepting),
+                snippets.boolean(ends),
+            )
             lines.append(f"new Place({_string(str(state.label))}, {', '.join(values)}),")
         return lines
 
@@ -164,7 +168,7 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
@@ -174,8 +178,8 @@ class _Source:
             if signal.type == "bool":
                 continue
             low, high = (
-                pieces.number(signal.low, "double.NegativeInfinity"),
-                pieces.number(signal.high, "double.PositiveInfinity"),
+                snippets.number(signal.low, "double.NegativeInfinity"),
+                snippets.number(signal.high, "double.PositiveInfinity"),
             )
             # A missing bound becomes a strict comparison with infinity, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
@@ -245,12 +249,16 @@ class _Source:
         used = read(self._program.judged)
         verdict = "entered.Verdict"
         lines = [f"Place entered = States[{states.TARGET}];"]
-        lines += [f"double {judge.BEST} = _progress;", f"bool {judge.DONE} = _done;", f"double {judge.REWARD};"]
+        lines += [
+            f"double {reward_step.BEST} = _progress;",
+            f"bool {reward_step.DONE} = _done;",
+            f"double {reward_step.REWARD};",
+        ]
         declarations = {
-            judge.STEPS_REAL: f"double {judge.STEPS_REAL} = {judge.STEPS};",
-            judge.ENDS: f"bool {judge.ENDS} = entered.Ends;",
-            judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == Verdict.Violated;",
-            judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == Verdict.Satisfied;",
+            reward_step.STEPS_REAL: f"double {reward_step.STEPS_REAL} = {reward_step.STEPS};",
+            reward_step.ENDS: f"bool {reward_step.ENDS} = entered.Ends;",
+            reward_step.VIOLATED: f"bool {reward_step.VIOLATED} = {verdict} == Verdict.Violated;",
+            reward_step.SATISFIED: f"bool {reward_step.SATISFIED} = {verdict} == Verdict.Satisfied;",
         }
         lines += [line for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
@@ -278,7 +286,7 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a record, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        remarks = [_in_xml(line) for line in remark(pieces.described(name, declared))]
+        remarks = [_in_xml(line) for line in remark(snippets.described(name, declared))]
         if len(remarks) == 1:
             lines.append(f"/// <summary>{remarks[0]}</summary>")
         else:
@@ -294,8 +302,8 @@ def _in_xml(text: str) -> str:
 
 def _param_check(param: Param, name: str) -> list[str]:
     tests = [f"IsFinite(given.{name})"]
-    tests += [] if param.low is None else [f"given.{name} >= {pieces.number(param.low)}"]
-    tests += [] if param.high is None else [f"given.{name} <= {pieces.number(param.high)}"]
+    tests += [] if param.low is None else [f"given.{name} >= {snippets.number(param.low)}"]
+    tests += [] if param.high is None else [f"given.{name} <= {snippets.number(param.high)}"]
     parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
     message = f" + Shown(given.{name}) + ".join(map(_string, parts))
     return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]
@@ -303,7 +311,7 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 def _string(text: str) -> str:
     """Return a string literal in ASCII."""
-    return pieces.quoted(text, _escape, pieces.in_ascii)
+    return snippets.quoted(text, _escape, snippets.in_ascii)
 
 
 def _escape(character: str) -> str:

@@ -21,6 +21,7 @@ from tltlc.automaton.infinite.mark_conditions import pair_marks
 from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import visible
+from tltlc.logic.formula import FALSE, TRUE
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
@@ -131,8 +132,8 @@ class _Labels:
             for atom, polarity in sorted(prime, reverse=True):
                 cube = diagrams.node(atom, REJECT, cube) if polarity else diagrams.node(atom, cube, REJECT)
             function = diagrams.disjoin(function, cube)
-        text = self._guards.text(diagrams.conjoin(function, self._allowed))
-        return {"": "f", "true": "t"}.get(text, text)
+        formula = self._guards.formula(diagrams.conjoin(function, self._allowed))
+        return {TRUE: "t", FALSE: "f"}.get(formula) or str(formula)
 
 
 def _product(prime: Implicant) -> str:

@@ -14,14 +14,14 @@ from itertools import combinations
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.program import judge, pieces, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, remark
 from tltlc.program.shallow import shallow
 from tltlc.program.template import filled
 from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, Int
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
@@ -80,7 +80,7 @@ class _JavaScript(Printer):
 
     def name(self, name: str) -> str:
         """Return a variable; integers and reals are the same type here."""
-        return judge.STEPS if name == judge.STEPS_REAL else name
+        return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
     def real(self, value: float) -> str:
         """Return a number; whole numbers have no decimal point."""
@@ -127,12 +127,12 @@ class _Source:
         present += ["clamp"] if fspa.signals or "range" in present else []
         present += ["params"] if program_.used & {*program_.params} else []
         places = {
-            "title": pieces.title(fspa, self._printer.comment),
+            "title": snippets.title(fspa, self._printer.comment),
             "file": self._module,
             "declarations": self._declarations,
-            "example": pieces.example(fspa.signals, _key, ": "),
+            "example": snippets.example(fspa.signals, _key, ": "),
             "signals": _list(
-                [_row(signal, f"isBool: {pieces.boolean(signal.type == 'bool')}") for signal in fspa.signals]
+                [_row(signal, f"isBool: {snippets.boolean(signal.type == 'bool')}") for signal in fspa.signals]
             ),
             "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
@@ -151,11 +151,11 @@ class _Source:
             (
                 signal.name,
                 "boolean | 0 | 1" if signal.type == "bool" else "number",
-                pieces.described(signal.name, signal),
+                snippets.described(signal.name, signal),
             )
             for signal in fspa.signals
         ]
-        params = [(param.name, "number", pieces.described(param.name, param)) for param in fspa.params]
+        params = [(param.name, "number", snippets.described(param.name, param)) for param in fspa.params]
         title = f"// Types of {self._module}, written by tltlc."
         places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
@@ -163,15 +163,15 @@ class _Source:
 
     def _states(self) -> list[str]:
         rows: list[str] = []
-        for state, ends in zip(self._fspa.states, map(pieces.boolean, self._program.ends), strict=True):
-            values = f'verdict: "{state.verdict}", accepting: {pieces.boolean(state.accepting)}, ends: {ends}'
+        for state, ends in zip(self._fspa.states, map(snippets.boolean, self._program.ends), strict=True):
+            values = f'verdict: "{state.verdict}", accepting: {snippets.boolean(state.accepting)}, ends: {ends}'
             rows.append(f"{{ label: {_string(str(state.label))}, {values} }}")
         return rows
 
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
@@ -249,12 +249,12 @@ class _Source:
     def _judge(self) -> list[str]:
         """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
-        lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {judge.BEST} = this.progress;"]
-        lines += [f"let {judge.DONE} = this.done;", f"let {judge.REWARD};"]
+        lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {reward_step.BEST} = this.progress;"]
+        lines += [f"let {reward_step.DONE} = this.done;", f"let {reward_step.REWARD};"]
         definitions = {
-            judge.ENDS: f"{_ENTERED}.ends",
-            judge.VIOLATED: f'{_ENTERED}.verdict === "violated"',
-            judge.SATISFIED: f'{_ENTERED}.verdict === "satisfied"',
+            reward_step.ENDS: f"{_ENTERED}.ends",
+            reward_step.VIOLATED: f'{_ENTERED}.verdict === "violated"',
+            reward_step.SATISFIED: f'{_ENTERED}.verdict === "satisfied"',
         }
         lines += [f"const {name} = {value};" for name, value in definitions.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
@@ -287,7 +287,7 @@ def _number(value: float) -> str:
 
 
 def _string(text: str) -> str:
-    return pieces.quoted(text, _escape)
+    return snippets.quoted(text, _escape)
 
 
 def _escape(character: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.artefact.encode import encode
-from tltlc.artefact.layout import layout
+from tltlc.artefact.json_layout import layout
 from tltlc.artefact.size import check_size, least_size
 from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa

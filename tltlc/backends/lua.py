@@ -15,7 +15,7 @@ from typing import ClassVar, Final
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.program import judge, pieces, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.names import visible
@@ -23,7 +23,7 @@ from tltlc.program.printer import Printer
 from tltlc.program.shallow import shallow
 from tltlc.program.template import filled
 from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, If, Int, Statement
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
@@ -81,7 +81,7 @@ class _Lua(Printer):
 
     def name(self, name: str) -> str:
         """Return a variable; integers and reals are the same type here."""
-        return judge.STEPS if name == judge.STEPS_REAL else self._fields.get(name, name)
+        return reward_step.STEPS if name == reward_step.STEPS_REAL else self._fields.get(name, name)
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
         """Return the lines of statements; a field without a value needs no declaration."""
@@ -173,25 +173,25 @@ class _Source:
         present += ["exclusive"] if program_.exclusive else []
         places = {
             "p": fspa.name,
-            "title": pieces.title(fspa, self._printer.comment),
+            "title": snippets.title(fspa, self._printer.comment),
             "file": self._file,
             "module": self._file.removesuffix(".lua"),
-            "example": pieces.example(fspa.signals, _key, " = "),
+            "example": snippets.example(fspa.signals, _key, " = "),
             "signal_fields": "\n".join(
                 _field(
                     signal.name,
                     "boolean | 0 | 1" if signal.type == "bool" else "number",
-                    pieces.described(signal.name, signal),
+                    snippets.described(signal.name, signal),
                 )
                 for signal in fspa.signals
             ),
             "param_fields": "\n".join(
-                _field(param.name, "number?", pieces.described(param.name, param)) for param in fspa.params
+                _field(param.name, "number?", snippets.described(param.name, param)) for param in fspa.params
             ),
             "signals": _list(
-                [_row(signal, f"is_bool = {pieces.boolean(signal.type == 'bool')}") for signal in fspa.signals]
+                [_row(signal, f"is_bool = {snippets.boolean(signal.type == 'bool')}") for signal in fspa.signals]
             ),
-            "params": _list([_row(param, f"value = {pieces.number(param.value)}") for param in fspa.params]),
+            "params": _list([_row(param, f"value = {snippets.number(param.value)}") for param in fspa.params]),
             "exclusive": _list(
                 [f"{{ {', '.join(_string(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
             ),
@@ -205,8 +205,8 @@ class _Source:
 
     def _states(self) -> list[str]:
         rows: list[str] = []
-        for state, ends in zip(self._fspa.states, map(pieces.boolean, self._program.ends), strict=True):
-            values = f'verdict = "{state.verdict}", accepting = {pieces.boolean(state.accepting)}, ends = {ends}'
+        for state, ends in zip(self._fspa.states, map(snippets.boolean, self._program.ends), strict=True):
+            values = f'verdict = "{state.verdict}", accepting = {snippets.boolean(state.accepting)}, ends = {ends}'
             rows.append(f"[{state.id}] = {{ label = {_string(str(state.label))}, {values} }},")
         return rows
 
@@ -257,7 +257,7 @@ class _Source:
 
     def _step(self) -> list[str]:
         parts = [self._tables(), self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return pieces.paragraphs(*parts)
+        return snippets.paragraphs(*parts)
 
     def _tables(self) -> list[str]:
         """Return the declaration of ``problem``, and of the tables whose fields are variables."""
@@ -341,14 +341,15 @@ class _Source:
         """Return code for progress, reward and the end of the episode."""
         used = read(self._program.judged)
         definitions = {
-            judge.ENDS: "entered.ends",
-            judge.VIOLATED: 'entered.verdict == "violated"',
-            judge.SATISFIED: 'entered.verdict == "satisfied"',
+            reward_step.ENDS: "entered.ends",
+            reward_step.VIOLATED: 'entered.verdict == "violated"',
+            reward_step.SATISFIED: 'entered.verdict == "satisfied"',
         }
+        kept = (reward_step.STEPS, reward_step.BEST, reward_step.DONE)
         return [
             f"local entered = STATES[{states.TARGET}]",
-            f"local {judge.STEPS}, {judge.BEST}, {judge.DONE} = self.steps + 1, self.progress, self.done",
-            f"local {judge.REWARD}",
+            f"local {', '.join(kept)} = self.steps + 1, self.progress, self.done",
+            f"local {reward_step.REWARD}",
             *(f"local {name} = {value}" for name, value in definitions.items() if name in used),
             *_Lua({}, self._names).lines(self._program.judged),
         ]
@@ -401,13 +402,13 @@ def _accepted_first(signal: Signal, variable: str) -> list[str]:
 
 
 def _row(field: Signal | Param, entries: str) -> str:
-    low, high = pieces.number(field.low, "-huge"), pieces.number(field.high, "huge")
+    low, high = snippets.number(field.low, "-huge"), snippets.number(field.high, "huge")
     return f"{{ name = {_string(field.name)}, {entries}, low = {low}, high = {high} }}"
 
 
 def _string(text: str) -> str:
     """Return a string literal; characters that do not print are escaped byte by byte."""
-    return pieces.quoted(text, _escape)
+    return snippets.quoted(text, _escape)
 
 
 def _escape(character: str) -> str:

@@ -17,7 +17,7 @@ from typing import ClassVar, Final
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.program import judge, states
+from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.names import call, in_docstring, literal, number
@@ -37,7 +37,7 @@ from tltlc.program.tree import (
     Statement,
     Type,
 )
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 from tltlc.resolve.spec import Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
@@ -88,7 +88,7 @@ class _Python(Printer):
 
     def name(self, name: str) -> str:
         """Return the name of a variable; an int also counts as a real number."""
-        return judge.STEPS if name == judge.STEPS_REAL else name
+        return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
     def assignment(self, statement: Assign) -> str:
         """Return an assignment; the limiting atom is a name or None."""
@@ -277,20 +277,20 @@ class _Source:
         """Return code for reward, best progress and the end of the episode."""
         used = read(self._program.judged)
         definitions = {
-            judge.VIOLATED: 'verdict == "violated"',
-            judge.SATISFIED: 'verdict == "satisfied"',
+            reward_step.VIOLATED: 'verdict == "violated"',
+            reward_step.SATISFIED: 'verdict == "satisfied"',
         }
         return [
-            f"label, verdict, accepting, {judge.ENDS} = _STATES[{states.TARGET}]",
-            f"{judge.STEPS} = self.steps + 1",
+            f"label, verdict, accepting, {reward_step.ENDS} = _STATES[{states.TARGET}]",
+            f"{reward_step.STEPS} = self.steps + 1",
             *(f"{name} = {value}" for name, value in definitions.items() if name in used),
-            f"{judge.BEST} = self.progress",
-            f"{judge.DONE} = self.done",
+            f"{reward_step.BEST} = self.progress",
+            f"{reward_step.DONE} = self.done",
             *self._printer.lines(self._program.judged),
             f"self.state = {states.TARGET}",
-            f"self.steps = {judge.STEPS}",
-            f"self.progress = {judge.BEST}",
-            f"self.done = {judge.DONE}",
+            f"self.steps = {reward_step.STEPS}",
+            f"self.progress = {reward_step.BEST}",
+            f"self.done = {reward_step.DONE}",
             "# Adding 0 turns -0 into 0.",
             "values = (target, label, verdict, accepting, done, best, reward, robustness + 0.0, limiting)",
             "return tuple.__new__(Step, values)",

@@ -14,13 +14,13 @@ from typing import ClassVar
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.program import judge, pieces, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, remark
 from tltlc.program.template import filled
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, Declare, Type, Variable
-from tltlc.program.uses import read
+from tltlc.program.used_names import read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bevy", "rs"))
@@ -124,7 +124,7 @@ class _Source:
             "signal_defaults": _Rust.block(
                 [f"{name}: {'false' if signal.type == 'bool' else 'f64::NAN'}," for signal, name in signals], 3
             ),
-            "param_defaults": _Rust.block([f"{name}: {pieces.number(param.value)}," for param, name in params], 3),
+            "param_defaults": _Rust.block([f"{name}: {snippets.number(param.value)}," for param, name in params], 3),
             "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
             "states": _Rust.block(self._states(), 1),
             "sample": "sample" if program_.reads_sample else "_",
@@ -155,7 +155,11 @@ class _Source:
     def _states(self) -> list[str]:
         lines: list[str] = []
         for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
-            values = (f"Verdict::{state.verdict.capitalize()}", pieces.boolean(state.accepting), pieces.boolean(ends))
+            values = (
+                f"Verdict::{state.verdict.capitalize()}",
+                snippets.boolean(state.accepting),
+                snippets.boolean(ends),
+            )
             lines.append(f"place({_string(str(state.label))}, {', '.join(values)}),")
         return lines
 
@@ -174,7 +178,7 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
@@ -183,7 +187,10 @@ class _Source:
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 continue
-            low, high = pieces.number(signal.low, "f64::NEG_INFINITY"), pieces.number(signal.high, "f64::INFINITY")
+            low, high = (
+                snippets.number(signal.low, "f64::NEG_INFINITY"),
+                snippets.number(signal.high, "f64::INFINITY"),
+            )
             head = f"let {name} = " if name in used else ""
             lines.append(f"{head}self.read({index}, sample.{name}, {low}, {high})?;")
         lines += self._bools(None)
@@ -247,14 +254,14 @@ class _Source:
         used = read(self._program.judged)
         verdict = "entered.verdict"
         lines = [f"let entered = &STATES[{states.TARGET}];"]
-        lines += [f"let mut {judge.BEST} = self.progress;", f"let mut {judge.DONE} = self.done;"]
+        lines += [f"let mut {reward_step.BEST} = self.progress;", f"let mut {reward_step.DONE} = self.done;"]
         # The reward is mutable where penalties are subtracted from it.
-        lines.append(f"let {'' if self._fspa.limit_steps is None else 'mut '}{judge.REWARD};")
+        lines.append(f"let {'' if self._fspa.limit_steps is None else 'mut '}{reward_step.REWARD};")
         declarations = {
-            judge.STEPS_REAL: f"let {judge.STEPS_REAL} = {judge.STEPS} as f64;",
-            judge.ENDS: f"let {judge.ENDS} = entered.ends;",
-            judge.VIOLATED: f"let {judge.VIOLATED} = {verdict} == Verdict::Violated;",
-            judge.SATISFIED: f"let {judge.SATISFIED} = {verdict} == Verdict::Satisfied;",
+            reward_step.STEPS_REAL: f"let {reward_step.STEPS_REAL} = {reward_step.STEPS} as f64;",
+            reward_step.ENDS: f"let {reward_step.ENDS} = entered.ends;",
+            reward_step.VIOLATED: f"let {reward_step.VIOLATED} = {verdict} == Verdict::Violated;",
+            reward_step.SATISFIED: f"let {reward_step.SATISFIED} = {verdict} == Verdict::Satisfied;",
         }
         lines += [line for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
@@ -271,7 +278,7 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a struct, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        lines += [f"/// {line}" for line in _markdown(pieces.described(name, declared))]
+        lines += [f"/// {line}" for line in _markdown(snippets.described(name, declared))]
         lines.append(f"pub {name}: {type_},")
     return _Rust.block(lines, 1)
 
@@ -285,9 +292,9 @@ def _markdown(text: str) -> list[str]:
 def _param_check(param: Param, name: str) -> list[str]:
     value = f"params.{name}"
     tests = [f"{value}.is_finite()"]
-    tests += [] if param.low is None else [f"{value} >= {pieces.number(param.low)}"]
-    tests += [] if param.high is None else [f"{value} <= {pieces.number(param.high)}"]
-    low, high = pieces.number(param.low, "f64::NEG_INFINITY"), pieces.number(param.high, "f64::INFINITY")
+    tests += [] if param.low is None else [f"{value} >= {snippets.number(param.low)}"]
+    tests += [] if param.high is None else [f"{value} <= {snippets.number(param.high)}"]
+    low, high = snippets.number(param.low, "f64::NEG_INFINITY"), snippets.number(param.high, "f64::INFINITY")
     test = f"!({' && '.join(tests)})" if tests[1:] else f"!{tests[0]}"
     wrong = f"WrongParam {{ name: {_string(param.name)}, value: {value}, low: {low}, high: {high} }}"
     return [f"if {test} {{", f"{_INDENT}return Err({wrong});", "}"]
@@ -295,7 +302,7 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 def _string(text: str) -> str:
     """Return a string literal in ASCII."""
-    return pieces.quoted(text, _escape, pieces.in_ascii)
+    return snippets.quoted(text, _escape, snippets.in_ascii)
 
 
 def _escape(character: str) -> str:

@@ -9,6 +9,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from importlib.machinery import ModuleSpec
     from types import ModuleType
+    from typing import Any
 
 
 def keep_old_names(homes: Mapping[str, str]) -> None:
@@ -31,7 +32,8 @@ class _Finder:
         from importlib.machinery import ModuleSpec
 
         is_package = any(name.startswith(f"{fullname}.") for name in self._homes)
-        return ModuleSpec(fullname, _Loader(self._homes[fullname]), is_package=is_package)
+        loader: Any = _Loader(self._homes[fullname])
+        return ModuleSpec(fullname, loader, is_package=is_package)
 
 
 class _Loader:

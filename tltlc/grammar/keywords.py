@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Final
 
-from tltlc.grammar.slips import likely_name
+from tltlc.grammar.typos import likely_name
 
 DECLARATIONS: Final = {
     "import": '`import NAME`, `import NAME (name, name)`, `import NAME as NAME` or `import "file.tltl"`',

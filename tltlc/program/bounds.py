@@ -29,7 +29,7 @@ from tltlc.program.tree import (
     Statement,
     Variable,
 )
-from tltlc.program.uses import parts
+from tltlc.program.used_names import parts
 
 _MOST: Final = sys.float_info.max
 _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}

@@ -9,12 +9,12 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.monitor.reward import ends_on_entry
 from tltlc.monitor.tables import tables
-from tltlc.program import judge, states
+from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
 from tltlc.program.bounds import Range, proven, within
 from tltlc.program.names import VariableNames
 from tltlc.program.tree import FAILING, Function, Statement
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 from tltlc.resolve.spec import Signal
 
 TEMPORARY = "t"
@@ -22,8 +22,8 @@ TEMPORARY = "t"
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
-    *(judge.STEPS, judge.STEPS_REAL, judge.BEST, judge.BEFORE, judge.REWARD, judge.DONE, judge.ENDS),
-    *(judge.VIOLATED, judge.SATISFIED, "state"),
+    *(reward_step.STEPS, reward_step.STEPS_REAL, reward_step.BEST, reward_step.BEFORE, reward_step.REWARD),
+    *(reward_step.DONE, reward_step.ENDS, reward_step.VIOLATED, reward_step.SATISFIED, "state"),
 )
 
 
@@ -43,7 +43,7 @@ class Program:
       automaton.
     - ``states`` are, per state, statements that assign the variables of
       :mod:`tltlc.program.states`.
-    - ``judged`` assigns those of :mod:`tltlc.program.judge`.
+    - ``judged`` assigns those of :mod:`tltlc.program.reward_step`.
     - ``ends`` says, per state, whether entering it ends an episode.
     """
 
@@ -131,7 +131,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         remarks=_remarks(fspa, only_in),
         exclusive=exclusive,
         states=moves,
-        judged=judge.judged(fspa),
+        judged=reward_step.statements(fspa),
         ends=tuple(ends_on_entry(fspa, state.id) for state in fspa.states),
     )
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Edge, Guard, Implicant
 from tltlc.monitor.tables import MonitorTables
-from tltlc.program.clauses import shorter
+from tltlc.program.conjunctive_form import shorter
 from tltlc.program.tree import (
     All,
     Any,
@@ -27,7 +27,7 @@ from tltlc.program.tree import (
     Statement,
     Variable,
 )
-from tltlc.program.uses import read
+from tltlc.program.used_names import read
 
 TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "limiting"
 """Variables that the statements of a state assign: the next state, the robustness of the edge

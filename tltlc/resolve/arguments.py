@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label, instead
-from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import Argument, CallExpr, Expr, NameExpr, Parameter
+from tltlc.grammar.typos import likely_name
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
 

@@ -1,6 +1,6 @@
 """Resolve formulas: replace predicates, comparisons, lets, quantifiers and bounds by logic.
 
-The functions that walk the tree are generators (:mod:`tltlc.resolve.steps`). Neither a long chain
+The functions that walk the tree are generators (:mod:`tltlc.resolve.trampoline`). Neither a long chain
 of operators nor deeply nested lets can exhaust Python's stack.
 """
 
@@ -35,7 +35,7 @@ from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula
 from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
-from tltlc.resolve.steps import Steps, run
+from tltlc.resolve.trampoline import Steps, run
 from tltlc.resolve.units import value_type
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
 

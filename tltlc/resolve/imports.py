@@ -10,8 +10,8 @@ from typing import Final
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
-from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import Import, Module
+from tltlc.grammar.typos import likely_name
 from tltlc.io.files import is_file, may_be_file, may_read, outside, read_source
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem

@@ -12,8 +12,8 @@ from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression.tree import Const
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
-from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Parameter, PredicateDecl
+from tltlc.grammar.typos import likely_name
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval

@@ -8,8 +8,8 @@ from typing import Literal, Union
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
-from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, NameExpr, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.grammar.typos import likely_name
 from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import Loaded
 from tltlc.resolve.problem import Log, problem

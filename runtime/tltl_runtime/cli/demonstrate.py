@@ -11,7 +11,7 @@ from tltl_runtime.cli.support.film import FILMS, Film, write_film
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
-from tltl_runtime.game.place import level_place
+from tltl_runtime.game.level_name import level_place
 from tltlc.api import cli
 
 if TYPE_CHECKING:

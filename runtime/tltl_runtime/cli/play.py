@@ -10,7 +10,7 @@ import click
 from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.recording_files import RecordingFiles
-from tltl_runtime.game.place import level_place
+from tltl_runtime.game.level_name import level_place
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.recording import RecordEpisode

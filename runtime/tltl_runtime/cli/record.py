@@ -13,7 +13,7 @@ from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.printable import plain
-from tltl_runtime.game.place import level_place
+from tltl_runtime.game.level_name import level_place
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:

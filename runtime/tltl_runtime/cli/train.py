@@ -19,7 +19,7 @@ from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.training.run.report import TrainingReport as Trained
-    from tltl_runtime.training.run.run import Run
+    from tltl_runtime.training.run.run_file import Run
 
 
 def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
@@ -147,7 +147,7 @@ def command(
             resumed_run,
         )
         from tltl_runtime.training.ppo.distributed import peers
-        from tltl_runtime.training.run.run import resume_command
+        from tltl_runtime.training.run.run_file import resume_command
         from tltl_runtime.training.run.settings import settings_text
 
         asked = TrainOptions(spec=spec, sensors=sensors, **options)
@@ -197,7 +197,7 @@ def command(
 def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     """Describe the training; if it is resumed without a checkpoint, say what happens to its files."""
     from tltl_runtime.training.run.metrics import METRICS
-    from tltl_runtime.training.run.run import CHECKPOINT, POLICY, RECORD
+    from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD
 
     place = f"{Path(run.level).stem} {run.variant}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""

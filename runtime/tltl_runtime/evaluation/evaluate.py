@@ -10,7 +10,7 @@ from typing import Literal
 
 from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Plays, Recorded, Setup
-from tltl_runtime.evaluation.spread import Alone, spread
+from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
@@ -91,12 +91,12 @@ def results(
     tasks: Sequence[EpisodeRequest],
     workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
-    alone: Alone | None = None,
+    replay_command: ReplayCommand | None = None,
 ) -> Generator[PlayedEpisode]:
     """Play the tasks and yield their results in order.  Closing the iterator ends the workers.
 
     While no core of a Ray cluster is free, ``waiting`` is called with the seconds that are left to
-    wait.  If a worker is lost, the error names the command of ``alone`` that plays its episode, by
+    wait.  If a worker is lost, the error names the command of ``replay_command`` that plays its episode, by
     default ``tltlc evaluate``.
 
     Raises:
@@ -106,16 +106,20 @@ def results(
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
-        yield from results_here(partial(Player, setup), tasks, workers, setup.seed, alone)
+        yield from results_here(partial(Player, setup), tasks, workers, setup.seed, replay_command)
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 
     with ray_workers(setup, len(tasks), waiting) as team:
-        yield from spread(team, tasks, setup.seed, alone)
+        yield from play_all(team, tasks, setup.seed, replay_command)
 
 
 def results_here(
-    make: Callable[[], Plays], tasks: Sequence[EpisodeRequest], workers: int, seed: int, alone: Alone | None = None
+    make: Callable[[], Plays],
+    tasks: Sequence[EpisodeRequest],
+    workers: int,
+    seed: int,
+    replay_command: ReplayCommand | None = None,
 ) -> Generator[PlayedEpisode]:
     """Play the tasks on this machine and yield their results in order, like :func:`results`.
 
@@ -137,4 +141,4 @@ def results_here(
         team = [WorkerProcess(make) for _ in range(min(workers or cores(), len(tasks)))]
         for worker in team:
             stack.callback(worker.close)
-        yield from spread(team, tasks, seed, alone)
+        yield from play_all(team, tasks, seed, replay_command)

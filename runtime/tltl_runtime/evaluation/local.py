@@ -14,7 +14,7 @@ from multiprocessing.context import BaseContext
 from typing import Final
 
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Plays
-from tltl_runtime.evaluation.spread import LostError
+from tltl_runtime.evaluation.scheduler import LostError
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.support.child_processes import interrupts_withheld
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Setup
-from tltl_runtime.evaluation.spread import LostError
+from tltl_runtime.evaluation.scheduler import LostError
 from tltl_runtime.vector.cluster import cluster, free_cores, started_actors
 
 PATIENCE_S: Final = 120.0

@@ -6,7 +6,7 @@ import pytest
 
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.after_automaton import STEPS_PER_OBLIGATION, ObligationAutomaton
-from tltlc.automaton.infinite.infinite import infinite_form
+from tltlc.automaton.infinite.normal_form import infinite_form
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.logic import formula as build
 

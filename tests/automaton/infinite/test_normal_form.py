@@ -9,8 +9,8 @@ import pytest
 from tests.automaton.infinite.lassos import ABC, some_formulas, some_lassos
 from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually, has, is_pi_2, is_sigma_2
-from tltlc.automaton.infinite.infinite import infinite_form, is_rigid, negated, readable
 from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.normal_form import infinite_form, is_rigid, negated, readable
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import FALSE, TRUE, Formula
 

@@ -22,7 +22,7 @@ from tltlc.program.arithmetic import ExpressionTranslator, defined
 from tltlc.program.bounds import Range, proven, within
 from tltlc.program.build import program
 from tltlc.program.tree import Statement
-from tltlc.program.uses import called
+from tltlc.program.used_names import called
 from tltlc.resolve import spec
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -23,7 +23,7 @@ from tltlc.program.build import program
 from tltlc.program.printer import Printer
 from tltlc.program.states import ROBUSTNESS
 from tltlc.program.tree import Assign, Declare, If, Statement, Variable
-from tltlc.program.uses import parts, read
+from tltlc.program.used_names import parts, read
 from tltlc.resolve import spec
 
 SIGNALS = {"distance(s1)": "s1", "health": "health"}

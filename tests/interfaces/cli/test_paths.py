@@ -27,7 +27,7 @@ def commands() -> Iterator[tuple[str, click.Command]]:
         assert command is not None
         yield name, command
     try:
-        from tltl_runtime.cli.support.levels import command as levels
+        from tltl_runtime.cli.support.level_check import command as levels
     except ModuleNotFoundError:
         return
     yield "check --level", levels

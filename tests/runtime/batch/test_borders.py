@@ -12,9 +12,9 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.resolve.test_margins import FINITE, THREE, around, varying
+from tests.resolve.test_comparison_signs import FINITE, THREE, around, varying
 from tltl_runtime.spec.batch import BatchMonitor
-from tltl_runtime.spec.batch.formats import fits, narrowed
+from tltl_runtime.spec.batch.float_formats import fits, narrowed
 from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa

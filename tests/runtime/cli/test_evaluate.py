@@ -29,8 +29,8 @@ from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import read_episode, write_episode
-from tltl_runtime.training.run.run import Run as Training
-from tltl_runtime.training.run.run import write_run
+from tltl_runtime.training.run.run_file import Run as Training
+from tltl_runtime.training.run.run_file import write_run
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.core.record import replace
 

@@ -19,7 +19,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.training.run.metrics import METRICS, measurements
-from tltl_runtime.training.run.run import POLICY, write_run
+from tltl_runtime.training.run.run_file import POLICY, write_run
 from tltl_runtime.training.run.train import train
 from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.regression.made import case, made
+from tests.runtime.regression.handmade import case, made
 from tltl_runtime.cli.support.printable import plain
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_text import case_lines

@@ -12,7 +12,7 @@ from tests.runtime.training.reports import a_report, an_episode
 from tests.runtime.training.runs import run_in
 from tltl_runtime.cli.support.policy_path import policy_path
 from tltl_runtime.training.run.metrics import METRICS, measurements
-from tltl_runtime.training.run.run import POLICY, write_run
+from tltl_runtime.training.run.run_file import POLICY, write_run
 from tltlc.diagnostics.diagnostic import TltlError
 
 

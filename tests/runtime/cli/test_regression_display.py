@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from tests.runtime.regression.made import case, made
+from tests.runtime.regression.handmade import case, made
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltlc.core.record import replace
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.runtime.regression.made import summaries
+from tests.runtime.regression.handmade import summaries
 from tltl_runtime.cli.support.regression_text import sum_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport

@@ -17,7 +17,7 @@ from tests.interfaces.cli.conftest import tltlc  # noqa: F401
 from tests.runtime.cli.test_regress import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
-from tests.runtime.regression.made import summaries
+from tests.runtime.regression.handmade import summaries
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of

@@ -22,7 +22,7 @@ from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, results_he
 from tltl_runtime.evaluation.local import WorkerProcess
 from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Recorded, Setup
-from tltl_runtime.evaluation.spread import LostError, spread
+from tltl_runtime.evaluation.scheduler import LostError, play_all
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
@@ -180,7 +180,7 @@ def test_finished_episodes_are_yielded_before_a_lost_worker_is_reported() -> Non
     tasks = [EpisodeRequest(index) for index in (2, 0, 3, 1)]
     played: list[int] = []
     with pytest.raises(TltlError, match="episode 1 of seed 5"):
-        played.extend(result.task.index for result in spread([Prompt(), Prompt(), Prompt()], tasks, 5))
+        played.extend(result.task.index for result in play_all([Prompt(), Prompt(), Prompt()], tasks, 5))
     assert played == [2, 3]
 
 

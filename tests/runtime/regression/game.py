@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.evaluation.untrained import SOON, untrained
-from tests.runtime.regression.made import ROOM
+from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.explain.account import Account
 from tltl_runtime.regression.suite.suite import Case, Suite, baseline_path, read_suite

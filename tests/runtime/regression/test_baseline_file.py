@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import EASY
-from tests.runtime.regression.made import PLAYED, made, reference, several, suite
+from tests.runtime.regression.handmade import PLAYED, made, reference, several, suite
 from tltl_runtime.regression.explain.account import NearestMiss
 from tltl_runtime.regression.suite.suite import SHIPPED, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import (

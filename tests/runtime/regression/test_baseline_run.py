@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import SUITE, Played, edit
-from tests.runtime.regression.made import changed
+from tests.runtime.regression.handmade import changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of, read_baseline

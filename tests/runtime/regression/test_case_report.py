@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.runtime.regression.game import Played, edit
-from tests.runtime.regression.made import several
+from tests.runtime.regression.handmade import several
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.explain.account import summaries_of
 from tltl_runtime.regression.report.case_report import report_on
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import JudgedCase, Recorded, ready
-from tltl_runtime.regression.verdict.run import regress
+from tltl_runtime.regression.verdict.suite_run import regress
 from tltl_runtime.regression.verdict.verdict import judge
 from tltlc.core.record import replace
 

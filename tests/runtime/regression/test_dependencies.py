@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.regression.made import ROOM
+from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.regression.suite.dependencies import dependencies, select
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, read_suite

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from tests.runtime.regression.made import ROOM, changed, made
+from tests.runtime.regression.handmade import ROOM, changed, made
 from tltl_runtime.regression.explain.account import Account, NearestMiss
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.stealth.level import Level, Point

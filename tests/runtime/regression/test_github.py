@@ -8,7 +8,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from tests.runtime.regression.made import PLAYED, ROOM, reference
+from tests.runtime.regression.handmade import PLAYED, ROOM, reference
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.github import findings_as_commands
 from tltl_runtime.regression.suite.suite import Suite, read_suite

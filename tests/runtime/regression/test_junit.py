@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from tests.runtime.regression.made import case, suite, summaries
+from tests.runtime.regression.handmade import case, suite, summaries
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.regression.game import edit
-from tests.runtime.regression.made import PLAYED, several
+from tests.runtime.regression.handmade import PLAYED, several
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.suite.level_texts import designed, level_texts
 from tltl_runtime.regression.suite.suite import SHIPPED, read_suite

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.regression.made import ROOM
+from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.regression.explain.places import in_the_way, nearest_entity, place_name
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.file import load_level

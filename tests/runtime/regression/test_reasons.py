@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.regression.made import PLAYED, summaries
+from tests.runtime.regression.handmade import PLAYED, summaries
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.verdict import Judgement, judge

@@ -11,7 +11,7 @@ from typing import get_args
 import pytest
 
 from tests.docs.blocks import DOCS, blocks
-from tests.runtime.regression.made import ROOM, case, several, suite, summaries
+from tests.runtime.regression.handmade import ROOM, case, several, suite, summaries
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport

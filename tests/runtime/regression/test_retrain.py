@@ -12,7 +12,7 @@ import pytest
 from tests.runtime.evaluation.deadly import Deadly, killed
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
-from tests.runtime.regression.made import changed
+from tests.runtime.regression.handmade import changed
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.explain.account import Account
@@ -28,12 +28,12 @@ from tltl_runtime.regression.retrain.retrain import (
 from tltl_runtime.regression.suite.suite import Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import Ready, Recorded, episodes, ready
-from tltl_runtime.regression.verdict.run import Done, regress
+from tltl_runtime.regression.verdict.suite_run import Done, regress
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.run.record import write_record
-from tltl_runtime.training.run.run import CHECKPOINT, POLICY, RECORD, RUN, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, RECORD, RUN, Run
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

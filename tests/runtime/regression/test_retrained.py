@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.regression.made import summaries
+from tests.runtime.regression.handmade import summaries
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.retrain.retrained import (
     BestFailedEpisode,

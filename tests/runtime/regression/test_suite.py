@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests import pipes
-from tests.runtime.regression.made import ROOM
+from tests.runtime.regression.handmade import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.regression.suite.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
 from tltl_runtime.stealth.levels.file import level_names, variants

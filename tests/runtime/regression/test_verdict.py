@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.runtime.regression.made import summaries, summary
+from tests.runtime.regression.handmade import summaries, summary
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.verdict import Judgement, beyond, judge

@@ -8,7 +8,7 @@ import pytest
 
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run_file import Run
 from tltl_runtime.training.run.train import train
 
 

@@ -19,7 +19,7 @@ from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.run.checkpoint import Checkpoint, read_checkpoint
-from tltl_runtime.training.run.run import CHECKPOINT, Run, identity
+from tltl_runtime.training.run.run_file import CHECKPOINT, Run, identity
 from tltl_runtime.training.run.settings import read_settings
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner

@@ -14,7 +14,7 @@ from torch import Tensor
 from tests.runtime.training.runs import run_in
 from tltl_runtime.training.run import train as training
 from tltl_runtime.training.run.checkpoint import read_checkpoint
-from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, Run
 from tltl_runtime.training.run.setup import environments
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.training.exploration.reset_distribution import EpisodeStart, Replayed
+from tltl_runtime.training.exploration.replayed_starts import EpisodeStart, Replayed
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.ppo.environment import TrainingEnv

@@ -20,7 +20,7 @@ from tltl_runtime.training.ppo.distributed import peers
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.record import write_record
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import DEMONSTRATIONS, POLICY, Run, read_run
+from tltl_runtime.training.run.run_file import DEMONSTRATIONS, POLICY, Run, read_run
 from tltl_runtime.training.run.settings import rsl_config
 from tltl_runtime.training.run.setup import demonstrated, environments, prepared
 from tltl_runtime.training.run.train import train

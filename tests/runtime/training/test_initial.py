@@ -22,7 +22,7 @@ from tltl_runtime.training.run.checkpoint import copied
 from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
 from tltl_runtime.training.run.record import record_so_far, write_record
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, POLICY, Run, identity, read_run
+from tltl_runtime.training.run.run_file import CHECKPOINT, POLICY, Run, identity, read_run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.exploration.reset_distribution import Episodes, EpisodeStart, Replayed
+from tltl_runtime.training.exploration.replayed_starts import Episodes, EpisodeStart, Replayed
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import (
     Exploration,

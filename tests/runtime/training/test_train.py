@@ -27,7 +27,7 @@ from tltl_runtime.training.run.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
 from tltl_runtime.training.run.record import write_record
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
-from tltl_runtime.training.run.run import (
+from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     CURVE,
     MAY_CHANGE,
@@ -372,8 +372,8 @@ def test_a_repeated_search_is_in_the_checkpoint(folder: Path, monkeypatch: pytes
 
 
 def test_a_training_at_a_standstill_searches_again_from_failures(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.training.ppo.windows._BETWEEN", (0.0, 2.0))
-    monkeypatch.setattr("tltl_runtime.training.ppo.windows._STANDSTILL_STEPS", 256)
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._STANDSTILL_STEPS", 256)
     search_reports: list[Searched] = []
     run = run_in(folder / "standstill", CHANCE, exploration__ways=4, exploration__steps=2000, stop__steps=640)
     reports = list(train(run, searching=search_reports.append))
@@ -392,8 +392,8 @@ def test_a_training_at_a_standstill_searches_again_from_failures(folder: Path, m
 def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tltl_runtime.training.ppo.windows._BETWEEN", (0.0, 2.0))
-    monkeypatch.setattr("tltl_runtime.training.ppo.windows._STANDSTILL_STEPS", 256)
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._STANDSTILL_STEPS", 256)
     changes = {"exploration__ways": 4, "exploration__steps": 2000, "checkpoint_s": 10**6}
     run, search_reports = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[Searched]()
     reports = train(run, searching=search_reports.append)

@@ -17,7 +17,7 @@ from tests.runtime.training.test_settings import compare
 from tltl_runtime.training.run.checkpoint import VERSION, write_checkpoint
 from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import (
+from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     RUN,
     Run,

@@ -23,7 +23,7 @@ from tltlc.core.source import SourceFile
 from tltlc.io.spec_file import STDIN_NAME
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.notation import ASCII, write
-from tltlc.monitor.tests import run_tests
+from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import compile_source
 from tltlc.tools.diff.diff_json import document
 from tltlc.tools.diff.pairs import FileDiff, diff, diff_files

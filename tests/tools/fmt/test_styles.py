@@ -13,7 +13,7 @@ from tltlc.grammar.parser import parse
 from tltlc.io.project import FORMATTINGS
 from tltlc.pipeline import compile_text
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
+from tltlc.resolve.resolution import resolve
 from tltlc.tools.fmt import STYLES, format_text
 
 ROOT = Path(__file__).parents[3]

@@ -13,7 +13,7 @@ from tests.golden.cases import Case, cases
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, TltlError
 from tltlc.grammar.parser import parse
-from tltlc.resolve.program import resolve
+from tltlc.resolve.resolution import resolve
 from tltlc.tools.lint.fixes import OfferedFix, of_errors
 from tltlc.tools.lint.scopes import after
 

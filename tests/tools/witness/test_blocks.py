@@ -8,7 +8,7 @@ import pytest
 
 import tltlc
 from tltlc.core.source import SourceFile
-from tltlc.monitor.tests import run_tests
+from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import compile_source
 from tltlc.tools.witness import blocks
 

@@ -162,7 +162,7 @@ def check_cover(fspa: Fspa, covering: Cover) -> None:
 
 def check_blocks(source: SourceFile, fspa: Fspa, traces: list[Witness]) -> None:
     """Assert that the blocks pass when pasted into the file."""
-    from tltlc.monitor.tests import run_tests
+    from tltlc.monitor.spec_tests import run_tests
 
     texts = [written.as_test(fspa, trace, f"witness {number}") for number, trace in enumerate(traces)]
     compiled = compile_source(SourceFile(source.name, "\n".join([source.text, *texts])))

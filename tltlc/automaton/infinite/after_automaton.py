@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
 from tltlc.automaton.diagrams import Diagrams
-from tltlc.automaton.infinite.infinite import conjunction, disjunction
+from tltlc.automaton.infinite.normal_form import conjunction, disjunction
 from tltlc.automaton.transitions import FALSE, TRUE, ObligationDiagrams
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic import formula as build

@@ -22,8 +22,8 @@ from tltlc.automaton.infinite.component import IMPOSSIBLE, State, has_turns, loc
 from tltlc.automaton.infinite.delta2 import delta_2, delta_2_dually
 from tltlc.automaton.infinite.factors import factor
 from tltlc.automaton.infinite.graphs import components
-from tltlc.automaton.infinite.infinite import infinite_form
 from tltlc.automaton.infinite.languages import equal_states
+from tltlc.automaton.infinite.normal_form import infinite_form
 from tltlc.automaton.infinite.pairs import Piece, with_pairs
 from tltlc.automaton.infinite.state_merging import shrunk
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work

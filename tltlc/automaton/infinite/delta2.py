@@ -11,7 +11,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Final
 
-from tltlc.automaton.infinite import infinite
+from tltlc.automaton.infinite import normal_form
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic.formula import FALSE, TRUE, Formula
 
@@ -52,7 +52,7 @@ def delta_2_dually(formula: Formula) -> Formula:
 
     Raises OutOfWork if it becomes too large.
     """
-    return infinite.negated(delta_2(infinite.negated(formula)))
+    return normal_form.negated(delta_2(normal_form.negated(formula)))
 
 
 _MOST_STEPS: Final = 3000
@@ -76,7 +76,7 @@ class _Normaliser:
     def _normalised(self, formula: Formula) -> Formula:
         op, args = formula.op, formula.args
         if op == "and" or op == "or":
-            make = infinite.conjunction if op == "and" else infinite.disjunction
+            make = normal_form.conjunction if op == "and" else normal_form.disjunction
             return make(map(self.normal, args))
         if op == "G" and args[0].op == "F":
             return self._always_eventually(args[0].args[0])
@@ -95,22 +95,24 @@ class _Normaliser:
     def _always_eventually(self, inner: Formula) -> Formula:
         outermost = _outermost(inner, "W")
         if outermost is None:
-            return infinite.always_eventually(inner)
+            return normal_form.always_eventually(inner)
         p, q = outermost.args
-        strong = infinite.always_eventually(infinite.substituted(inner, {outermost: infinite.until(p, q)}))
-        always = infinite.always_eventually(infinite.substituted(inner, {outermost: TRUE}))
+        strong = normal_form.always_eventually(normal_form.substituted(inner, {outermost: normal_form.until(p, q)}))
+        always = normal_form.always_eventually(normal_form.substituted(inner, {outermost: TRUE}))
         return self.normal(
-            infinite.disjunction((strong, infinite.conjunction((infinite.eventually_always(p), always))))
+            normal_form.disjunction((strong, normal_form.conjunction((normal_form.eventually_always(p), always))))
         )
 
     def _eventually_always(self, inner: Formula) -> Formula:
         outermost = _outermost(inner, "U")
         if outermost is None:
-            return infinite.eventually_always(inner)
+            return normal_form.eventually_always(inner)
         p, q = outermost.args
-        weak = infinite.eventually_always(infinite.substituted(inner, {outermost: infinite.weak(p, q)}))
-        never = infinite.eventually_always(infinite.substituted(inner, {outermost: FALSE}))
-        return self.normal(infinite.disjunction((infinite.conjunction((infinite.always_eventually(q), weak)), never)))
+        weak = normal_form.eventually_always(normal_form.substituted(inner, {outermost: normal_form.weak(p, q)}))
+        never = normal_form.eventually_always(normal_form.substituted(inner, {outermost: FALSE}))
+        return self.normal(
+            normal_form.disjunction((normal_form.conjunction((normal_form.always_eventually(q), weak)), never))
+        )
 
     def flat(self, formula: Formula) -> Formula:
         """Return the formula without any ``U`` below a ``W``, except inside rigid parts."""
@@ -126,29 +128,29 @@ class _Normaliser:
             raise OutOfWork
 
     def _flattened(self, formula: Formula) -> Formula:
-        if infinite.is_rigid(formula) or not formula.args or formula.op == "not":
+        if normal_form.is_rigid(formula) or not formula.args or formula.op == "not":
             return formula
         if formula.op != "W" or not has(formula, "U"):
             args = {argument: self.flat(argument) for argument in formula.args}
             if all(new is old for old, new in args.items()):
                 return formula
-            rebuilt = infinite.substituted_below(formula, args)
+            rebuilt = normal_form.substituted_below(formula, args)
             return rebuilt if rebuilt is formula else self.flat(rebuilt)
         a, b = formula.args
         if has(b, "U"):
-            return self.flat(infinite.disjunction((infinite.until(a, b), infinite.weak(a, FALSE))))
+            return self.flat(normal_form.disjunction((normal_form.until(a, b), normal_form.weak(a, FALSE))))
         outermost = _outermost(a, "U")
         if outermost is None:
             # Every U is inside a rigid part.
             raise OutOfWork
         p, q = outermost.args
-        weak = infinite.weak(infinite.substituted(a, {outermost: infinite.weak(p, q)}), b)
-        never = infinite.weak(infinite.substituted(a, {outermost: FALSE}), FALSE)
+        weak = normal_form.weak(normal_form.substituted(a, {outermost: normal_form.weak(p, q)}), b)
+        never = normal_form.weak(normal_form.substituted(a, {outermost: FALSE}), FALSE)
         return self.flat(
-            infinite.disjunction(
+            normal_form.disjunction(
                 (
-                    infinite.conjunction((infinite.always_eventually(q), weak)),
-                    infinite.until(a, infinite.disjunction((b, never))),
+                    normal_form.conjunction((normal_form.always_eventually(q), weak)),
+                    normal_form.until(a, normal_form.disjunction((b, never))),
                 )
             )
         )
@@ -157,10 +159,10 @@ class _Normaliser:
 @lru_cache(maxsize=4096)
 def _under_next(formula: Formula) -> Formula:
     if formula.op == "and":
-        return infinite.conjunction(map(_under_next, formula.args))
+        return normal_form.conjunction(map(_under_next, formula.args))
     if formula.op == "or":
-        return infinite.disjunction(map(_under_next, formula.args))
-    return infinite.next_(formula)
+        return normal_form.disjunction(map(_under_next, formula.args))
+    return normal_form.next_(formula)
 
 
 def _outermost(formula: Formula, op: str) -> Formula | None:

@@ -14,7 +14,7 @@ from typing import Final, Literal
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps
 from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
-from tltlc.automaton.infinite.infinite import conjunction, disjunction
+from tltlc.automaton.infinite.normal_form import conjunction, disjunction
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.automaton.work import Work
 from tltlc.logic.formula import Formula, not_

@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import Any, Protocol
 
 from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
-from tltlc.automaton.infinite.infinite import substituted_below
 from tltlc.automaton.infinite.mark_conditions import Kind
+from tltlc.automaton.infinite.normal_form import substituted_below
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.infinite.factoring import Factoring
-from tltlc.automaton.infinite.infinite import infinite_form, readable
+from tltlc.automaton.infinite.normal_form import infinite_form, readable
 from tltlc.logic.formula import FALSE, TRUE, Formula, rebuild
 from tltlc.logic.text.printer import ascii_text
 

@@ -18,12 +18,12 @@ from tltlc.backends.godot.numbers import number
 from tltlc.backends.godot.printer import Gd
 from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
-from tltlc.program import judge, pieces, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import defined
 from tltlc.program.build import program
 from tltlc.program.template import filled
 from tltlc.program.tree import FAILING
-from tltlc.program.uses import called
+from tltlc.program.used_names import called
 from tltlc.resolve.spec import Param, Signal
 
 ENDINGS = ("_monitor.gd", "_monitor_main.gd")
@@ -33,14 +33,14 @@ _MEMBERS = {
     states.ROBUSTNESS: "robustness",
     states.LIMITING: "limiting",
     states.PROGRESS: "reached",
-    judge.BEST: "progress",
-    judge.REWARD: "reward",
-    judge.DONE: "done",
-    judge.STEPS: "steps",
-    judge.STEPS_REAL: "float(steps)",
-    judge.ENDS: "ENDS[state]",
-    judge.VIOLATED: "verdict == Verdict.VIOLATED",
-    judge.SATISFIED: "verdict == Verdict.SATISFIED",
+    reward_step.BEST: "progress",
+    reward_step.REWARD: "reward",
+    reward_step.DONE: "done",
+    reward_step.STEPS: "steps",
+    reward_step.STEPS_REAL: "float(steps)",
+    reward_step.ENDS: "ENDS[state]",
+    reward_step.VIOLATED: "verdict == Verdict.VIOLATED",
+    reward_step.SATISFIED: "verdict == Verdict.SATISFIED",
 }
 """What variables of the program are called here: mostly members of the monitor. A refused step
 returns before it assigns any of them.
@@ -113,7 +113,7 @@ class _Source:
         first = fspa.states[0]
         places = {
             **self._dialect.types(),
-            "title": pieces.title(fspa, self._printer.comment),
+            "title": snippets.title(fspa, self._printer.comment),
             "engine": self._dialect.title,
             "base": self._dialect.base,
             "file": f"{fspa.name}{ENDINGS[0]}",
@@ -123,9 +123,9 @@ class _Source:
             "labels": self._strings(str(state.label) for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
-            "first_accepting": pieces.boolean(first.accepting),
-            "accepting": _list([pieces.boolean(state.accepting) for state in fspa.states]),
-            "ends": _list(map(pieces.boolean, program_.ends)),
+            "first_accepting": snippets.boolean(first.accepting),
+            "accepting": _list([snippets.boolean(state.accepting) for state in fspa.states]),
+            "ends": _list(map(snippets.boolean, program_.ends)),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
             "params": self._strings(param.name for param in fspa.params),
             "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
@@ -160,7 +160,7 @@ class _Source:
         lines: list[str] = []
         for name, type_, value, declared in fields:
             # Godot 4 shows `##` comments as documentation. An opening bracket would begin a tag, except before numbers.
-            description = pieces.described(name, declared, lambda text: text.replace("[", "[lb]"))
+            description = snippets.described(name, declared, lambda text: text.replace("[", "[lb]"))
             remarks = [f"#{line}" for line in self._printer.comment(description)]
             field = f"var {name}: {type_} = {value}"
             # A short comment goes on the line of its field.
@@ -178,7 +178,7 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Return code that reads signals, clamped to their ranges, and params into local variables."""
@@ -269,7 +269,7 @@ class _Source:
         """Return a string literal with escapes for characters that do not print; NUL would end a
         string of the engine.
         """
-        return pieces.quoted(text.replace("\0", ""), self._escape)
+        return snippets.quoted(text.replace("\0", ""), self._escape)
 
     def _escape(self, character: str) -> str:
         code = ord(character)

@@ -17,7 +17,7 @@ from tltlc.interfaces.lsp.names import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import path_of
 from tltlc.io.files import Stamp, noted, stamp, unsaved
 from tltlc.pipeline import CompileOptions, Session
-from tltlc.resolve.program import Resolution
+from tltlc.resolve.resolution import Resolution
 from tltlc.resolve.scope import Scope
 from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.run import levelled

@@ -11,7 +11,7 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.files import unsaved
-from tltlc.monitor.tests import run_tests
+from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.importers import used_elsewhere, words

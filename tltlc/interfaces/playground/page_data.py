@@ -17,7 +17,7 @@ from tltlc.interfaces.playground.trace import Letter, idle, rows, shortest
 from tltlc.interfaces.playground.values import signal_values
 from tltlc.io.project import project_for
 from tltlc.io.spec_file import STDIN
-from tltlc.monitor.tests import run_tests
+from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.explain.explanation import Explanation, explain
 from tltlc.tools.explain.sections import failure_texts

@@ -15,7 +15,7 @@ from tltlc.core.record import record
 from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, or_, rebuild
 from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
-from tltlc.tools.explain.judgement import ending
+from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import leading_on
 from tltlc.tools.witness.traces import Witness, accepting, rejecting
 from tltlc.tools.witness.transitions import Moves

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from tltlc.backends.drawing.folding import span
 from tltlc.core.record import record
+from tltlc.tools.explain.ending import limit_text
 from tltlc.tools.explain.explanation import ANYTHING, ExampleTrace, Explanation, StateRow, TrapCondition
-from tltlc.tools.explain.judgement import limit_text
 
 _MOST_RANGES = 3
 _MOST_ROWS = 40

@@ -9,7 +9,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
 from tltlc.grammar.parser import parse
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import FormulaOf, resolve_atoms
+from tltlc.resolve.resolution import FormulaOf, resolve_atoms
 from tltlc.resolve.spec import Vocabulary
 from tltlc.tools.hoa.tree import Hoa
 

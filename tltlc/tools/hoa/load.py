@@ -35,7 +35,7 @@ from tltlc.io.spec_file import STDIN_NAME, is_plain_name
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import FormulaOf
+from tltlc.resolve.resolution import FormulaOf
 from tltlc.resolve.spec import Judge
 
 

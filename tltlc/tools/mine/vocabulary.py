@@ -25,7 +25,7 @@ from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log
-from tltlc.resolve.program import resolve_atoms
+from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding, build_scopes
 from tltlc.resolve.spec import Vocabulary
 from tltlc.tools.mine.column_diagnostics import some

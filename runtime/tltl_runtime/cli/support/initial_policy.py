@@ -17,7 +17,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.level import Level, Sensors
 from tltl_runtime.stealth.observation.sensors import chosen
 from tltl_runtime.training.run.initial_policy import weights_hash
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run_file import Run
 from tltl_runtime.training.run.settings import TrainingSettings
 from tltl_runtime.training.run.settings_file import read_values
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, record, replace

@@ -9,7 +9,7 @@ from shlex import quote
 
 import click
 
-from tltl_runtime.game.place import level_place
+from tltl_runtime.game.level_name import level_place
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.api import Diagnostic, TltlError, fileio

@@ -6,11 +6,11 @@ from pathlib import Path
 from shlex import quote
 
 from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
-from tltl_runtime.game.place import level_place
+from tltl_runtime.game.level_name import level_place
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.training.run.metrics import METRICS, read_metrics
-from tltl_runtime.training.run.run import POLICY, RUN, named_trainings, read_place, resume_command
+from tltl_runtime.training.run.run_file import POLICY, RUN, named_trainings, read_place, resume_command
 from tltlc.api import Diagnostic, TltlError, fileio
 
 

@@ -18,7 +18,7 @@ from tltl_runtime.regression.suite.level_texts import designed
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.verdict.baseline import Reference
 from tltl_runtime.regression.verdict.play import Ready
-from tltl_runtime.regression.verdict.run import CASES, Done, case_folder
+from tltl_runtime.regression.verdict.suite_run import CASES, Done, case_folder
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode

@@ -24,7 +24,7 @@ from tltl_runtime.regression.suite.dependencies import Selection, files_of, sele
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, Suite, read_suite
 from tltl_runtime.regression.suite.unnamed_changes import unnamed
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
-from tltl_runtime.regression.verdict.run import Done, check, lock_run, regress
+from tltl_runtime.regression.verdict.suite_run import Done, check, lock_run, regress
 from tltl_runtime.support.number_text import listed
 from tltlc.api import TltlError, cli, record, workflow_command
 

@@ -22,9 +22,9 @@ from tltl_runtime.regression.retrain.retrain import is_kept, make_room, retraine
 from tltl_runtime.regression.retrain.retrained import Retrained
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.verdict.baseline import baseline_command
-from tltl_runtime.regression.verdict.run import NOT_THE_CASE, Done
+from tltl_runtime.regression.verdict.suite_run import NOT_THE_CASE, Done
 from tltl_runtime.training.run.record import ended_as, write_record
-from tltl_runtime.training.run.run import RUN, Run
+from tltl_runtime.training.run.run_file import RUN, Run
 from tltlc.api import TltlError, cli, record, replace
 
 _NOT_THE_CASE: Final = NOT_THE_CASE | {"TLT0005"}

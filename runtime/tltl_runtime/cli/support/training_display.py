@@ -26,7 +26,7 @@ from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.ppo.distributed import peers
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, Run
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
 

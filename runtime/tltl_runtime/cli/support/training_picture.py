@@ -27,7 +27,7 @@ from tltl_runtime.support.number_text import duration, number, percent, share
 from tltl_runtime.training.exploration.search import Searched
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.run.report import EpisodeWindow, TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, Run
 from tltl_runtime.training.run.settings import Stop
 from tltlc.api import Fspa, State, label_text
 

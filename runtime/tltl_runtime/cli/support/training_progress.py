@@ -7,7 +7,7 @@ from contextlib import closing, contextmanager
 
 from tltl_runtime.cli.support.training_display import display
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, RUN, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, RUN, Run
 from tltl_runtime.training.run.train import train
 from tltl_runtime.vector.errors import WorkerError
 from tltlc.api import Diagnostic, TltlError

@@ -23,7 +23,7 @@ from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.game.level import spec_of
-from tltl_runtime.game.place import absolute_variant, level_place
+from tltl_runtime.game.level_name import absolute_variant, level_place
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task, read_spec
@@ -40,7 +40,7 @@ from tltl_runtime.training.ppo.distributed import peers
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.choices import Method
 from tltl_runtime.training.run.initial_policy import initial_of
-from tltl_runtime.training.run.run import (
+from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     MAY_CHANGE,
     RUN,

@@ -54,7 +54,7 @@ def check_apart(files: Mapping[str, Path | None], read: Iterable[Path]) -> None:
 
 def check_no_training(folder: Path) -> None:
     """Raise TltlError, TLT0005, if a folder contains a training: other files must not go there."""
-    from tltl_runtime.training.run.run import RUN
+    from tltl_runtime.training.run.run_file import RUN
 
     if fileio.exists(folder / RUN):
         title = f"cannot write into `{folder}`: it is the folder of a training"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
-from tltl_runtime.game.place import shown_variant
+from tltl_runtime.game.level_name import shown_variant
 from tltl_runtime.regression.explain.account import Account, summaries_of
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.reasons import edits, obstacles, reasons

@@ -24,14 +24,14 @@ from tltl_runtime.regression.suite.result_cache import inputs_hash, kept_text, r
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.play import Ready, episodes
-from tltl_runtime.regression.verdict.run import WRITABLE, Done, case_folder
+from tltl_runtime.regression.verdict.suite_run import WRITABLE, Done, case_folder
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.initial_policy import initial_of, weights_hash
 from tltl_runtime.training.run.metrics import METRICS
 from tltl_runtime.training.run.record import recorded_end
-from tltl_runtime.training.run.run import (
+from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     CURVE,
     POLICY,

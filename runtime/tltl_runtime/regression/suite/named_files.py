@@ -21,7 +21,7 @@ def policy_file(path: Path) -> Path:
     """The file of a case's policy: ``path`` itself, or the policy in the folder of a training."""
     if not fileio.is_dir(path):
         return path
-    from tltl_runtime.training.run.run import POLICY
+    from tltl_runtime.training.run.run_file import POLICY
 
     return path / POLICY
 
@@ -94,7 +94,7 @@ def _at(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def _no_policy(folder: Path) -> Diagnostic:
-    from tltl_runtime.training.run.run import RUN, named_trainings, resume_command
+    from tltl_runtime.training.run.run_file import RUN, named_trainings, resume_command
 
     if fileio.exists(folder / RUN):
         help_ = f"`{resume_command(folder)}` goes on until it has one; one that is going on has it soon"

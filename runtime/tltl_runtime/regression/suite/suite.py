@@ -7,7 +7,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.place import level_place, overlays_of, with_overlays
+from tltl_runtime.game.level_name import level_place, overlays_of, with_overlays
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from tltl_runtime.game.place import shown_variant
+from tltl_runtime.game.level_name import shown_variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.level_texts import text_now

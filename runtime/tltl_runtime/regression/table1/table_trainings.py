@@ -15,7 +15,7 @@ from tltl_runtime.regression.table1.paper_table import Model
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.run.record import ended_as
-from tltl_runtime.training.run.run import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
+from tltl_runtime.training.run.run_file import MAY_CHANGE, POLICY, RECORD, RUN, leaves, read_run
 from tltl_runtime.training.run.settings import read_settings
 from tltlc.api import record, replace
 

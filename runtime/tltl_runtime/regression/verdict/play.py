@@ -102,7 +102,7 @@ def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
             errors from playing.
     """
     tasks = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
-    with closing(results(prepared.setup, tasks, pool, alone=partial(_alone, prepared))) as playing:
+    with closing(results(prepared.setup, tasks, pool, replay_command=partial(_replay_command, prepared))) as playing:
         for count, result in enumerate(playing):
             # Before it raises an error, `results` yields all finished episodes.  Skip those after a gap:
             # counting them would favour fast episodes.
@@ -115,7 +115,7 @@ def episodes(prepared: Ready, pool: Pool) -> Generator[Recorded]:
     check_unedited(prepared)
 
 
-def _alone(prepared: Ready, task: EpisodeRequest) -> str:
+def _replay_command(prepared: Ready, task: EpisodeRequest) -> str:
     """The command that plays a single episode of the case."""
     place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.spec.batch.expressions import TensorExpressions
-from tltl_runtime.spec.batch.formats import fits, narrowed
+from tltl_runtime.spec.batch.float_formats import fits, narrowed
 from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors
 
 _NAMED = 5

@@ -12,8 +12,8 @@ from typing import Final
 from tltl_runtime.stealth.level import Box, Level, Mover, Point
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS
-from tltl_runtime.stealth.world.way import MoverPath
 
 _SEEN: Final = 1e-6
 """A mover farther than this from its predicted position, in metres, is somewhere else."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from tltl_runtime.game.place import overlays_of
+from tltl_runtime.game.level_name import overlays_of
 from tltl_runtime.spec.spec_files import source_of, spec_files, to_first_file
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
 from tltlc.api import SourceFile, TltlError, fileio

@@ -13,14 +13,14 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.place import overlays_of, shown_variant
+from tltl_runtime.game.level_name import overlays_of, shown_variant
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
+from tltl_runtime.stealth.levels.bounds_check import check_room
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for
+from tltl_runtime.stealth.levels.path_check import check_ways
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
-from tltl_runtime.stealth.levels.room import check_room
-from tltl_runtime.stealth.levels.ways import check_ways
 from tltl_runtime.support.checked_table import CheckedTable, wrong
 from tltl_runtime.support.shown_path import shown
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
@@ -66,7 +66,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
 
     ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on. The overlay is one that
     variants name, or the path of a ``.toml`` file
-    (:func:`~tltl_runtime.game.place.overlays_of`).
+    (:func:`~tltl_runtime.game.level_name.overlays_of`).
 
     :func:`read_level` also returns warnings.
 

@@ -14,8 +14,8 @@ from tltl_runtime.stealth.world.bodies import UPRIGHT, static_box
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.capsules import Capsules
 from tltl_runtime.stealth.world.geometry import around, contact
+from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION
-from tltl_runtime.stealth.world.way import MoverPath
 
 _REACH = 1.5
 """Distance within which the player can touch a mover during one decision, in metres."""

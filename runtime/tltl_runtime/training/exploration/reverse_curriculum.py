@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.game.registry import registered_game
-from tltl_runtime.training.exploration.reset_distribution import Actions, EpisodeStart
+from tltl_runtime.training.exploration.replayed_starts import Actions, EpisodeStart
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 
 _WAYS = 6

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.training.exploration.reset_distribution import Actions, Episodes, EpisodeStart
+from tltl_runtime.training.exploration.replayed_starts import Actions, Episodes, EpisodeStart
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import record
 
@@ -129,7 +129,7 @@ class FailedEpisode:
 class TrajectorySearch:
     """A search in the environments of ``env``.
 
-    The environments are :class:`~tltl_runtime.training.exploration.reset_distribution.Replayed`.
+    The environments are :class:`~tltl_runtime.training.exploration.replayed_starts.Replayed`.
     ``ways`` are the ways found so far.  Equal seeds give equal searches, whatever the number of
     workers.  With ``failures``, the search starts in these episodes and explores only the states in
     which they failed; without, it starts at the level's start.  A ``player`` plays the first

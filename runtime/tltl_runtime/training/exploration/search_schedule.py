@@ -8,9 +8,9 @@ from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurricul
 from tltl_runtime.training.exploration.search import Player, Searched, TrajectorySearch
 from tltl_runtime.training.ppo.distributed import Peers
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.ppo.streams import Purpose, stream
+from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.run.checkpoint import Checkpoint
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run_file import Run
 from tltl_runtime.vector import WorkerVectorEnv
 
 Searching = Callable[[Searched], None]

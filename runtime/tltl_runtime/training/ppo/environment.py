@@ -14,7 +14,7 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
-from tltl_runtime.training.exploration.reset_distribution import Episodes
+from tltl_runtime.training.exploration.replayed_starts import Episodes
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import end_of
 from tltl_runtime.training.exploration.self_imitation import SelfImitation

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run_file import Run
 from tltl_runtime.training.run.settings import Ppo
 from tltlc.api import monitors, record, replace
 

@@ -10,7 +10,7 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.training.ppo.environment import TrainingEnv
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run_file import Run
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import Diagnostic, TltlError
 

@@ -13,9 +13,9 @@ from torch import Tensor
 
 from tltl_runtime.support.record_json import RecordJsonError, from_json
 from tltl_runtime.training.exploration.search import Searched
-from tltl_runtime.training.ppo.windows import Score
+from tltl_runtime.training.ppo.recent_episodes import Score
 from tltl_runtime.training.run.report import StopReason
-from tltl_runtime.training.run.run import resume_command
+from tltl_runtime.training.run.run_file import resume_command
 from tltl_runtime.training.run.settings import Stop
 from tltl_runtime.training.run.torch_archive import TorchArchiveError, read_torch
 from tltlc.api import Diagnostic, TltlError, fileio, record
@@ -39,7 +39,7 @@ class BestPolicy:
 class Checkpoint:
     """The state of a training after iteration number ``iteration``.
 
-    - ``run`` is the :func:`~tltl_runtime.training.run.run.identity` of the training.
+    - ``run`` is the :func:`~tltl_runtime.training.run.run_file.identity` of the training.
     - ``losses`` are the losses of the iteration.
     - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed
       decisions.
@@ -48,8 +48,8 @@ class Checkpoint:
     - ``processes`` has the own state of each process: the states of torch's random generators by
       device, and the arrays of its
       :class:`~tltl_runtime.training.exploration.reverse_curriculum.Restarts`.
-    - ``window`` and ``unbroken`` are from :class:`~tltl_runtime.training.ppo.windows.Windows`,
-      ``standstill`` from :class:`~tltl_runtime.training.ppo.windows.Standstill`.
+    - ``window`` and ``unbroken`` are from :class:`~tltl_runtime.training.ppo.recent_episodes.RecentEpisodes`,
+      ``standstill`` from :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
     - ``best`` is the best policy so far; ``met`` says whether it has met the spec in all windows
       and in its confirmation.
     """

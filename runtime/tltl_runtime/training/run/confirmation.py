@@ -13,7 +13,7 @@ from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.training.run.checkpoint import level_changed
 from tltl_runtime.training.run.report import Confirmation
-from tltl_runtime.training.run.run import Run, current_level_hash
+from tltl_runtime.training.run.run_file import Run, current_level_hash
 
 
 def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:

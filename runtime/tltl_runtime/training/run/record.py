@@ -21,7 +21,7 @@ from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.curve import draw_curve
 from tltl_runtime.training.run.metrics import METRICS, OF_THE_WINDOW, means, read_metrics
 from tltl_runtime.training.run.report import StopReason, TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
+from tltl_runtime.training.run.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
 from tltl_runtime.training.run.versions import versions
 from tltlc.api import fileio, record, replace
 

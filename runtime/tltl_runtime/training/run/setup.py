@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.training.exploration.reset_distribution import Replayed
+from tltl_runtime.training.exploration.replayed_starts import Replayed
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import Player, Searched
 from tltl_runtime.training.exploration.search_schedule import Searching, searched_first
@@ -22,10 +22,10 @@ from tltl_runtime.training.imitation.imitation_data import Demonstrated, read_de
 from tltl_runtime.training.ppo.distributed import Peers, cores
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.ppo.penalty_weight import raised_penalty
-from tltl_runtime.training.ppo.streams import Purpose, stream
+from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.run.checkpoint import Checkpoint, damaged, level_changed, read_checkpoint
 from tltl_runtime.training.run.initial_policy import read_initial
-from tltl_runtime.training.run.run import (
+from tltl_runtime.training.run.run_file import (
     CHECKPOINT,
     RUN,
     Run,

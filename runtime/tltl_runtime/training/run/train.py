@@ -16,19 +16,19 @@ from tltl_runtime.training.exploration.search import Searched, joined_searches
 from tltl_runtime.training.exploration.search_schedule import Searching, searched_again
 from tltl_runtime.training.imitation.demonstrations import Tried
 from tltl_runtime.training.imitation.gail import Gail
+from tltl_runtime.training.ppo.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.ppo.distributed import Peers, joined
-from tltl_runtime.training.ppo.fit import restore_checkpoint
 from tltl_runtime.training.ppo.penalty_weight import weighing
 from tltl_runtime.training.ppo.policy import card_of, policy_of
 from tltl_runtime.training.ppo.process_exchange import gathered, own_state, set_generators
-from tltl_runtime.training.ppo.streams import Purpose, stream
-from tltl_runtime.training.ppo.windows import Standstill, Windows
+from tltl_runtime.training.ppo.random_streams import Purpose, stream
+from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, copied, damaged
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.folder import lock_training
 from tltl_runtime.training.run.report import Confirmation, TrainingReport
 from tltl_runtime.training.run.requirements import class_of, device_of
-from tltl_runtime.training.run.run import CHECKPOINT, Run, identity
+from tltl_runtime.training.run.run_file import CHECKPOINT, Run, identity
 from tltl_runtime.training.run.settings import algorithm_name, rsl_config
 from tltl_runtime.training.run.setup import begun, demonstrated, environments, initial_policy, prepared
 from tltl_runtime.training.run.training_files import TrainingFiles
@@ -114,7 +114,7 @@ class _Training:
         self._stop = run.settings.stop
         # The card is made now: later changes of the level's file are not part of this training.
         self._card = card_of(run, runner.env)
-        self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
+        self._windows = RecentEpisodes(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
             try:
                 restore_checkpoint(begun, runner, len(run.fspa.states))

@@ -11,7 +11,7 @@ from tltl_runtime.training.ppo.policy import policy_of
 from tltl_runtime.training.run.checkpoint import BestPolicy, Checkpoint, write_checkpoint
 from tltl_runtime.training.run.metrics import Metrics
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run
 
 
 class TrainingFiles:

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tests.runtime.regression.made import changed
+from tests.runtime.regression.handmade import changed
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
 

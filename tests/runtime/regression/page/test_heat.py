@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.regression.made import changed
+from tests.runtime.regression.handmade import changed
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.report.page.heat import ENDS_CELL, TIME_CELL, failed_ends, time_spent
 from tltl_runtime.stealth.level import Box

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.regression.made import changed, summaries
+from tests.runtime.regression.handmade import changed, summaries
 from tests.runtime.regression.page import samples
 from tests.runtime.regression.page.test_packing import unstepped
 from tltl_runtime.evaluation.figures import figures_of

@@ -14,9 +14,9 @@ from tests.waiting import HANG_S
 from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start
 from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
+from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.physics import World, WorldError
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
-from tltl_runtime.stealth.world.way import MoverPath
 from tltlc.core.record import replace
 
 EAST, WEST, NORTH, STAY, JUMP, CROUCH = (

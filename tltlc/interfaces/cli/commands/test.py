@@ -12,7 +12,7 @@ from tltlc.grammar.keywords import DECLARATIONS
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 if TYPE_CHECKING:
-    from tltlc.monitor.tests import TestResult
+    from tltlc.monitor.spec_tests import TestResult
 
 
 @click.command(
@@ -58,7 +58,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> i
 
 def _run(path: str, settings: CompileSettings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
     from tltlc.interfaces.cli.inputs import no_text, open_input
-    from tltlc.monitor.tests import run_tests
+    from tltlc.monitor.spec_tests import run_tests
 
     opened = open_input(path, settings)
     add(opened.diagnostics)

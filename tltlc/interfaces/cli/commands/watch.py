@@ -15,7 +15,7 @@ from tltlc.interfaces.cli.settings import CompileSettings, check_libraries, comp
 
 if TYPE_CHECKING:
     from tltlc.diagnostics.diagnostic import Diagnostic
-    from tltlc.monitor.tests import TestResult
+    from tltlc.monitor.spec_tests import TestResult
     from tltlc.tools.lint.rule import LintFinding
 
 _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
@@ -97,7 +97,7 @@ def _file(
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import read_source
     from tltlc.io.project import project_for
-    from tltlc.monitor.tests import run_tests
+    from tltlc.monitor.spec_tests import run_tests
     from tltlc.tools.lint.run import findings, view_of
 
     project = project_for(path)

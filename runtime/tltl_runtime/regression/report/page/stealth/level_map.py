@@ -15,8 +15,8 @@ from markupsafe import Markup
 
 from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import Level as GameLevel
+from tltl_runtime.regression.report.page.map_scale import MapScale
 from tltl_runtime.regression.report.page.markup import element
-from tltl_runtime.regression.report.page.plan import MapScale
 from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, names
 from tltl_runtime.regression.report.page.stealth.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.stealth.enemies.enemy import EYES

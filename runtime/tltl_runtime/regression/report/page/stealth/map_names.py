@@ -7,7 +7,7 @@ from math import hypot
 from typing import Final
 
 from tltl_runtime.game.geometry import Region
-from tltl_runtime.regression.report.page.plan import MapScale, Rect
+from tltl_runtime.regression.report.page.map_scale import MapScale, Rect
 from tltl_runtime.regression.report.page.stealth.mentions import Mentions
 from tltl_runtime.stealth.level import Level
 from tltlc.api import record, replace

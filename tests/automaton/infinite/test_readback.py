@@ -15,8 +15,8 @@ from tests.logic.strategies import formulas
 from tests.logic.test_english import assert_sentence
 from tests.reference_formulas import read_formula
 from tltlc.automaton.infinite.factoring import Factoring
-from tltlc.automaton.infinite.infinite import infinite_form, readable
 from tltlc.automaton.infinite.lasso import holds_on_lasso
+from tltlc.automaton.infinite.normal_form import infinite_form, readable
 from tltlc.automaton.infinite.readback import NormalFormWriter, without_constants
 from tltlc.automaton.text import formula_text
 from tltlc.logic.formula import Formula

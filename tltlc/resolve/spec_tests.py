@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import instead
-from tltlc.grammar.slips import likely_name
 from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
+from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem

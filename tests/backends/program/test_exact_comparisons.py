@@ -8,7 +8,7 @@ from fractions import Fraction
 from hypothesis import given, settings
 
 from tests.backends.program.interpreter import Scope
-from tests.resolve.test_margins import FINITE, THREE, around, varying
+from tests.resolve.test_comparison_signs import FINITE, THREE, around, varying
 from tltlc.program.arithmetic import ExpressionTranslator, defined
 from tltlc.program.bounds import proven, within
 from tltlc.resolve import units

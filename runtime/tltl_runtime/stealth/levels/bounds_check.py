@@ -9,8 +9,8 @@ from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.parts import Places
 from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import PlayerKind
-from tltl_runtime.stealth.world.way import MoverPath
 from tltlc.api import Diagnostic, Label
 
 _PLAYER: Final = PlayerKind()

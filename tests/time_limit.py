@@ -9,7 +9,7 @@ from typing import Final
 _SECONDS: Final = 120.0
 
 
-def soon(code: str) -> str:
+def run_with_time_limit(code: str) -> str:
     """Run Python code in a new process and return its output; fail the test after two minutes."""
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=_SECONDS, check=False)
     assert result.returncode == 0, result.stderr

@@ -32,7 +32,7 @@ BEFORE = "before"
 """The best progress before this step."""
 
 
-def judged(fspa: Fspa) -> tuple[Statement, ...]:
+def statements(fspa: Fspa) -> tuple[Statement, ...]:
     """Return the statements that come after the transition."""
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
@@ -55,7 +55,7 @@ def judged(fspa: Fspa) -> tuple[Statement, ...]:
 
 
 def _survived(limit: int | None) -> list[Statement]:
-    """Return statements for the progress of a spec judged at its limit.
+    """Return statements for the progress of a spec statements at its limit.
 
     It is the share of the limit that the episode has survived. Without a limit it is 1 once
     satisfied, else 0.

@@ -24,7 +24,7 @@ left to find.
 """
 
 
-class Windows:
+class RecentEpisodes:
     """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's limit, or None.
 
     ``unbroken`` is the number of episodes in a row, up to the last one, that met the spec.  A

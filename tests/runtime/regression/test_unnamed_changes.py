@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.regression.made import ROOM, reference
+from tests.runtime.regression.handmade import ROOM, reference
 from tltl_runtime.regression.suite.suite import Suite, read_suite
 from tltl_runtime.regression.suite.unnamed_changes import unnamed
 from tltl_runtime.regression.verdict.baseline import Reference

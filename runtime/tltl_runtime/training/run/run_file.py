@@ -12,7 +12,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
-from tltl_runtime.game.place import absolute_variant
+from tltl_runtime.game.level_name import absolute_variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION

@@ -15,7 +15,7 @@ from tltlc.program.tree import (
     Statement,
     Variable,
 )
-from tltlc.program.uses import called, read
+from tltlc.program.used_names import called, read
 
 x, y, z, zero = Variable("x"), Variable("y"), Variable("z"), Real(0.0)
 STATEMENTS: list[Statement] = [

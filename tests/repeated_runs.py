@@ -1,4 +1,4 @@
-"""Run the tests N times, in random orders and on a busy machine: ``python -m tests.again N BUSY [PYTEST …]``."""
+"""Run the tests N times in random orders beside busy processes: ``python -m tests.repeated_runs N BUSY [PYTEST …]``."""
 
 from __future__ import annotations
 

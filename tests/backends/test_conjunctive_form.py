@@ -5,7 +5,7 @@ from itertools import product
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tltlc.program.clauses import shorter
+from tltlc.program.conjunctive_form import shorter
 
 terms = st.lists(st.lists(st.sampled_from("abcde"), min_size=1, unique=True), min_size=1, max_size=8)
 values = st.lists(st.floats(-1, 1), min_size=5, max_size=5)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime.game.place import absolute_variant, level_place, overlays_of, shown_variant, with_overlays
+from tltl_runtime.game.level_name import absolute_variant, level_place, overlays_of, shown_variant, with_overlays
 from tltl_runtime.stealth.levels.file import changes, level_and_changes, load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.diagnostics.diagnostic import TltlError

@@ -10,7 +10,7 @@ import click
 from gymnasium import spaces
 
 from tltl_runtime.cli.support.sensor_options import senses_options
-from tltl_runtime.game.place import level_place
+from tltl_runtime.game.level_name import level_place
 from tltl_runtime.stealth.capabilities.capabilities import check_supply, given_params, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import Reach, reachable

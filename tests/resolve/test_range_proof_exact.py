@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.resolve.test_predicate_check import CLOSE, FAR, D, H, X, Y, near, op, value_at
+from tests.resolve.test_range_proof import CLOSE, FAR, D, H, X, Y, near, op, value_at
 from tltlc.expression.tree import Const, Expression, ParamValue, SignalValue
 from tltlc.resolve.range_proof.cases import Constraint, cases
 from tltlc.resolve.range_proof.continuity import meetings

@@ -9,7 +9,7 @@ from tltlc.expression.tree import Op
 from tltlc.expression.tree import ParamValue as NamedParam
 from tltlc.expression.tree import SignalValue as NamedSignal
 from tltlc.logic import formula as f
-from tltlc.program import pieces
+from tltlc.program import snippets
 from tltlc.program.printer import Printer
 from tltlc.resolve import spec
 
@@ -37,8 +37,8 @@ def test_long_items_have_separate_lines() -> None:
 
 def test_literals() -> None:
     text = 'a "b" \\ é\n'
-    assert pieces.quoted(text, lambda character: "·") == '"a \\"b\\" \\\\ é·"'
-    assert pieces.quoted(text, lambda character: "·", pieces.in_ascii) == '"a \\"b\\" \\\\ ··"'
+    assert snippets.quoted(text, lambda character: "·") == '"a \\"b\\" \\\\ é·"'
+    assert snippets.quoted(text, lambda character: "·", snippets.in_ascii) == '"a \\"b\\" \\\\ ··"'
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_literals() -> None:
     ],
 )
 def test_fields_are_described(name: str, of: spec.Signal | spec.Param, text: str) -> None:
-    assert pieces.described(name, of) == text
+    assert snippets.described(name, of) == text
 
 
 @pytest.mark.parametrize("target", ["c", "csharp", "gdscript", "gdscript3", "javascript", "lua", "rust"])
@@ -74,7 +74,7 @@ def test_the_doc_comes_before_the_range_in_every_language(target: str) -> None:
 
 
 def test_examples() -> None:
-    assert pieces.example((), str, ": ") == "{}"
-    assert pieces.example(SIGNALS, str, ": ") == "{ x: …, y: true }"
-    assert pieces.example(SIGNALS * 2, str, " = ") == "{ x = …, y = true, … }"
-    assert pieces.example(SIGNALS, lambda name: name * 60, ": ") == "signals"
+    assert snippets.example((), str, ": ") == "{}"
+    assert snippets.example(SIGNALS, str, ": ") == "{ x: …, y: true }"
+    assert snippets.example(SIGNALS * 2, str, " = ") == "{ x = …, y = true, … }"
+    assert snippets.example(SIGNALS, lambda name: name * 60, ": ") == "signals"

@@ -17,7 +17,7 @@ import pytest
 
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.game import EASY, SUITE, Played, edit, with_baseline
-from tests.runtime.regression.made import ROOM, changed
+from tests.runtime.regression.handmade import ROOM, changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
@@ -28,7 +28,7 @@ from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import Ready, episodes, ready
-from tltl_runtime.regression.verdict.run import CASES, Done, _inputs, case_folder, check, lock_run, regress
+from tltl_runtime.regression.verdict.suite_run import CASES, Done, _inputs, case_folder, check, lock_run, regress
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.levels.made_for import LEVELS
@@ -181,7 +181,7 @@ def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.Mon
             edit()
         return ready_case
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.run.ready", then)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.ready", then)
 
 
 def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
@@ -257,7 +257,7 @@ def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch)
         ready_case = ready(case, seed)
         return replace(ready_case, setup=replace(ready_case.setup, policy=Deadly(ready_case.setup.policy)))
 
-    monkeypatch.setattr("tltl_runtime.regression.verdict.run.ready", deadly)
+    monkeypatch.setattr("tltl_runtime.regression.verdict.suite_run.ready", deadly)
     with pytest.raises(TltlError) as error:
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
     (diagnostic,) = error.value.diagnostics

@@ -25,12 +25,15 @@ class EpisodeWorker(Protocol):
         """Free the resources."""
 
 
-Alone = Callable[[EpisodeRequest], str]
+ReplayCommand = Callable[[EpisodeRequest], str]
 """Returns the command that plays a single episode."""
 
 
-def spread(
-    workers: Sequence[EpisodeWorker], tasks: Sequence[EpisodeRequest], seed: int, alone: Alone | None = None
+def play_all(
+    workers: Sequence[EpisodeWorker],
+    tasks: Sequence[EpisodeRequest],
+    seed: int,
+    replay_command: ReplayCommand | None = None,
 ) -> Iterator[PlayedEpisode]:
     """Give each free worker the next task; yield the results in the order of the tasks.
 
@@ -55,7 +58,7 @@ def spread(
                 if (error := future.exception()) is not None:
                     yield from (results[played] for played in sorted(results))
                     if isinstance(error, LostError):
-                        raise _lost(error, tasks[index], seed, alone) from error
+                        raise _lost(error, tasks[index], seed, replay_command) from error
                     raise error
                 for next_index, task in remaining:
                     running[worker.play(task)] = worker, next_index
@@ -63,13 +66,13 @@ def spread(
         yield results.pop(wanted)
 
 
-def _lost(error: LostError, task: EpisodeRequest, seed: int, alone: Alone | None) -> TltlError:
+def _lost(error: LostError, task: EpisodeRequest, seed: int, replay_command: ReplayCommand | None) -> TltlError:
     title = (
         f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"
     )
-    if alone:
-        help_ = f"to play that one alone: {alone(task)}"
+    if replay_command:
+        help_ = f"to play that one alone: {replay_command(task)}"
     else:
         help_ = f"`tltlc evaluate` plays that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"
     return TltlError([Diagnostic("TLT0850", title, help=help_)])

@@ -10,8 +10,8 @@ from typing import Final, cast
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, blocked
 from tltl_runtime.stealth.level import Enemy, Level, Mover, Point
+from tltl_runtime.stealth.levels.bounds_check import shown
 from tltl_runtime.stealth.levels.parts import Places
-from tltl_runtime.stealth.levels.room import shown
 from tltlc.api import Diagnostic
 
 _EPSILON: Final = 1e-6

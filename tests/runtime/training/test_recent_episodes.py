@@ -7,15 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.training.ppo.windows import Standstill, Windows
+from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
 from tltl_runtime.training.run.report import EpisodeWindow
 
 SUCCESS = EpisodeSummary(0, None, True, "success", 1.0, 0.6, 40, 4)
 FAILURE = EpisodeSummary(1, None, False, "violation", 0.6, -0.4, 25, 2)
 
 
-def _windows(episodes: list[bool]) -> Windows:
-    windows = Windows(2, 3, 100)
+def _windows(episodes: list[bool]) -> RecentEpisodes:
+    windows = RecentEpisodes(2, 3, 100)
     windows.add(SUCCESS if success else FAILURE for success in episodes)
     return windows
 
@@ -45,7 +45,7 @@ def test_a_policy_is_scored_by_its_last_window(episodes: list[bool]) -> None:
 
 
 def test_rewards_use_the_undiscounted_penalty() -> None:
-    windows = Windows(2, 3, 100)
+    windows = RecentEpisodes(2, 3, 100)
     windows.load(_windows([True, False]).state(), 0)
     window = windows.window
     # 1 - 40/100, and 0.6 - 1.
@@ -62,7 +62,7 @@ def test_a_window_without_episodes_has_zero_figures() -> None:
 
 @given(st.lists(st.booleans(), max_size=12), st.lists(st.booleans(), max_size=12))
 def test_loaded_windows_continue(before: list[bool], after: list[bool]) -> None:
-    windows = Windows(2, 3, 100)
+    windows = RecentEpisodes(2, 3, 100)
     windows.load(_windows(before).state(), _windows(before).unbroken)
     windows.add(SUCCESS if success else FAILURE for success in after)
     whole = _windows(before + after)

@@ -16,7 +16,7 @@ from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurricul
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 from tltl_runtime.training.run.checkpoint import read_checkpoint
 from tltl_runtime.training.run.report import TrainingReport
-from tltl_runtime.training.run.run import CHECKPOINT, Run
+from tltl_runtime.training.run.run_file import CHECKPOINT, Run
 from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

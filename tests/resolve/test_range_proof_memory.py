@@ -93,7 +93,7 @@ import sys
 from tltlc.grammar.parser import parse
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
+from tltlc.resolve.resolution import resolve
 from tltlc.core.source import SourceFile
 for path in sorted(standard_library().glob("*.tltl")):
     resolve(parse(SourceFile(str(path), path.read_text("utf-8")))[0], ResolveOptions())

@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 
 from tltl_runtime.training.ppo.distributed import Peers
-from tltl_runtime.training.run.run import Run
+from tltl_runtime.training.run.run_file import Run
 
 
 class Purpose(IntEnum):

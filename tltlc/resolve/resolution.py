@@ -20,8 +20,8 @@ from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
 from tltlc.resolve.spec import ResolvedFile, Spec, Vocabulary
+from tltlc.resolve.spec_tests import resolved_test
 from tltlc.resolve.specs import spec, vocabulary
-from tltlc.resolve.tests import resolved_test
 from tltlc.resolve.values import Env
 
 FormulaOf = Callable[[Expr], "Formula | None"]

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from tests.logic.strategies import formulas
 from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
-from tltlc.automaton.graph import to_networkx
+from tltlc.automaton.networkx_graph import to_networkx
 from tltlc.logic.formula import Formula
 
 
