@@ -25,13 +25,13 @@ FOLDERS = ("benchmarks", "editors", "runtime", "tools/conformance")
 
 LARGE = (
     "automaton/infinite/test_reference.py",
-    "automaton/infinite/test_written.py",
+    "automaton/infinite/test_readback.py",
     "automaton/test_bounds.py",
     "automaton/test_budgets.py",
     "automaton/test_corpus.py",
     "automaton/test_labels.py",
     "backends/test_json.py",
-    "backends/test_rungs.py",
+    "backends/test_counting_states.py",
     "grammar/test_english.py",
     "grammar/test_fuzz.py",
     "grammar/test_one_reading.py",
