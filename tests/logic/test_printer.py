@@ -53,6 +53,13 @@ def test_known_texts(text: str, unicode: str, words: str) -> None:
     assert repr(formula) == f"<Formula {text}>"
 
 
+def test_a_formula_has_its_texts_as_properties() -> None:
+    formula = f.and_(f.eventually(f.atom("a")), f.always(f.not_(f.atom("b"))))
+    assert formula.ascii == "F a & G !b"
+    assert formula.unicode == "◇a ∧ □¬b"
+    assert formula.english == "Reach a, and avoid b throughout."
+
+
 @pytest.mark.parametrize(
     ("formula", "text"),
     [

@@ -58,14 +58,19 @@ class State:
 class Guard:
     """The condition under which an edge is taken.
 
-    ``formula`` is a short formula of it; ``str(formula)`` is its ASCII notation.  In an automaton of
-    another tool, it may be text that is no formula.  ``primes`` are all prime implicants of the
+    ``formula`` is a short formula of it.  In an automaton of another tool, it may be text that is
+    no formula.  ``primes`` are all prime implicants of the
     guard (``((),)`` is true).  With ``exclusive`` declarations D, ``primes`` are the prime implicants of
     ``guard or not D`` that are not contained in ``not D`` (semantics, section 3).
     """
 
     formula: Formula | Text
     primes: tuple[Implicant, ...]
+
+    @property
+    def text(self) -> str:
+        """The formula in the ASCII notation, as artefacts have it."""
+        return str(self.formula)
 
 
 @record

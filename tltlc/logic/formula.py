@@ -51,6 +51,13 @@ class Formula:
 
         return unicode_text(self)
 
+    @property
+    def english(self) -> str:
+        """The formula as a sentence about finite traces, as :func:`~tltlc.logic.text.printer.english_text` prints it."""
+        from tltlc.logic.text.printer import english_text
+
+        return english_text(self)
+
     def __reduce__(self) -> tuple[object, ...]:
         # Flat, since pickling nested operands recurses, and bounds nest deep.
         return _last_of, (flattened([self])[0],)

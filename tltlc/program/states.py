@@ -59,7 +59,7 @@ class _State:
     def _taken(self, edge: Edge) -> tuple[Statement, ...]:
         """Return the statements that run when an edge is taken."""
         improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
-        lines: list[Statement] = [CommentLine(str(edge.guard.formula)), Assign(TARGET, Int(edge.target))]
+        lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, Int(edge.target))]
         lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
         base = Real(self._tables.base_progress[edge.target])
         if not improving:

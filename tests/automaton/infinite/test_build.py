@@ -168,7 +168,7 @@ def test_a_judge_clause_overrides_the_default() -> None:
 
 def test_acceptance_is_on_transitions() -> None:
     fspa = compiled("G F a")
-    assert [(edge.source, edge.target, str(edge.guard.formula)) for edge in fspa.edges] == [(0, 0, "!a"), (0, 0, "a")]
+    assert [(edge.source, edge.target, edge.guard.text) for edge in fspa.edges] == [(0, 0, "!a"), (0, 0, "a")]
     assert [(pair.fin, pair.inf) for pair in fspa.acceptance] == [((), (1,))]
     assert judged(fspa) == [("G F a", "holding", 0, True)]
 

@@ -260,7 +260,7 @@ def test_an_edge_of_exclusive_atoms_is_reported_and_left_out() -> None:
     text = "signal fuel in [0, 100]  spec both { reach fuel > 80  reach fuel < 20 }"
     (fspa,) = tltlc.compile_text(text)
     covering = cover(Moves(fspa))
-    untaken = [str(fspa.edges[edge.edge].guard.formula) for edge in covering.untaken]
+    untaken = [fspa.edges[edge.edge].guard.text for edge in covering.untaken]
     assert untaken == ["(fuel > 80) & (fuel < 20)"]
     assert [obstacle.text(fspa) for obstacle in covering.untaken[0].obstacles] == ["`fuel > 80` and `fuel < 20`"]
     # By letters alone, the shortest trace would have one step.

@@ -52,7 +52,7 @@ def untaken(fspa: Fspa, edges: Sequence[Untaken]) -> list[Diagnostic]:
     """Return the warnings about edges that no trace takes."""
     warnings = []
     for untaken_edge in edges[:_MOST_NAMED]:
-        guard = fspa.edges[untaken_edge.edge].guard.formula
+        guard = fspa.edges[untaken_edge.edge].guard.text
         name = f"the edge {_edge(fspa, untaken_edge.edge)} of `{fspa.name}` (`{guard}`)"
         if untaken_edge.obstacles:
             reasons = " or ".join(obstacle.text(fspa) for obstacle in untaken_edge.obstacles[:2])
