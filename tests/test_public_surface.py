@@ -70,6 +70,7 @@ def sections() -> Iterator[tuple[str, list[str]]]:
     yield "Names of tltlc", sorted(tltlc.__all__)
     yield "Names of tltl_runtime", sorted(runtime.__all__)
     yield "Names in other modules that the documentation mentions", list(documented_names())
+    yield "Names of tltlc.api, the façade of the compiler", list(facade_names())
     yield "Commands", [line for name, command in commands() for line in command_lines(name, command)]
     statuses = {name: value for name, value in vars(exits).items() if name.isupper() and isinstance(value, int)}
     yield "Exit statuses", [f"{value} {name}" for name, value in statuses.items()]
@@ -92,6 +93,15 @@ def documented_names() -> Iterator[str]:
             names.setdefault(module, set()).update([name] if name else [])
     for module in sorted(names.keys() - {"tltlc", "tltl_runtime"}):
         yield f"{module}: {', '.join(sorted(names[module]))}".rstrip(": ")
+
+
+def facade_names() -> Iterator[str]:
+    """Yield the façade's names, then ``MODULE: NAME, …`` for each of its modules."""
+    facade = import_module("tltlc.api")
+    modules = [name for name in facade.__all__ if is_module(f"tltlc.api.{name}")]
+    yield ", ".join(sorted(set(facade.__all__) - set(modules)))
+    for name in modules:
+        yield f"{name}: {', '.join(import_module(f'tltlc.api.{name}').__all__)}"
 
 
 def split(dotted: str) -> tuple[str, str]:
