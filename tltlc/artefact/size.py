@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.text import guard_texts
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import ARTEFACT
 
@@ -30,10 +29,9 @@ def check_size(what: str, size: int, commas: int = 0) -> None:
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:
-    """Return the least bytes and commas that the edges of an artefact take; edges dominate a large artefact."""
+    """Return bytes and commas that the edges of an artefact take at least: they dominate a large artefact."""
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
-    texts = sum(map(len, guard_texts(fspa)))
-    size = len(_SHORTEST_EDGE) * len(fspa.edges) + texts + len("[0, true], ") * literals
+    size = len(_SHORTEST_EDGE) * len(fspa.edges) + len("[0, true], ") * literals
     return size, 3 * len(fspa.edges) + 2 * literals - 1
 
 

@@ -143,19 +143,32 @@ class Fspa:
 
     def __reduce__(self) -> tuple[object, ...]:
         # The formulas share one table of nodes: the labels of states that count down have most nodes in common.
-        labels = (self.formula, *(state.label for state in self.states))
-        nodes, indices = flattened(label for label in labels if isinstance(label, Formula))
+        guards = {id(edge.guard): edge.guard for edge in self.edges}
+        labels = [state.label for state in self.states]
+        formulas = (self.formula, *labels, *(guard.formula for guard in guards.values()))
+        nodes, indices = flattened(formula for formula in formulas if isinstance(formula, Formula))
         index = iter(indices)
-        table = [next(index) if isinstance(label, Formula) else label for label in labels]
+        table = [next(index) if isinstance(formula, Formula) else formula for formula in formulas]
         states = [(state.id, state.accepting, state.verdict, state.distance) for state in self.states]
+        place = {key: number for number, key in enumerate(guards)}
+        edges = [(edge.source, edge.target, place[id(edge.guard)]) for edge in self.edges]
+        primes = [guard.primes for guard in guards.values()]
         fields = {name: getattr(self, name) for name in type(self).__match_args__}
-        return _unpickled, (nodes, table, {**fields, "formula": None, "states": states})
+        return _unpickled, (nodes, table, primes, {**fields, "formula": None, "states": states, "edges": edges})
 
 
-def _unpickled(nodes: FlatNodes, table: list[int | Text], fields: dict[str, Any]) -> Fspa:
-    """Return a pickled automaton; ``table`` has its formula and its labels: texts, or indices into the nodes."""
-    formulas = unflattened(nodes)
-    formula, *labels = (entry if isinstance(entry, Text) else formulas[entry] for entry in table)
-    rows = zip(labels, fields["states"], strict=True)
-    states = tuple(State(number, label, *rest) for label, (number, *rest) in rows)
-    return Fspa(**{**fields, "formula": formula, "states": states})
+def _unpickled(
+    nodes: FlatNodes, table: list[int | Text], primes: list[tuple[Implicant, ...]], fields: dict[str, Any]
+) -> Fspa:
+    """Return a pickled automaton.
+
+    ``table`` has the formula of the spec, the labels of the states and the formulas of the guards:
+    texts, or indices into ``nodes``.  ``primes`` are those of the guards.
+    """
+    subformulas = unflattened(nodes)
+    formulas = iter([entry if isinstance(entry, Text) else subformulas[entry] for entry in table])
+    fields["formula"] = next(formulas)
+    fields["states"] = tuple([State(number, next(formulas), *rest) for number, *rest in fields["states"]])
+    guards = [Guard(next(formulas), implicants) for implicants in primes]
+    fields["edges"] = tuple([Edge(source, target, guards[guard]) for source, target, guard in fields["edges"]])
+    return Fspa(**fields)

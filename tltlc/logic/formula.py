@@ -53,7 +53,7 @@ class Formula:
 
     @property
     def english(self) -> str:
-        """The formula as a sentence about finite traces, as :func:`~tltlc.logic.text.printer.english_text` prints it."""
+        """The formula as a sentence on finite traces, as :func:`~tltlc.logic.text.printer.english_text` gives it."""
         from tltlc.logic.text.printer import english_text
 
         return english_text(self)
