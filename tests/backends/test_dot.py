@@ -177,7 +177,7 @@ def test_guards_can_be_shown_only_in_tooltips() -> None:
 def test_graphviz_can_read_texts_of_any_length(character: str) -> None:
     fspa = cover_and_hide()
     text = 10_000 * f"{character}{character} "
-    edges = tuple(replace(edge, guard=replace(edge.guard, text=text)) for edge in fspa.edges)
+    edges = tuple(replace(edge, guard=replace(edge.guard, formula=Text(text, text, text))) for edge in fspa.edges)
     states = tuple(replace(state, label=Text(text, text, text)) for state in fspa.states)
     drawn = parsed(emitted(replace(fspa, edges=edges, states=states)))
     assert (len(drawn.nodes()), len(drawn.edges())) == (1 + len(states), 1 + len(edges))

@@ -272,7 +272,7 @@ def test_hostile_texts_execute_nothing(tmp_path: Path, monkeypatch: pytest.Monke
             atoms=tuple(
                 replace(atom, base=f"{text}{index}", arguments=(), doc=text) for index, atom in enumerate(fspa.atoms)
             ),
-            edges=tuple(replace(edge, guard=replace(edge.guard, text=text)) for edge in fspa.edges),
+            edges=tuple(replace(edge, guard=replace(edge.guard, formula=label)) for edge in fspa.edges),
         )
         step = module_of(fspa).Monitor().step(FAR)
         assert step.label == text

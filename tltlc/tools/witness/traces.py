@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from tltlc.automaton.fspa import Edge, Fspa, Pair, State
+from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State
 from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import record, replace
+from tltlc.logic.formula import TRUE
 from tltlc.tools.witness.samples import Sample
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
@@ -124,7 +125,7 @@ def _edges(fspa: Fspa, letters: tuple[Letter, ...]) -> list[int]:
 def _constant(fspa: Fspa, accepts: bool) -> Fspa:
     """Return an automaton over the same atoms that accepts every infinite trace, or none."""
     state = replace(fspa.states[0], id=0)
-    edge = Edge(0, 0, replace(fspa.edges[0].guard, text="true", primes=((),)))
+    edge = Edge(0, 0, Guard(TRUE, ((),)))
     pairs = (Pair((), (0,)),) if accepts else ()
     return replace(fspa, states=(state,), edges=(edge,), acceptance=pairs)
 
@@ -139,7 +140,7 @@ def _without(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
     sink = len(fspa.states)
     state: State = replace(fspa.states[0], id=sink)
     edges = [replace(edge, target=sink) if index in closed else edge for index, edge in enumerate(fspa.edges)]
-    loop = Edge(sink, sink, replace(fspa.edges[0].guard, text="true", primes=((),)))
+    loop = Edge(sink, sink, Guard(TRUE, ((),)))
     pairs = [
         Pair(
             tuple(edge_index for edge_index in pair.fin if edge_index not in closed),
