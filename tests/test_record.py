@@ -35,13 +35,13 @@ class Nothing:
     """No fields."""
 
 
-def test_fields_by_position_name_and_default() -> None:
+def test_fields_are_set_by_position_name_or_default() -> None:
     assert (Point(1).x, Point(1).y, Point(1, 3).y, Point(y=4, x=1).total) == (1, 2, 3, 5)
     assert repr(Point(1)) == "Point(x=1, y=2)"
 
 
 @pytest.mark.parametrize(
-    ("given", "named", "message"),
+    ("positional", "keywords", "message"),
     [
         ((), {}, "Point lacks x"),
         ((1, 2, 3), {}, "Point takes 2 values, 3 were given"),
@@ -49,9 +49,9 @@ def test_fields_by_position_name_and_default() -> None:
         ((1,), {"z": 2}, "Point has no field z"),
     ],
 )
-def test_wrong_arguments_are_an_error(given: tuple[int, ...], named: dict[str, int], message: str) -> None:
+def test_wrong_arguments_are_an_error(positional: tuple[int, ...], keywords: dict[str, int], message: str) -> None:
     with pytest.raises(TypeError, match=message):
-        Point(*given, **named)
+        Point(*positional, **keywords)
 
 
 def test_equality_and_hash_are_by_class_and_fields() -> None:
@@ -72,7 +72,7 @@ def test_records_cannot_be_changed() -> None:
         point.z = 2  # type: ignore[attr-defined]
 
 
-def test_replace_pickle_and_match() -> None:
+def test_records_can_be_replaced_pickled_and_matched() -> None:
     assert replace(Point(1), y=5) == Point(1, 5)
     with pytest.raises(TypeError, match="no field z"):
         replace(Point(1), z=5)

@@ -8,7 +8,7 @@ from tltlc.core.source import SourceFile, Span
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"], ids=["LF", "CR LF", "CR"])
-def test_lines_and_positions(end: str) -> None:
+def test_every_line_break_separates_lines(end: str) -> None:
     source = SourceFile("a.tltl", end.join(["one", "two", "three"]))
     assert [source.line(number) for number in (1, 2, 3)] == ["one", "two", "three"]
     start = source.text.index("three")
@@ -17,6 +17,6 @@ def test_lines_and_positions(end: str) -> None:
     assert source.slice(Span(start, start + 5)) == "three"
 
 
-def test_mixed_line_breaks() -> None:
+def test_mixed_line_breaks_each_end_a_line() -> None:
     source = SourceFile("a.tltl", "a\r\rb\r\n\nc\r")
     assert [source.line(number) for number in range(1, 7)] == ["a", "", "b", "", "c", ""]

@@ -16,7 +16,7 @@ def full_name(base: str, arguments: tuple[str, ...]) -> str:
 def split_name(name: str) -> tuple[str, tuple[str, ...]]:
     """Split a full name into its base and its arguments.
 
-    A name that is no call, such as ``distance(s1) > 3``, is its own base.
+    A name that is not a call, such as ``distance(s1) > 3``, is its own base and has no arguments.
     """
     head = _BASE.match(name)
     if head is None:

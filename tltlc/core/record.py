@@ -46,20 +46,20 @@ def record(cls: type[R]) -> type[R]:
     body["__slots__"] = (*names, "_hash") if body.get("hashed_once") else names
     body["__match_args__"] = names
     new_class: Any = type(cls.__name__, cls.__bases__, body)
-    fill = [(index, new_class.__dict__[name].__set__) for index, name in enumerate(names)]
+    setters = [(index, new_class.__dict__[name].__set__) for index, name in enumerate(names)]
     values_of = _values_getter(names)
 
-    def initialise(self: Any, *given: Any, **named: Any) -> None:
-        missing = len(fill) - len(given)
-        if named or not 0 <= missing <= len(defaults):
-            given = _arguments(new_class.__qualname__, names, defaults, given, named)
+    def initialise(self: Any, *positional: Any, **keywords: Any) -> None:
+        missing = len(setters) - len(positional)
+        if keywords or not 0 <= missing <= len(defaults):
+            positional = _field_values(new_class.__qualname__, names, defaults, positional, keywords)
         elif missing:
-            given += defaults[-missing:]
-        for index, set_field in fill:
-            set_field(self, given[index])
+            positional += defaults[-missing:]
+        for index, set_field in setters:
+            set_field(self, positional[index])
 
-    def initialise_checked(self: Any, *given: Any, **named: Any) -> None:
-        initialise(self, *given, **named)
+    def initialise_checked(self: Any, *positional: Any, **keywords: Any) -> None:
+        initialise(self, *positional, **keywords)
         self.__post_init__()
 
     methods = {
@@ -82,7 +82,7 @@ def record(cls: type[R]) -> type[R]:
 
 
 class MissingFieldsError(TypeError):
-    """Raised when a record is made without fields that have no default; ``names`` are these fields."""
+    """Raised when a record lacks a value for a field without a default; ``names`` lists these fields."""
 
     def __init__(self, owner: str, names: list[str]) -> None:
         super().__init__(f"{owner} lacks {', '.join(names)}")
@@ -90,7 +90,7 @@ class MissingFieldsError(TypeError):
 
 
 def replace(value: R, /, **fields: object) -> R:
-    """Return a copy of a record with some fields replaced."""
+    """Return a copy of a record with some fields replaced; raise TypeError for an unknown field."""
     names = type(value).__match_args__  # type: ignore[attr-defined]
     unknown = fields.keys() - set(names)
     if unknown:
@@ -120,16 +120,16 @@ def _cached_hash(cls: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Calla
     return cached_hash
 
 
-def _arguments(
-    owner: str, names: tuple[str, ...], defaults: tuple[Any, ...], given: tuple[Any, ...], named: dict[str, Any]
+def _field_values(
+    owner: str, names: tuple[str, ...], defaults: tuple[Any, ...], positional: tuple[Any, ...], keywords: dict[str, Any]
 ) -> tuple[Any, ...]:
     """Return the values of the fields in order, from positions, names and defaults."""
-    if len(given) > len(names):
-        raise TypeError(f"{owner} takes {len(names)} values, {len(given)} were given")
+    if len(positional) > len(names):
+        raise TypeError(f"{owner} takes {len(names)} values, {len(positional)} were given")
     values = dict(zip(names[len(names) - len(defaults) :], defaults, strict=True))
-    values.update(zip(names[: len(given)], given, strict=True))
-    for name, value in named.items():
-        if name not in names or name in names[: len(given)]:
+    values.update(zip(names[: len(positional)], positional, strict=True))
+    for name, value in keywords.items():
+        if name not in names or name in names[: len(positional)]:
             raise TypeError(f"{owner} has {'two values for' if name in names else 'no'} field {name}")
         values[name] = value
     missing = [name for name in names if name not in values]
